@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+namespace lisco_apps {
+
+using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+
+/// Reads a scan: any format PCL reads with x, y, z fields of float or double (PCD, PLY, OBJ, IFS), KITTI's `.bin`
+/// (float32 x y z intensity, unorganized), or the paper authors' `.csv` (see readAuthorsCsv). Organized as the file is.
+/// \throws std::runtime_error with one line that names the file and what is wrong with it
+Cloud::Ptr readCloudFile(const std::filesystem::path& file);
+
+/// Files of the folder, sorted by name, that readCloudFile knows by their ending. Not recursive.
+std::vector<std::filesystem::path> cloudFilesIn(const std::filesystem::path& folder);
+
+/// Inputs as given on a command line, each folder replaced by the files in it.
+/// \throws std::runtime_error if a folder holds none
+std::vector<std::filesystem::path> expandInputs(const std::vector<std::string>& inputs);
+
+/// The points that are to be clustered: valid returns (see doc/contract.md) with z >= ground_z.
+pcl::Indices returnsAbove(const Cloud& cloud, float ground_z);
+
+}  // namespace lisco_apps

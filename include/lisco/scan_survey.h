@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "lisco/column_clusterer.h"
+#include "lisco/return.h"
+
+namespace lisco {
+
+/// A few pairs of adjacent cells, by which a whole cloud is judged before it is clustered.
+class ScanSurvey {
+ public:
+  /// Two returns of one laser in adjacent columns.
+  void addAlongRow(const Return& a, const Return& b) { along_row_.push_back({a, b}); }
+  /// Two returns of adjacent lasers in one column.
+  void addAlongColumn(const Return& a, const Return& b) { along_column_.push_back({a, b}); }
+
+  /// The mask, its viewpoint and its finest tiles for this cloud. Never changes the result, only the speed.
+  /// \param sensor where the cloud says its sensor stands; used if the cloud does not lie around (0, 0, 0)
+  Parameters judge(const std::array<float, 3>& sensor, bool organized) const;
+
+ private:
+  struct Pair {
+    Return a, b;
+  };
+  std::vector<Pair> along_row_, along_column_;
+};
+
+/// Looks at up to about a thousand cells of an organized cloud (lasers > 1) or of an unorganized one (lasers == 1).
+/// \param cell_at callable as Return (std::size_t laser, std::size_t column)
+template <typename CellAt>
+Parameters surveyScan(std::size_t columns, std::size_t lasers, const std::array<float, 3>& sensor, CellAt&& cell_at) {
+  constexpr std::size_t kRows = 16;
+  constexpr std::size_t kPlaces = 1024;
+  const std::size_t row_step = std::max<std::size_t>(1, lasers / kRows);
+  const std::size_t column_step =
+      std::max<std::size_t>(1, columns / std::max<std::size_t>(1, kPlaces * row_step / lasers));
+  const auto valid = [](const Return& r) { return isReturn(r.x, r.y, r.z); };
+
+  ScanSurvey survey;
+  for (std::size_t laser = row_step / 2; laser < lasers; laser += row_step)
+    for (std::size_t column = column_step / 2; column < columns; column += column_step) {
+      const Return cell = cell_at(laser, column);
+      if (!valid(cell)) continue;
+      const Return right = column + 1 < columns ? cell_at(laser, column + 1) : kNoReturn;
+      const Return below = laser + 1 < lasers ? cell_at(laser + 1, column) : kNoReturn;
+      if (valid(right)) survey.addAlongRow(cell, right);
+      if (valid(below)) survey.addAlongColumn(cell, below);
+    }
+  Parameters parameters = survey.judge(sensor, lasers > 1);
+  parameters.expected_returns = columns * lasers;
+  return parameters;
+}
+
+}  // namespace lisco

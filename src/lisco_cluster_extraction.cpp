@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include <algorithm>
+#include <limits>
+
+#include <pcl/console/print.h>
+#include <pcl/impl/instantiate.hpp>
+#include <pcl/segmentation/impl/lisco_cluster_extraction.hpp>
+
+bool
+pcl::detail::LiscoCloudClusterer::fitsIndexType (std::size_t points)
+{
+  // The engine numbers points with 32 bits, and two of those numbers have a meaning of their own.
+  return (points <= static_cast<std::size_t> (std::numeric_limits<index_t>::max ()) && points < kSelected);
+}
+
+bool
+pcl::detail::LiscoCloudClusterer::select (std::size_t points, const Indices *indices, const char *caller)
+{
+  if (!fitsIndexType (points))
+  {
+    PCL_ERROR ("[%s] The cloud has %zu points, more than pcl::index_t can number.\n", caller, points);
+    return (false);
+  }
+  if (indices)
+    for (const auto &index : *indices)
+      if (index < 0 || static_cast<std::size_t> (index) >= points)
+      {
+        PCL_ERROR ("[%s] Index %lld is not within the cloud of %zu points.\n", caller, static_cast<long long> (index),
+                   points);
+        return (false);
+      }
+
+  // A small part of a cloud is sorted out beforehand, so that the rest of the cloud costs nothing.
+  constexpr std::size_t kSmallPart = 8;
+  few_ = indices && indices->size () < points / kSmallPart;
+  few_points_.clear ();
+  if (few_)
+  {
+    few_points_ = *indices;
+    std::sort (few_points_.begin (), few_points_.end ());
+    few_points_.erase (std::unique (few_points_.begin (), few_points_.end ()), few_points_.end ());
+    head_of_point_.resize (points);
+  }
+  else
+    head_of_point_.assign (points, indices ? kNotSelected : kSelected);
+  if (indices)
+    for (const auto &index : *indices)
+      head_of_point_[static_cast<std::size_t> (index)] = kSelected;
+  return (true);
+}
+
+void
+pcl::detail::LiscoCloudClusterer::collect (const Indices *indices, const PCLHeader &header, uindex_t min_size,
+                                           uindex_t max_size, std::vector<PointIndices> &clusters)
+{
+  clusterer_.forEachRun ([this] (const std::uint32_t *points, std::size_t count, std::uint32_t head) {
+    for (std::size_t i = 0; i < count; ++i)
+      head_of_point_[points[i]] = head;
+  });
+
+  constexpr std::uint32_t kUndecided = ~std::uint32_t{0};
+  constexpr std::uint32_t kNoCluster = kUndecided - 1;
+  cluster_of_head_.assign (clusterer_.headLimit (), kUndecided);
+  const std::size_t first_cluster = clusters.size ();
+  const auto decide = [&] (std::uint32_t head) {
+    const std::uint32_t size = clusterer_.weight (head);
+    cluster_of_head_[head] = kNoCluster;
+    if (size < min_size || size > max_size)
+      return;
+    cluster_of_head_[head] = static_cast<std::uint32_t> (clusters.size () - first_cluster);
+    clusters.emplace_back ();
+    clusters.back ().header = header;
+    clusters.back ().indices.reserve (size);
+  };
+  const auto decide_once = [&] (index_t point) {
+    const std::uint32_t head = head_of_point_[static_cast<std::size_t> (point)];
+    if (head < kSelected && cluster_of_head_[head] == kUndecided)
+      decide (head);
+  };
+  const auto append = [&] (index_t point) {
+    const std::uint32_t head = head_of_point_[static_cast<std::size_t> (point)];
+    if (head < kSelected && cluster_of_head_[head] != kNoCluster)
+      clusters[first_cluster + cluster_of_head_[head]].indices.push_back (point);
+  };
+
+  // The order of the clusters is that of their first points in the indices; within each, indices ascend.
+  if (indices)
+    std::for_each (indices->begin (), indices->end (), decide_once);
+  if (few_)
+    std::for_each (few_points_.begin (), few_points_.end (), append);
+  else
+    for (index_t point = 0; point < static_cast<index_t> (head_of_point_.size ()); ++point)
+    {
+      decide_once (point);
+      append (point);
+    }
+}
+
+bool
+pcl::detail::LiscoCloudClusterer::isSubcluster (const Indices &points) const
+{
+  const auto headOf = [this] (index_t point) {
+    const bool known = few_ ? std::binary_search (few_points_.begin (), few_points_.end (), point)
+                            : point >= 0 && static_cast<std::size_t> (point) < head_of_point_.size ();
+    return (known ? head_of_point_[static_cast<std::size_t> (point)] : kNotSelected);
+  };
+  if (points.empty ())
+    return (false);
+  const std::uint32_t head = headOf (points.front ());
+  return (head < clusterer_.headLimit () && clusterer_.weight (head) == points.size () &&
+          std::all_of (points.begin (), points.end (), [&] (index_t point) { return (headOf (point) == head); }));
+}
+
+PCL_INSTANTIATE (LiscoClusterExtraction, PCL_XYZ_POINT_TYPES)
+PCL_INSTANTIATE (extractLiscoClusters, PCL_XYZ_POINT_TYPES)
+PCL_INSTANTIATE (extractLiscoClusters_indices, PCL_XYZ_POINT_TYPES)

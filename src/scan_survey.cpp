@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "lisco/scan_survey.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lisco/box.h"
+
+namespace lisco {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Points seen from the sensor, in double: only here, where it is done for a few of them.
+struct Direction {
+  double azimuth, elevation;
+};
+
+Direction directionOf(const Return& point, const std::array<float, 3>& origin) {
+  const double x = static_cast<double>(point.x) - static_cast<double>(origin[0]);
+  const double y = static_cast<double>(point.y) - static_cast<double>(origin[1]);
+  const double z = static_cast<double>(point.z) - static_cast<double>(origin[2]);
+  return {std::atan2(y, x), std::atan2(z, std::hypot(x, y))};
+}
+
+float median(std::vector<double>& values, float if_empty) {
+  if (values.empty()) return if_empty;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return static_cast<float>(*middle);
+}
+
+/// Whether a sensor there may have seen what lies in the box: not further outside it than the box is wide.
+bool mayHaveSeen(const std::array<float, 3>& origin, const Box& box) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double lo = static_cast<double>(box.lo[axis]);
+    const double hi = static_cast<double>(box.hi[axis]);
+    const double o = static_cast<double>(origin[axis]);
+    const double width = std::max({static_cast<double>(box.hi[0]) - static_cast<double>(box.lo[0]),
+                                   static_cast<double>(box.hi[1]) - static_cast<double>(box.lo[1]),
+                                   static_cast<double>(box.hi[2]) - static_cast<double>(box.lo[2])});
+    if (!(std::fabs(o) <= 1e30) || o < lo - width || o > hi + width) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Parameters ScanSurvey::judge(const std::array<float, 3>& sensor, bool organized) const {
+  // A view whose neighbouring cells lie further apart than this, in the median, is no view.
+  constexpr float kWidestStep = 0.05F;
+  constexpr std::size_t kFewest = 8;
+
+  Parameters parameters;
+  // Cells of an unorganized cloud are no columns: there, patches stay open to the end.
+  if (!organized) parameters.open_columns = std::numeric_limits<std::size_t>::max();
+  parameters.mask = Parameters::Mask::kGrid;
+  if (along_row_.size() + along_column_.size() < kFewest) return parameters;
+
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  for (const auto* pairs : {&along_row_, &along_column_})
+    for (const Pair& pair : *pairs) box.add(Box::around(pair.a.x, pair.a.y, pair.a.z));
+
+  if (!mayHaveSeen(parameters.view.origin, box)) {
+    if (!mayHaveSeen(sensor, box)) return parameters;
+    parameters.view.origin = sensor;
+  }
+
+  std::vector<double> azimuth_steps;
+  for (const Pair& pair : along_row_) {
+    const double turn = std::fabs(directionOf(pair.a, parameters.view.origin).azimuth -
+                                  directionOf(pair.b, parameters.view.origin).azimuth);
+    azimuth_steps.push_back(std::min(turn, 2.0 * kPi - turn));
+  }
+  std::vector<double> elevation_steps;
+  for (const Pair& pair : along_column_)
+    elevation_steps.push_back(std::fabs(directionOf(pair.a, parameters.view.origin).elevation -
+                                        directionOf(pair.b, parameters.view.origin).elevation));
+  parameters.view.azimuth_step = median(azimuth_steps, parameters.view.azimuth_step);
+  parameters.view.elevation_step = median(elevation_steps, parameters.view.elevation_step);
+  if (parameters.view.azimuth_step <= kWidestStep && parameters.view.elevation_step <= 4.0F * kWidestStep)
+    parameters.mask = Parameters::Mask::kView;
+  return parameters;
+}
+
+}  // namespace lisco
