@@ -47,8 +47,8 @@ std::string readWhole(const fs::path& file) {
 }
 
 /// Reads one coordinate field, float or double.
-void copyField(const pcl::PCLPointCloud2& blob, const fs::path& file, const char* name, float pcl::PointXYZ::*member,
-               Cloud& cloud) {
+void copyField(const pcl::PCLPointCloud2& blob, const fs::path& file, const char* name,
+               float pcl::PointXYZ::*member, Cloud& cloud) {
   const auto field = std::find_if(blob.fields.begin(), blob.fields.end(),
                                   [name](const pcl::PCLPointField& f) { return f.name == name; });
   if (field == blob.fields.end()) fail(file, std::string("has no field '") + name + "'");
@@ -112,7 +112,8 @@ Cloud::Ptr readKittiBin(const fs::path& file) {
   const std::string content = readWhole(file);
   constexpr std::size_t kBytesPerPoint = 4 * sizeof(float);
   if (content.size() % kBytesPerPoint != 0)
-    fail(file, "is no KITTI scan: its size, " + std::to_string(content.size()) + " bytes, is no multiple of 16");
+    fail(file,
+         "is no KITTI scan: its size, " + std::to_string(content.size()) + " bytes, is no multiple of 16");
   auto cloud = std::make_shared<Cloud>();
   cloud->resize(content.size() / kBytesPerPoint);
   for (std::size_t i = 0; i < cloud->size(); ++i)
@@ -136,9 +137,10 @@ bool parseThree(std::string_view line, std::array<double, 3>& values) {
   return true;
 }
 
-/// The format of the paper's authors: a line `lasers,steps,0`, then `distance,theta,alpha` per cell, step by step, laser
-/// by laser within a step; distance in metres, 0 for no return; theta, the elevation, and alpha, the azimuth
-/// clockwise from +y, in radians. x = d cos(theta) sin(alpha), y = d cos(theta) cos(alpha), z = d sin(theta).
+/// The format of the paper's authors: a line `lasers,steps,0`, then `distance,theta,alpha` per cell, step by
+/// step, laser by laser within a step; distance in metres, 0 for no return; theta, the elevation, and alpha,
+/// the azimuth clockwise from +y, in radians. x = d cos(theta) sin(alpha), y = d cos(theta) cos(alpha), z = d
+/// sin(theta).
 Cloud::Ptr readAuthorsCsv(const fs::path& file) {
   const std::string content = readWhole(file);
   std::string_view rest = content;

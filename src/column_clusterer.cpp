@@ -7,9 +7,6 @@
 namespace lisco {
 
 void ColumnClusterer::begin(const Parameters& parameters) {
-  // Only tiles that were used need emptying.
-  for (const Patch& patch : patches_) tiles_[patch.tile] = Tile{};
-
   parameters_ = parameters;
   parameters_.block_columns = std::clamp<std::size_t>(parameters.block_columns, 1, kMostBlockColumns);
   tolerance_ = Tolerance(parameters.tolerance);
@@ -21,6 +18,12 @@ void ColumnClusterer::begin(const Parameters& parameters) {
     std::get<GridMask>(mask_).prepare(tolerance_, parameters.expected_returns);
   }
   const std::size_t tiles = std::visit([](const auto& mask) { return mask.tileCount(); }, mask_);
+  // Every number of the last rotation lies below stamp + returns + 1, and no rotation has 2^31 returns.
+  stamp_ += static_cast<std::uint32_t>(returnCount()) + 1;
+  if (stamp_ >= std::uint32_t{1} << 31) {
+    tiles_.clear();
+    stamp_ = 1;
+  }
   if (tiles_.size() < tiles) tiles_.resize(tiles);
 
   for (StagedRow& row : staged_) row.count = 0;
@@ -49,7 +52,8 @@ void ColumnClusterer::update() {
   young_columns_ = 0;
 }
 
-/// Reads a block of columns row by row into runs and patches, then closes the patches that are no longer young.
+/// Reads a block of columns row by row into runs and patches, then closes the patches that are no longer
+/// young.
 void ColumnClusterer::clusterBlock() {
   std::visit(
       [&](const auto& mask) {
@@ -71,7 +75,7 @@ void ColumnClusterer::clusterBlock() {
 /// Cuts the returns of one laser into runs: neighbours in turn, all in the same tile.
 template <typename Mask>
 void ColumnClusterer::readRow(const Mask& mask, const StagedRow& row) {
-  const auto first_return = static_cast<std::uint32_t>(x_.size());
+  const auto first_return = static_cast<std::uint32_t>(returnCount());
   x_.insert(x_.end(), row.x, row.x + row.count);
   y_.insert(y_.end(), row.y, row.y + row.count);
   z_.insert(z_.end(), row.z, row.z + row.count);
@@ -85,25 +89,28 @@ void ColumnClusterer::readRow(const Mask& mask, const StagedRow& row) {
     const std::size_t begin = i;
     Box box = Box::around(row.x[i], row.y[i], row.z[i]);
     for (++i; i < row.count && tiles[i] == tiles[begin]; ++i) {
-      const float d2 = squaredDistance(row.x[i] - row.x[i - 1], row.y[i] - row.y[i - 1], row.z[i] - row.z[i - 1]);
+      const float d2 =
+          squaredDistance(row.x[i] - row.x[i - 1], row.y[i] - row.y[i - 1], row.z[i] - row.z[i - 1]);
       if (!(d2 < squared_tolerance)) break;
       box.add(Box::around(row.x[i], row.y[i], row.z[i]));
     }
-    runs_.push_back({box, first_return + static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(i - begin),
-                     kNone, kNone});
+    runs_.push_back({box, first_return + static_cast<std::uint32_t>(begin),
+                     static_cast<std::uint32_t>(i - begin), kNone, kNone});
     placeRun(static_cast<std::uint32_t>(runs_.size() - 1), tiles[begin]);
   }
 }
 
-/// Adds a run to an open patch of its tile that it touches, or starts a patch with it. Not every patch is tried, and
-/// of a patch only its latest run: what is missed here is found when the patches close.
+/// Adds a run to an open patch of its tile that it touches, or starts a patch with it. Not every patch is
+/// tried, and of a patch only its latest run: what is missed here is found when the patches close.
 void ColumnClusterer::placeRun(std::uint32_t run_number, std::uint32_t tile) {
   constexpr int kMostTried = 4;
   Run& run = runs_[run_number];
-  std::uint32_t candidate = tiles_[tile].newest_open;
+  const std::uint32_t newest = unstamped(tiles_[tile].newest_open);
+  std::uint32_t candidate = newest;
   for (int tried = 0; tried < kMostTried && candidate != kNone && candidate >= first_open_patch_; ++tried) {
     Patch& patch = patches_[candidate];
-    if (Box::squaredSpan(patch.box, run.box) < tolerance_.squared() || neighbours(run, runs_[patch.last_run])) {
+    if (Box::squaredSpan(patch.box, run.box) < tolerance_.squared() ||
+        neighbours(run, runs_[patch.last_run])) {
       patch.box.add(run.box);
       runs_[patch.last_run].next_in_patch = run_number;
       patch.last_run = run_number;
@@ -114,8 +121,8 @@ void ColumnClusterer::placeRun(std::uint32_t run_number, std::uint32_t tile) {
     candidate = patch.next_in_tile;
   }
   run.patch = static_cast<std::uint32_t>(patches_.size());
-  patches_.push_back({run.box, tiles_[tile].newest_open, tile, run_number, run_number});
-  tiles_[tile].newest_open = run.patch;
+  patches_.push_back({run.box, newest, tile, run_number, run_number});
+  tiles_[tile].newest_open = run.patch + stamp_;
   subclusters_.create(run.count);
 }
 
@@ -129,8 +136,8 @@ void ColumnClusterer::closePatches(const Mask& mask, std::uint32_t end) {
   first_open_patch_ = std::max(first_open_patch_, end);
 }
 
-/// Algorithm 4 of the paper for a whole patch: merges its subcluster with that of every older patch within its mask
-/// that holds a neighbour of one of its returns.
+/// Algorithm 4 of the paper for a whole patch: merges its subcluster with that of every older patch within
+/// its mask that holds a neighbour of one of its returns.
 template <typename Mask>
 void ColumnClusterer::cluster(const Mask& mask, std::uint32_t patch_number) {
   const Patch& patch = patches_[patch_number];
@@ -138,7 +145,7 @@ void ColumnClusterer::cluster(const Mask& mask, std::uint32_t patch_number) {
   const float squared_tolerance = tolerance_.squared();
   std::uint32_t head = subclusters_.head(patch_number);
   mask.forEachTile(box, [&](std::uint32_t tile) {
-    for (std::uint32_t s = tiles_[tile].newest_shelf; s != kNone; s = shelves_[s].next_in_tile) {
+    for (std::uint32_t s = unstamped(tiles_[tile].newest_shelf); s != kNone; s = shelves_[s].next_in_tile) {
       const Shelf& shelf = shelves_[s];
       comparisons_ += Shelf::kPlaces;
       std::uint32_t near = shelf.placesNear(box, squared_tolerance);
@@ -155,12 +162,14 @@ void ColumnClusterer::cluster(const Mask& mask, std::uint32_t patch_number) {
 /// Puts a closed patch where later patches look for it.
 void ColumnClusterer::shelve(std::uint32_t patch_number) {
   const Patch& patch = patches_[patch_number];
-  Tile& tile = tiles_[patch.tile];
-  if (tile.newest_shelf == kNone || shelves_[tile.newest_shelf].full()) {
-    shelves_.push_back(Shelf::empty(tile.newest_shelf));
-    tile.newest_shelf = static_cast<std::uint32_t>(shelves_.size() - 1);
+  const std::uint32_t newest = unstamped(tiles_[patch.tile].newest_shelf);
+  if (newest != kNone && !shelves_[newest].full()) {
+    shelves_[newest].add(patch_number, patch.box);
+    return;
   }
-  shelves_[tile.newest_shelf].add(patch_number, patch.box);
+  tiles_[patch.tile].newest_shelf = static_cast<std::uint32_t>(shelves_.size()) + stamp_;
+  shelves_.push_back(Shelf::empty(newest));
+  shelves_.back().add(patch_number, patch.box);
 }
 
 /// Whether any return of one patch is a neighbour of any return of the other.

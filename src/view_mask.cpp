@@ -34,7 +34,7 @@ void ViewMask::prepare(const Tolerance& tolerance, const ViewHints& hints) {
       kPi / (kLasersPerTile * std::max(1e-6, static_cast<double>(hints.elevation_step))), 2.0, kMostRows);
 
   float near_end = 0.0F;
-  double width = kTileWidth / kFirstRange;  // radians
+  double width = kTileWidth / kFirstRange;                                       // radians
   for (bool finest = false; !finest; width *= layers_.size() > 1 ? 0.5 : 1.0) {  // layer 0 is as coarse as 1
     const double sectors = std::clamp(std::floor(2.0 * kPi / width), 4.0, most_sectors);
     const double rows = std::floor(std::clamp(kPi / width, 2.0, most_rows));

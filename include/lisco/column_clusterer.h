@@ -25,33 +25,36 @@ struct Parameters {
   enum class Mask { kView, kGrid } mask = Mask::kView;
   ViewHints view;                        ///< for Mask::kView
   std::size_t expected_returns = 65536;  ///< for Mask::kGrid and to reserve memory; more are welcome
-  /// How many columns are read together, 1..16. Whoever asks for the subclusters gets them for all columns added, so
-  /// it is not seen from outside: 16 is the fastest, 1 does the work of each column at once.
+  /// How many columns are read together, 1..16. Whoever asks for the subclusters gets them for all columns
+  /// added, so it is not seen from outside: 16 is the fastest, 1 does the work of each column at once.
   std::size_t block_columns = 16;
-  /// For how many columns a patch waits for more of its returns before it is compared with others. Not seen from
-  /// outside either; a cloud whose columns are no columns (unorganized) wants the greatest number.
+  /// For how many columns a patch waits for more of its returns before it is compared with others. Not seen
+  /// from outside either; a cloud whose columns are no columns (unorganized) wants the greatest number.
   std::size_t open_columns = 16;
 };
 
-/// Lisco: Euclidean clustering of a rotating LiDAR's returns, column by column (Algorithms 3 and 4 of the paper).
+/// Lisco: Euclidean clustering of a rotating LiDAR's returns, column by column (Algorithms 3 and 4 of the
+/// paper).
 ///
 ///   lisco::ColumnClusterer clusterer;
 ///   clusterer.begin({0.4F});                                // eps = 0.4 m
 ///   while (...) clusterer.addColumn(returns, lasers);       // upon reception of step s
-///   clusterer.update();                                     // upon all steps processed, or at any time before
-///   clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t head) {...});
+///   clusterer.update();                                     // upon all steps processed, or at any time
+///   before clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t
+///   head) {...});
 ///
-/// Returns that lie within eps of each other belong to the same subcluster, which is named by its head. update()
-/// makes the subclusters exact for all columns added so far; more columns may follow it.
+/// Returns that lie within eps of each other belong to the same subcluster, which is named by its head.
+/// update() makes the subclusters exact for all columns added so far; more columns may follow it.
 ///
-/// From the smallest unit to the largest: a *run* is a chain of neighbours that one laser returned within one block
-/// of columns and one tile of the mask; a *patch* is a connected group of runs within one tile; a *subcluster* is
-/// a set of patches. A patch stays open to new runs for a while; then it is closed and compared once with all
-/// patches before it that its mask shows (the half mask of the paper). So a pair is compared when its later
-/// patch closes, and the seam needs no care: the mask of the last columns reaches the first.
+/// From the smallest unit to the largest: a *run* is a chain of neighbours that one laser returned within one
+/// block of columns and one tile of the mask; a *patch* is a connected group of runs within one tile; a
+/// *subcluster* is a set of patches. A patch stays open to new runs for a while; then it is closed and
+/// compared once with all patches before it that its mask shows (the half mask of the paper). So a pair is
+/// compared when its later patch closes, and the seam needs no care: the mask of the last columns reaches the
+/// first.
 ///
-/// Nothing is allocated once the buffers have grown to the largest rotation seen. Not thread safe; any number of
-/// instances may work side by side.
+/// Nothing is allocated once the buffers have grown to the largest rotation seen. Not thread safe; any number
+/// of instances may work side by side.
 class ColumnClusterer {
  public:
   ColumnClusterer() { begin(Parameters{}); }
@@ -60,22 +63,25 @@ class ColumnClusterer {
   void begin(const Parameters& parameters);
 
   /// Event "reception of step s": cells[l] is what laser l measured; cells that are no returns are skipped.
-  /// \param lasers number of cells, may differ from column to column; the order of the lasers is free, but must
+  /// \param lasers number of cells, may differ from column to column; the order of the lasers is free, but
+  /// must
   ///        stay the same for speed.
   void addColumn(const Return* cells, std::size_t lasers) {
     addColumns(1, lasers, [cells](std::size_t laser, std::size_t) { return cells[laser]; });
   }
 
-  /// Adds several columns at once, in the order of their numbers, read laser by laser as an organized cloud lies in
-  /// memory. The outcome is the same as by addColumn.
-  /// \param cell_at callable as Return (std::size_t laser, std::size_t column), column in 0..columns-1
+  /// Adds several columns at once, in the order of their numbers, read laser by laser as an organized cloud
+  /// lies in memory. The outcome is the same as by addColumn. \param cell_at callable as Return (std::size_t
+  /// laser, std::size_t column), column in 0..columns-1
   template <typename CellAt>
   void addColumns(std::size_t columns, std::size_t lasers, CellAt&& cell_at);
 
-  /// Event "all steps processed", or a look in between: brings the subclusters up to date with all columns added.
+  /// Event "all steps processed", or a look in between: brings the subclusters up to date with all columns
+  /// added.
   void update();
 
-  /// Calls visit(source_indices, count, head) for all returns, in groups of the same subcluster. Call update() first.
+  /// Calls visit(source_indices, count, head) for all returns, in groups of the same subcluster. Call
+  /// update() first.
   template <typename Visit>
   void forEachRun(Visit&& visit);
 
@@ -109,9 +115,11 @@ class ColumnClusterer {
     std::uint32_t first_run, last_run;
   };
   /// Up to four closed patches of a tile side by side, so that one pass tests all their boxes.
+  /// What a tile of the mask holds. Numbers are kept with the rotation's stamp added, so that what earlier
+  /// rotations left behind is recognized by being smaller and the tiles need no emptying.
   struct Tile {
-    std::uint32_t newest_open = kNone;   ///< a patch; it and those behind it are open if >= first_open_patch_
-    std::uint32_t newest_shelf = kNone;  ///< of closed patches
+    std::uint32_t newest_open = 0;   ///< a patch; it and those behind it are open if >= first_open_patch_
+    std::uint32_t newest_shelf = 0;  ///< of closed patches
   };
   /// Returns of one laser that wait for their block to be complete.
   struct StagedRow {
@@ -120,6 +128,7 @@ class ColumnClusterer {
     std::size_t count = 0;
   };
 
+  std::uint32_t unstamped(std::uint32_t number) const { return number >= stamp_ ? number - stamp_ : kNone; }
   void clusterBlock();
   template <typename Mask>
   void readRow(const Mask& mask, const StagedRow& row);
@@ -143,8 +152,9 @@ class ColumnClusterer {
   std::vector<std::uint32_t> source_index_;
   std::vector<Run> runs_;
   std::vector<Patch> patches_;
-  DisjointSets subclusters_;                   ///< of patches
+  DisjointSets subclusters_;  ///< of patches
   std::vector<Tile> tiles_;
+  std::uint32_t stamp_ = 0;
   std::vector<Shelf> shelves_;
   std::uint32_t first_open_patch_ = 0;  ///< patches from here on are still open
   std::uint32_t young_patch_ = 0;       ///< patches from here on were opened during young_columns_
@@ -179,7 +189,8 @@ void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt
 template <typename Visit>
 void ColumnClusterer::forEachRun(Visit&& visit) {
   for (const Run& run : runs_)
-    visit(source_index_.data() + run.first_return, static_cast<std::size_t>(run.count), subclusters_.head(run.patch));
+    visit(source_index_.data() + run.first_return, static_cast<std::size_t>(run.count),
+          subclusters_.head(run.patch));
 }
 
 }  // namespace lisco

@@ -25,7 +25,8 @@ class GridMask {
   /// tiles[i] = slot of the cell that the return (x[i], y[i], z[i]) lies in.
   void tilesOf(const float* x, const float* y, const float* z, std::size_t count, std::uint32_t* tiles) const;
 
-  /// Calls visit(slot) for every cell that may hold a neighbour of any return within the box; a slot may come twice.
+  /// Calls visit(slot) for every cell that may hold a neighbour of any return within the box; a slot may come
+  /// twice.
   template <typename Visit>
   void forEachTile(const Box& box, Visit&& visit) const;
 

@@ -18,8 +18,8 @@ struct Return {
 /// A cell without a return (the paper's d = 0).
 inline constexpr Return kNoReturn{0.0F, 0.0F, 0.0F, 0U};
 
-/// Whether a cell holds a return: all coordinates finite, and not exactly (0, 0, 0), which is the paper's d = 0
-/// and many drivers' way of saying that nothing came back.
+/// Whether a cell holds a return: all coordinates finite, and not exactly (0, 0, 0), which is the paper's d =
+/// 0 and many drivers' way of saying that nothing came back.
 inline bool isReturn(float x, float y, float z) {
   constexpr float kMax = std::numeric_limits<float>::max();
   const bool finite = std::fabs(x) <= kMax && std::fabs(y) <= kMax && std::fabs(z) <= kMax;

@@ -30,12 +30,13 @@ class ScanSurvey {
   std::vector<Pair> along_row_, along_column_;
 };
 
-/// Looks at up to about a thousand cells of an organized cloud (lasers > 1) or of an unorganized one (lasers == 1).
+/// Looks at about a hundred cells of an organized cloud (lasers > 1) or of an unorganized one (lasers == 1).
 /// \param cell_at callable as Return (std::size_t laser, std::size_t column)
 template <typename CellAt>
-Parameters surveyScan(std::size_t columns, std::size_t lasers, const std::array<float, 3>& sensor, CellAt&& cell_at) {
-  constexpr std::size_t kRows = 16;
-  constexpr std::size_t kPlaces = 1024;
+Parameters surveyScan(std::size_t columns, std::size_t lasers, const std::array<float, 3>& sensor,
+                      CellAt&& cell_at) {
+  constexpr std::size_t kRows = 8;
+  constexpr std::size_t kPlaces = 128;
   const std::size_t row_step = std::max<std::size_t>(1, lasers / kRows);
   const std::size_t column_step =
       std::max<std::size_t>(1, columns / std::max<std::size_t>(1, kPlaces * row_step / lasers));

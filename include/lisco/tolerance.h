@@ -10,7 +10,9 @@ namespace lisco {
 /// The arithmetic that decides whether two points are neighbours, exactly as PCL's kd-tree does it:
 /// d2 = ((dx*dx) + dy*dy) + dz*dz in float, neighbours iff d2 < (float)((double)tol * tol).
 /// Files that use it are compiled with -ffp-contract=off: a fused multiply-add changes d2 for most pairs.
-inline float squaredDistance(float dx, float dy, float dz) { return (dx * dx + dy * dy) + dz * dz; }
+inline float squaredDistance(float dx, float dy, float dz) {
+  return (dx * dx + dy * dy) + dz * dz;
+}
 
 /// The cluster tolerance eps of Definition 1 of the paper.
 class Tolerance {

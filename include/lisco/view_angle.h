@@ -7,10 +7,10 @@
 
 namespace lisco {
 
-/// Cheap stand-ins for azimuth and elevation. A mask needs no true angles, only functions that grow with the angle
-/// and never faster than a known rate: a bound on the angle between two returns then bounds their difference.
-/// Both are built from g(t) = t + 0.3476 t (1 - t), which maps the slope t = tan(angle) of an octant,
-/// 0 <= t <= 1, to 0..1 within 0.25 degrees of the octant's true fraction.
+/// Cheap stand-ins for azimuth and elevation. A mask needs no true angles, only functions that grow with the
+/// angle and never faster than a known rate: a bound on the angle between two returns then bounds their
+/// difference. Both are built from g(t) = t + 0.3476 t (1 - t), which maps the slope t = tan(angle) of an
+/// octant, 0 <= t <= 1, to 0..1 within 0.25 degrees of the octant's true fraction.
 namespace view_angle {
 
 /// d g / d angle lies between 0.97 and 1.059 per octant (pi/4); a generous upper bound.
@@ -33,7 +33,8 @@ inline float azimuth(float x, float y) {
   return (y < 0.0F ? 8.0F - half : half) * 0.125F;
 }
 
-/// Elevation over the horizontal plane, 0 straight down to 1 straight up, of a return at horizontal distance rho.
+/// Elevation over the horizontal plane, 0 straight down to 1 straight up, of a return at horizontal distance
+/// rho.
 inline float elevation(float rho, float z) {
   const float az = std::fabs(z);
   const float g = octantFraction(std::min(rho, az), std::max(rho, az));

@@ -25,12 +25,13 @@ struct ViewHints {
 
 /// The neighbour mask of a rotating scan (getNeighborMask, Algorithm 2 of the paper), on measured angles.
 ///
-/// The paper counts sigma = ceil(asin(eps/d)/dAlpha) steps and lambda = ceil(asin(eps/d)/dTheta) lasers, which
-/// holds only for ideal columns and rings. Here the view is cut into tiles by the azimuth, elevation and range
-/// *measured on each return*, and a tile is about as wide as eps is seen from its range: the layer of range
-/// [2^k, 2^(k+1)) * first range has tiles of asin(eps/range), down to a few columns and one laser. So a mask
-/// is a handful of tiles at any range, whichever way the sensor turns and however its lasers are staggered, and the
-/// seam of the rotation is no seam. Rows of tiles have as many tiles as the cosine of their elevation asks for.
+/// The paper counts sigma = ceil(asin(eps/d)/dAlpha) steps and lambda = ceil(asin(eps/d)/dTheta) lasers,
+/// which holds only for ideal columns and rings. Here the view is cut into tiles by the azimuth, elevation
+/// and range *measured on each return*, and a tile is about as wide as eps is seen from its range: the layer
+/// of range [2^k, 2^(k+1)) * first range has tiles of asin(eps/range), down to a few columns and one laser.
+/// So a mask is a handful of tiles at any range, whichever way the sensor turns and however its lasers are
+/// staggered, and the seam of the rotation is no seam. Rows of tiles have as many tiles as the cosine of
+/// their elevation asks for.
 class ViewMask {
  public:
   /// Lays out the tiles. Keeps its memory when called again.
