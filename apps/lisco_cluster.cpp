@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+//
+// Clusters scan files and writes what it found.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <pcl/segmentation/lisco_cluster_extraction.h>
+#include <boost/program_options.hpp>
+
+#include "cloud_file.h"
+#include "clustering.h"
+#include "lisco/version.h"
+#include "progress_bar.h"
+#include "result_files.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+namespace po = boost::program_options;
+using namespace lisco_apps;
+
+struct Options {
+  std::vector<std::string> inputs;
+  double tolerance = 0;
+  unsigned min_size = 10;
+  unsigned max_size = std::numeric_limits<int>::max();
+  float ground_z = -std::numeric_limits<float>::infinity();
+  fs::path output;
+  bool cloud_per_cluster = false;
+};
+
+double milliseconds(std::chrono::steady_clock::duration time) {
+  return std::chrono::duration<double, std::milli>(time).count();
+}
+
+/// Reads a count that boost would also accept as "-1" (as a huge number).
+unsigned countOf(const std::string& text, const char* option) {
+  std::size_t end = 0;
+  long long value = -1;
+  try {
+    value = std::stoll(text, &end);
+  } catch (const std::exception&) {
+  }
+  if (end != text.size() || value < 1 || value > std::numeric_limits<int>::max())
+    throw std::runtime_error(std::string(option) + " must be a whole number from 1 to 2147483647, not '" +
+                             text + "'");
+  return static_cast<unsigned>(value);
+}
+
+/// \return false if there is nothing to do but to print help or version, which has been done
+bool parse(int argc, char** argv, Options& options) {
+  po::options_description shown(
+      "Usage: lisco_cluster INPUT... --tolerance M [options]\n\n"
+      "Finds the Euclidean clusters of LiDAR scans: the clusters of PCL's EuclideanClusterExtraction.\n"
+      "An input is a scan (.pcd .ply .obj .ifs, KITTI .bin, the paper authors' .csv) or a folder of "
+      "scans.\n\n"
+      "Options");
+  std::string min_size = "10";
+  std::string max_size;
+  std::string output;
+  // clang-format off
+  shown.add_options()
+    ("tolerance,t", po::value<double>(), "points nearer to each other than this many metres belong together")
+    ("min-size", po::value<std::string>(&min_size)->value_name("N"), "least returns of a cluster (default 10)")
+    ("max-size", po::value<std::string>(&max_size)->value_name("N"), "most returns of a cluster (default: no limit)")
+    ("ground-z", po::value<float>(&options.ground_z)->value_name("M"),
+     "leave out returns below this height in metres (default: none)")
+    ("output,o", po::value<std::string>(&output)->value_name("DIR"),
+     "folder for labels.pcd, clusters.csv, range_image.png and top_view.png; of several inputs, each has a folder in it")
+    ("clouds", po::bool_switch(&options.cloud_per_cluster), "also write one cloud per cluster (needs --output)")
+    ("help,h", "print this and exit")
+    ("version", "print the version and exit");
+  // clang-format on
+  po::options_description all;
+  all.add(shown).add_options()("input", po::value<std::vector<std::string>>(&options.inputs));
+  po::positional_options_description positional;
+  positional.add("input", -1);
+
+  po::variables_map given;
+  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), given);
+  if (given.count("help") != 0) {
+    std::cout << shown;
+    return false;
+  }
+  if (given.count("version") != 0) {
+    std::cout << "lisco_cluster " << LISCO_VERSION << '\n';
+    return false;
+  }
+  po::notify(given);
+  if (options.inputs.empty()) throw std::runtime_error("no input; see --help");
+  if (given.count("tolerance") == 0) throw std::runtime_error("--tolerance is missing; see --help");
+  options.tolerance = given["tolerance"].as<double>();
+  if (!(options.tolerance > 0) || !std::isfinite(options.tolerance))
+    throw std::runtime_error("--tolerance must be a positive number of metres");
+  if (given.count("ground-z") != 0 && !std::isfinite(options.ground_z))
+    throw std::runtime_error("--ground-z must be a number of metres");
+  options.min_size = countOf(min_size, "--min-size");
+  if (given.count("max-size") != 0) options.max_size = countOf(max_size, "--max-size");
+  if (options.max_size < options.min_size) throw std::runtime_error("--max-size is smaller than --min-size");
+  if (given.count("output") != 0 && output.empty()) throw std::runtime_error("--output is empty");
+  options.output = output;
+  if (options.cloud_per_cluster && output.empty()) throw std::runtime_error("--clouds needs --output");
+  return true;
+}
+
+/// What was found in one scan, for a person.
+void printSummary(const ClusteredScan& scan, const Options& options, double read_ms, double cluster_ms,
+                  double write_ms, const fs::path& folder) {
+  const Cloud& cloud = *scan.cloud;
+  const std::size_t returns = returnsAbove(cloud, -std::numeric_limits<float>::infinity()).size();
+  std::size_t in_clusters = 0;
+  for (const auto& cluster : scan.clusters) in_clusters += cluster.indices.size();
+
+  std::printf("%s\n", scan.name.c_str());
+  if (cloud.height > 1)
+    std::printf("  scan      %u lasers x %u columns, %zu returns", cloud.height, cloud.width, returns);
+  else
+    std::printf("  scan      unorganized, %zu points, %zu returns", cloud.size(), returns);
+  if (std::isfinite(options.ground_z))
+    std::printf(", %zu above the ground (z >= %g m)", scan.clustered.size(),
+                static_cast<double>(options.ground_z));
+  std::printf("\n  clusters  %zu of at least %u returns within %g m of each other; %zu returns are noise\n",
+              scan.clusters.size(), options.min_size, options.tolerance, scan.clustered.size() - in_clusters);
+  if (!scan.clusters.empty()) {
+    std::vector<std::size_t> sizes;
+    for (const auto& cluster : scan.clusters) sizes.push_back(cluster.indices.size());
+    std::printf("  sizes     largest %zu, median %zu, smallest %zu\n", sizes.front(), sizes[sizes.size() / 2],
+                sizes.back());
+  }
+  std::printf("  time      read %.1f ms, cluster %.2f ms", read_ms, cluster_ms);
+  if (!folder.empty()) std::printf(", write %.1f ms\n  written   %s", write_ms, folder.c_str());
+  std::printf("\n");
+}
+
+void clusterFile(const fs::path& file, const fs::path& folder, const Options& options,
+                 pcl::LiscoClusterExtraction<pcl::PointXYZ>& extraction, ProgressBar& progress) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  ClusteredScan scan;
+  scan.name = file.filename().string();
+  scan.tolerance = options.tolerance;
+  scan.cloud = readCloudFile(file);
+  if (scan.cloud->empty()) throw std::runtime_error(file.string() + ": holds no points");
+  scan.clustered = returnsAbove(*scan.cloud, options.ground_z);
+
+  const auto read = Clock::now();
+  extraction.setInputCloud(scan.cloud);
+  extraction.setIndices(std::make_shared<const pcl::Indices>(scan.clustered));
+  extraction.extract(scan.clusters);
+
+  const auto clustered = Clock::now();
+  if (!folder.empty()) writeResults(scan, folder, options.cloud_per_cluster);
+  const auto written = Clock::now();
+
+  progress.clear();
+  printSummary(scan, options, milliseconds(read - start), milliseconds(clustered - read),
+               milliseconds(written - clustered), folder);
+}
+
+int run(const Options& options) {
+  const std::vector<fs::path> files = expandInputs(options.inputs);
+  pcl::LiscoClusterExtraction<pcl::PointXYZ> extraction;
+  extraction.setClusterTolerance(options.tolerance);
+  extraction.setMinClusterSize(options.min_size);
+  extraction.setMaxClusterSize(options.max_size);
+
+  ProgressBar progress(files.size());
+  std::map<std::string, int> used;  // names of output folders
+  bool all_well = true;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    progress.show(i, files[i].filename().string());
+    fs::path folder = options.output;
+    if (!folder.empty() && files.size() > 1) {
+      const std::string stem = files[i].stem().string();
+      const int before = used[stem]++;
+      folder /= before == 0 ? stem : stem + "-" + std::to_string(before + 1);
+    }
+    try {
+      clusterFile(files[i], folder, options, extraction, progress);
+    } catch (const std::exception& error) {
+      progress.clear();
+      std::cerr << "lisco_cluster: " << error.what() << '\n';
+      all_well = false;
+    }
+  }
+  return all_well ? 0 : 2;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    Options options;
+    return parse(argc, argv, options) ? run(options) : 0;
+  } catch (const std::exception& error) {
+    std::cerr << "lisco_cluster: " << error.what() << '\n';
+    return 2;
+  }
+}
