@@ -231,11 +231,65 @@ struct Cells {
   std::vector<std::uint32_t> colors;  ///< row by row
 };
 
-/// The cells of an organized scan as they are; of any other, a projection by azimuth and elevation.
+/// By how many columns each row of a rotating scan is drawn further right, so that what was seen in one
+/// direction stands in one column although the lasers of a column look in different ones (by up to 12
+/// degrees). All 0 for a camera.
+std::vector<int> staggerOf(const Cloud& cloud) {
+  const auto columns = static_cast<int>(cloud.width);
+  const auto rows = static_cast<int>(cloud.height);
+  std::vector<int> shifts(cloud.height, 0);
+  if (seenByCamera(cloud)) return shifts;
+  const auto azimuth = [](const pcl::PointXYZ& p) {
+    return std::atan2(static_cast<double>(p.y), static_cast<double>(p.x));
+  };
+  const auto valid = [](const pcl::PointXYZ& p) { return lisco::isReturn(p.x, p.y, p.z); };
+
+  std::vector<double> steps;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column + 1 < columns; ++column)
+      if (valid(cloud.at(column, row)) && valid(cloud.at(column + 1, row)))
+        steps.push_back(
+            std::remainder(azimuth(cloud.at(column + 1, row)) - azimuth(cloud.at(column, row)), 2 * kPi));
+  if (steps.empty()) return shifts;
+  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
+  const double step = steps[steps.size() / 2];
+  if (step == 0) return shifts;
+
+  double first = std::numeric_limits<double>::quiet_NaN();
+  for (int row = 0; row < rows; ++row) {
+    double x = 0;
+    double y = 0;
+    for (int column = 0; column < columns; ++column)
+      if (valid(cloud.at(column, row))) {
+        const double offset = azimuth(cloud.at(column, row)) - step * column;
+        x += std::cos(offset);
+        y += std::sin(offset);
+      }
+    if (x == 0 && y == 0) continue;
+    const double offset = std::atan2(y, x);
+    if (std::isnan(first)) first = offset;
+    shifts[static_cast<std::size_t>(row)] =
+        static_cast<int>(std::lround(std::remainder(offset - first, 2 * kPi) / step));
+  }
+  return shifts;
+}
+
+/// The cells of an organized scan, each row shifted by its stagger; of any other, a projection by azimuth and
+/// elevation.
 Cells cellsOf(const ClusteredScan& scan) {
   const Cloud& cloud = *scan.cloud;
   const std::vector<std::uint32_t> colors = pointColors(scan, true);
-  if (cloud.height > 1) return {static_cast<int>(cloud.width), static_cast<int>(cloud.height), colors};
+  if (cloud.height > 1) {
+    Cells cells{static_cast<int>(cloud.width), static_cast<int>(cloud.height), colors};
+    const std::vector<int> shifts = staggerOf(cloud);
+    for (std::size_t row = 0; row < cloud.height; ++row)
+      for (int column = 0; column < cells.columns; ++column) {
+        const int shifted = ((column + shifts[row]) % cells.columns + cells.columns) % cells.columns;
+        cells.colors[row * cloud.width + static_cast<std::size_t>(shifted)] =
+            colors[row * cloud.width + static_cast<std::size_t>(column)];
+      }
+    return cells;
+  }
 
   constexpr int kColumns = 1800;
   constexpr int kRows = 96;
