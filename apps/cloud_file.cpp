@@ -70,9 +70,23 @@ void copyField(const pcl::PCLPointCloud2& blob, const fs::path& file, const char
   }
 }
 
+/// Whether a PCD file has a header that ends: PCL 1.13's reader crashes without one.
+bool hasPcdHeader(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  bool fields = false;
+  constexpr int kMostLines = 1000;
+  std::string line;
+  for (int i = 0; i < kMostLines && std::getline(stream, line); ++i) {
+    fields = fields || line.rfind("FIELDS", 0) == 0 || line.rfind("COLUMNS", 0) == 0;
+    if (line.rfind("DATA", 0) == 0) return fields;
+  }
+  return false;
+}
+
 Cloud::Ptr readByPcl(const fs::path& file, const std::string& ending) {
   // PCL's readers print what they think; this program says it once, in its own words.
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  if (ending == ".pcd" && !hasPcdHeader(file)) fail(file, "is no pcd file: it has no header");
   pcl::PCLPointCloud2 blob;
   auto cloud = std::make_shared<Cloud>();
   Eigen::Vector4f origin = Eigen::Vector4f::Zero();
@@ -90,6 +104,8 @@ Cloud::Ptr readByPcl(const fs::path& file, const std::string& ending) {
     } else {
       status = pcl::io::loadIFSFile(file.string(), blob);
     }
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception&) {
     status = -1;
   }
@@ -177,7 +193,7 @@ Cloud::Ptr readAuthorsCsv(const fs::path& file) {
       if (!parseThree(next_line(), values))
         fail(file, "line " + std::to_string(line_number) + " is not 'distance,theta,alpha'");
       const double horizontal = values[0] * std::cos(values[1]);
-      cloud->at(static_cast<int>(step), static_cast<int>(laser)) =
+      (*cloud)[laser * steps + step] =
           values[0] > 0 ? pcl::PointXYZ(static_cast<float>(horizontal * std::sin(values[2])),
                                         static_cast<float>(horizontal * std::cos(values[2])),
                                         static_cast<float>(values[0] * std::sin(values[1])))

@@ -7,8 +7,10 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -73,8 +75,12 @@ int run(const std::string& folder) {
   const double lisco_ms = medianMilliseconds(by_lisco, scan.clusters);
   const bool identical = same(pcl_clusters, scan.clusters);
 
+  const std::filesystem::path scan_file = std::filesystem::path(folder) / "scan.pcd";
+  if (std::filesystem::exists(scan_file) && !isResultFolder(folder))
+    throw std::runtime_error(scan_file.string() +
+                             ": exists and was not written by this program; choose another folder");
   writeResults(scan, folder, false);
-  pcl::PCDWriter().writeBinary(folder + "/scan.pcd", *scan.cloud);
+  pcl::PCDWriter().writeBinary(scan_file.string(), *scan.cloud);
   std::printf("simulated street: 64 lasers x 1800 columns, %zu returns above the ground, tolerance %g m\n",
               scan.clustered.size(), kTolerance);
   std::printf("  PCL    %5zu clusters  %8.2f ms\n", pcl_clusters.size(), pcl_ms);

@@ -332,8 +332,8 @@ void drawRangeImage(const ClusteredScan& scan, const std::filesystem::path& png)
   const Cells cells = cellsOf(scan);
   constexpr int kMargin = 40;
   constexpr int kTop = 44;
-  const int scale_x = std::max(1, 1800 / cells.columns);
-  const int scale_y = std::max(scale_x, std::min(12, 420 / cells.rows));
+  const int scale_x = std::clamp(1800 / cells.columns, 1, 12);
+  const int scale_y = std::clamp(420 / cells.rows, scale_x, 12);
   Canvas canvas(cells.columns * scale_x + 2 * kMargin, cells.rows * scale_y + kTop + kMargin);
 
   canvas.beginPixels();
@@ -354,7 +354,7 @@ void drawRangeImage(const ClusteredScan& scan, const std::filesystem::path& png)
   drawKey(canvas, canvas.width() - kMargin - 270, 28);
   const bool organized = scan.cloud->height > 1;
   const double bottom = kTop + cells.rows * scale_y;
-  const int step = static_cast<int>(roundLength(cells.columns / 4.0));
+  const int step = std::max(1, static_cast<int>(roundLength(std::max(1.0, cells.columns / 4.0))));
   for (int column = 0; column < cells.columns; column += organized ? step : cells.columns / 8) {
     const double x = kMargin + column * scale_x;
     if (x > canvas.width() - kMargin - (organized ? 180 : 360)) break;  // room for the words at the right

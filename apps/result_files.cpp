@@ -102,10 +102,14 @@ void writeClusterClouds(const ClusteredScan& scan, const fs::path& folder) {
 
 }  // namespace
 
+bool isResultFolder(const fs::path& folder) {
+  return fs::exists(folder / kMarker);
+}
+
 void writeResults(const ClusteredScan& scan, const fs::path& folder, bool cloud_per_cluster) {
   try {
     MadeFolder made(folder);
-    if (!fs::exists(folder / kMarker))
+    if (!isResultFolder(folder))
       for (const char* name : kResults)
         if (fs::exists(folder / name))
           throw std::runtime_error((folder / name).string() +

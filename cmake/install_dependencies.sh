@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs what building, running and testing needs from Debian's (or Ubuntu's) packages. Does nothing, and needs no network,
+# if all of it is there.
+set -euo pipefail
+
+packages=(g++ cmake ninja-build pkg-config libpcl-dev libboost-program-options-dev libcairo2-dev fonts-dejavu-core
+          libgtest-dev libbenchmark-dev)
+
+missing=()
+for package in "${packages[@]}"; do
+  [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
+done
+[ ${#missing[@]} -gt 0 ] || exit 0
+
+as_root=()
+[ "$(id -u)" -eq 0 ] || as_root=(sudo)
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+echo "installing ${missing[*]}"
+if ! { "${as_root[@]}" apt-get update &&
+       "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"; } \
+     >"$log" 2>&1 </dev/null; then
+  cat "$log" >&2
+  echo "could not install: ${missing[*]}" >&2
+  exit 1
+fi

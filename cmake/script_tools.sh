@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# What the scripts share; sourced by them.
+
+# quietly LOG COMMAND...: runs a command and shows what it printed only if it fails.
+quietly() {
+  local log=$1
+  shift
+  if ! "$@" >"$log" 2>&1 </dev/null; then
+    cat "$log" >&2
+    echo "failed: $*" >&2
+    return 1
+  fi
+}
+
+# build_quietly SOURCE BUILD CMAKE-OPTION...: configures and builds.
+build_quietly() {
+  local source=$1 build=$2
+  shift 2
+  mkdir -p "$build"
+  if command -v ccache >/dev/null; then
+    set -- "$@" -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
+  fi
+  quietly "$build/configure.log" cmake -S "$source" -B "$build" -G Ninja "$@"
+  quietly "$build/build.log" cmake --build "$build"
+}

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+//
+// lisco_cluster and lisco_demo as a user runs them.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cloud_file.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int status;
+  std::string out, err;
+};
+
+/// A folder of its own for each test, in which the programs are run.
+class Programs : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "lisco_programs_XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static std::string textOf(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  }
+
+  void write(const std::string& name, const std::string& content) const {
+    std::ofstream(folder_ / name, std::ios::binary) << content;
+  }
+
+  /// Runs a command line with this folder as the current one.
+  Outcome run(const std::string& command) const {
+    const std::string whole =
+        "cd '" + folder_.string() + "' && " + command + " >out.txt 2>err.txt </dev/null";
+    const int status = std::system(whole.c_str());
+    Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, textOf(folder_ / "out.txt"),
+                    textOf(folder_ / "err.txt")};
+    fs::remove(folder_ / "out.txt");
+    fs::remove(folder_ / "err.txt");
+    return outcome;
+  }
+  Outcome cluster(const std::string& arguments) const {
+    return run(std::string(LISCO_CLUSTER) + " " + arguments);
+  }
+
+  std::vector<std::string> filesLeft() const {
+    std::vector<std::string> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_))
+      files.push_back(fs::relative(entry.path(), folder_).string());
+    std::sort(files.begin(), files.end());
+    return files;
+  }
+
+  /// One clear line on stderr that says all of these, exit code 2, and no file but the inputs.
+  void expectRefusal(const std::string& arguments, const std::vector<std::string>& words) const {
+    SCOPED_TRACE(arguments);
+    const std::vector<std::string> before = filesLeft();
+    const Outcome outcome = cluster(arguments);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_EQ(outcome.err.rfind("lisco_cluster: ", 0), 0U) << outcome.err;
+    for (const std::string& word : words) EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
+    EXPECT_EQ(filesLeft(), before);
+  }
+
+  fs::path folder_;
+};
+
+/// Two walls of 3 x 20 returns 5 m and 9 m ahead of the sensor, as an organized ASCII PCD with one no-return
+/// per row, over a row of ground.
+std::string twoWalls() {
+  std::ostringstream pcd;
+  pcd << "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 41\nHEIGHT 4\n"
+         "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 164\nDATA ascii\n";
+  for (int row = 0; row < 4; ++row) {
+    for (int i = 0; i < 20; ++i) pcd << "5 " << -2 + 0.1 * i << ' ' << (row < 3 ? 0.1 * row : -1.8) << '\n';
+    pcd << "nan nan nan\n";
+    for (int i = 0; i < 20; ++i) pcd << "9 " << 2 + 0.1 * i << ' ' << (row < 3 ? 0.1 * row : -1.8) << '\n';
+  }
+  return pcd.str();
+}
+
+std::string floats(const std::vector<float>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
+}
+
+TEST_F(Programs, ClusterWritesLabelsTableAndPictures) {
+  write("walls.pcd", twoWalls());
+  const Outcome outcome = cluster("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_NE(outcome.out.find("4 lasers x 41 columns, 160 returns, 120 above the ground"), std::string::npos)
+      << outcome.out;
+  EXPECT_NE(outcome.out.find("clusters  2 of at least 10"), std::string::npos) << outcome.out;
+
+  EXPECT_EQ(textOf(folder_ / "results/clusters.csv"),
+            "id,size,centroid_x,centroid_y,centroid_z,min_x,min_y,min_z,max_x,max_y,max_z,nearest_range\n"
+            "1,60,5.0000,-1.0500,0.1000,5.0000,-2.0000,0.0000,5.0000,-0.1000,0.2000,5.0010\n"
+            "2,60,9.0000,2.9500,0.1000,9.0000,2.0000,0.0000,9.0000,3.9000,0.2000,9.2195\n");
+  for (const char* picture : {"range_image.png", "top_view.png"}) {
+    SCOPED_TRACE(picture);
+    const std::string png = textOf(folder_ / "results" / picture);
+    ASSERT_GT(png.size(), 1000U);
+    EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  }
+  const std::string labels = textOf(folder_ / "results/labels.pcd");
+  EXPECT_NE(labels.find("FIELDS x y z label\n"), std::string::npos);
+  EXPECT_NE(labels.find("WIDTH 41\nHEIGHT 4\n"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder_ / "results/clusters"));
+
+  // The binary part: x y z label of every cell, the walls labelled, ground and no-return 0.
+  const std::string data = labels.substr(labels.find("DATA binary\n") + 12);
+  ASSERT_EQ(data.size(), 164U * 16U);
+  const auto label = [&data](std::size_t row, std::size_t column) {
+    std::uint32_t value;
+    std::memcpy(&value, data.data() + (row * 41 + column) * 16 + 12, 4);
+    return value;
+  };
+  EXPECT_EQ(label(0, 0), 1U);
+  EXPECT_EQ(label(2, 40), 2U);
+  EXPECT_EQ(label(1, 20), 0U);
+  EXPECT_EQ(label(3, 5), 0U);
+}
+
+TEST_F(Programs, ClusterWritesOneCloudPerClusterOnRequest) {
+  write("walls.pcd", twoWalls());
+  ASSERT_EQ(cluster("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results --clouds").status, 0);
+  for (const char* name : {"cluster_0001.pcd", "cluster_0002.pcd"})
+    EXPECT_EQ(lisco_apps::readCloudFile(folder_ / "results/clusters" / name)->size(), 60U) << name;
+  // A second run replaces them, and one without them leaves none behind.
+  ASSERT_EQ(cluster("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results").status, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "results/clusters"));
+}
+
+TEST_F(Programs, ClusterReadsEveryFormat) {
+  write("a.bin", floats({5, 0, 0, 1, 5, 0.1F, 0, 1, 9, 0, 0, 1}));
+  // Two steps of two lasers; straight ahead is alpha = 90 degrees, clockwise from +y.
+  write("b.csv", "2,2,0\n5,0,1.5707963\n0,0,0\n5,0,1.5507963\n9.0,0.1,1.5507963\n");
+  write("c.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+        "z\nend_header\n"
+        "5 0 0\n5 0.1 0\n9 0 0\n");
+  write("d.pcd",
+        "VERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 3\nHEIGHT 1\nVIEWPOINT 0 0 0 "
+        "1 0 0 0\n"
+        "POINTS 3\nDATA ascii\n5 0 0\n5 0.1 0\n9 0 0\n");
+  const Outcome outcome = cluster(". --tolerance 0.3 --min-size 1");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  std::size_t found = 0;
+  for (std::size_t at = 0; (at = outcome.out.find("clusters  2 of at least 1 ", at)) != std::string::npos;
+       ++at)
+    ++found;
+  EXPECT_EQ(found, 4U) << outcome.out;
+  EXPECT_NE(outcome.out.find("2 lasers x 2 columns, 3 returns"), std::string::npos) << outcome.out;
+
+  const auto csv = lisco_apps::readCloudFile(folder_ / "b.csv");
+  EXPECT_NEAR(csv->at(0, 0).x, 5.0F, 1e-5F);
+  EXPECT_NEAR(csv->at(1, 0).y, 5.0F * std::cos(1.5507963F), 1e-5F);
+  EXPECT_NEAR(csv->at(1, 1).z, 9.0F * std::sin(0.1F), 1e-5F);
+  EXPECT_TRUE(std::isnan(csv->at(0, 1).x));
+}
+
+TEST_F(Programs, ClusterRefusesBadFilesInOneLine) {
+  const std::string good = twoWalls();
+  const std::string header =
+      "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 4\nHEIGHT 1\nVIEWPOINT 0 0 0 1 "
+      "0 0 0\nPOINTS 4\n";
+  write("truncated.pcd", good.substr(0, good.size() / 2));
+  write("truncated_binary.pcd", header + "DATA binary\n" + floats({1, 2, 3, 4}));
+  write("garbage.pcd", "this is no cloud\n");
+  write("garbage.ply", "this is no cloud\n");
+  write("empty.pcd", "");
+  write("no_z.pcd",
+        "VERSION 0.7\nFIELDS x y\nSIZE 4 4\nTYPE F F\nCOUNT 1 1\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n1 "
+        "2\n");
+  write("integers.pcd",
+        "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE I I I\nCOUNT 1 1 1\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA "
+        "ascii\n1 2 3\n");
+  write("odd.bin", "seventeen bytes!!");
+  write("nothing.bin", "");
+  write("header.csv", "lasers,steps,0\n");
+  write("short.csv", "2,2,0\n1,0,0\n1,0,0\n1,0,0\n");
+  write("long.csv", "1,1,0\n1,0,0\n1,0,0\n");
+  write("words.csv", "1,1,0\none,0,0\n");
+  write("scan.xyz", "1 2 3\n");
+  fs::create_directory(folder_ / "hollow");
+
+  const std::string options = " --tolerance 0.3 -o results";
+  expectRefusal("missing.pcd" + options, {"missing.pcd", "does not exist"});
+  expectRefusal("truncated.pcd" + options, {"truncated.pcd", "truncated"});
+  expectRefusal("truncated_binary.pcd" + options, {"truncated_binary.pcd", "truncated"});
+  expectRefusal("garbage.pcd" + options, {"garbage.pcd", "no pcd file"});
+  expectRefusal("garbage.ply" + options, {"garbage.ply", "no ply file"});
+  expectRefusal("empty.pcd" + options, {"empty.pcd"});
+  expectRefusal("no_z.pcd" + options, {"no_z.pcd", "no field 'z'"});
+  expectRefusal("integers.pcd" + options, {"integers.pcd", "neither float nor double"});
+  expectRefusal("odd.bin" + options, {"odd.bin", "17 bytes", "multiple of 16"});
+  expectRefusal("nothing.bin" + options, {"nothing.bin", "holds no points"});
+  expectRefusal("header.csv" + options, {"header.csv", "line 1", "lasers,steps,0"});
+  expectRefusal("short.csv" + options, {"short.csv", "promises 4 cells"});
+  expectRefusal("long.csv" + options, {"long.csv", "goes on"});
+  expectRefusal("words.csv" + options, {"words.csv", "line 2"});
+  expectRefusal("scan.xyz" + options, {"scan.xyz", "unknown ending"});
+  expectRefusal("hollow" + options, {"hollow", "holds no scans"});
+}
+
+TEST_F(Programs, ClusterRefusesBadOptionsInOneLine) {
+  write("walls.pcd", twoWalls());
+  write("file", "");
+  expectRefusal("", {"no input"});
+  expectRefusal("walls.pcd", {"--tolerance is missing"});
+  for (const char* tolerance : {"0", "-0.3", "nan", "inf", "abc", "0.3m", "''"})
+    expectRefusal(std::string("walls.pcd --tolerance ") + tolerance, {"tolerance"});
+  expectRefusal("walls.pcd --tolerance 0.3 --min-size 0", {"--min-size"});
+  expectRefusal("walls.pcd --tolerance 0.3 --min-size -1", {"min-size"});
+  expectRefusal("walls.pcd --tolerance 0.3 --max-size 5000000000", {"--max-size"});
+  expectRefusal("walls.pcd --tolerance 0.3 --min-size 20 --max-size 10", {"--max-size is smaller"});
+  expectRefusal("walls.pcd --tolerance 0.3 --ground-z low", {"ground-z"});
+  expectRefusal("walls.pcd --tolerance 0.3 --ground-z nan", {"ground-z"});
+  expectRefusal("walls.pcd --tolerance 0.3 --nonsense", {"nonsense"});
+  expectRefusal("walls.pcd --tolerance 0.3 --clouds", {"--clouds needs --output"});
+  expectRefusal("walls.pcd --tolerance 0.3 -o file/results", {"file/results", "cannot be written"});
+}
+
+TEST_F(Programs, ClusterLeavesForeignFilesAlone) {
+  write("walls.pcd", twoWalls());
+  fs::create_directory(folder_ / "mine");
+  write("mine/clusters.csv", "my own table");
+  expectRefusal("walls.pcd --tolerance 0.3 -o mine", {"clusters.csv", "not written by this program"});
+  EXPECT_EQ(textOf(folder_ / "mine/clusters.csv"), "my own table");
+
+  // Beside other things it is welcome, and may replace what it has written itself.
+  fs::create_directory(folder_ / "shared");
+  write("shared/notes.txt", "keep me");
+  EXPECT_EQ(cluster("walls.pcd --tolerance 0.3 -o shared").status, 0);
+  EXPECT_EQ(cluster("walls.pcd --tolerance 0.3 -o shared").status, 0);
+  EXPECT_EQ(textOf(folder_ / "shared/notes.txt"), "keep me");
+}
+
+TEST_F(Programs, ClusterGoesOnAfterABadFileAmongMany) {
+  write("a.pcd", twoWalls());
+  write("b.bin", "odd");
+  write("c.pcd", twoWalls());
+  fs::create_directory(folder_ / "sub");
+  write("sub/a.pcd", twoWalls());
+  const Outcome outcome = cluster("a.pcd b.bin c.pcd sub --tolerance 0.3 -o results");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("b.bin"), std::string::npos);
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  for (const char* made : {"a", "c", "a-2"})
+    EXPECT_TRUE(fs::exists(folder_ / "results" / made / "labels.pcd")) << made;
+  EXPECT_FALSE(fs::exists(folder_ / "results/b"));
+}
+
+TEST_F(Programs, ScanWithoutAnyReturnHasNoClusters) {
+  write("none.pcd",
+        "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 2\nVIEWPOINT 0 0 0 "
+        "1 0 0 0\n"
+        "POINTS 4\nDATA ascii\nnan nan nan\n0 0 0\n0 0 0\nnan nan nan\n");
+  const Outcome outcome = cluster("none.pcd --tolerance 0.3 -o results");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("0 returns"), std::string::npos) << outcome.out;
+  EXPECT_TRUE(fs::exists(folder_ / "results/labels.pcd"));
+}
+
+TEST_F(Programs, TellTheirUseAndVersion) {
+  const Outcome help = cluster("--help");
+  EXPECT_EQ(help.status, 0);
+  for (const char* option : {"--tolerance", "--min-size", "--max-size", "--ground-z", "--output", "--clouds"})
+    EXPECT_NE(help.out.find(option), std::string::npos) << option;
+  EXPECT_EQ(cluster("--version").out.rfind("lisco_cluster 0.1.0", 0), 0U);
+}
+
+TEST_F(Programs, DemoFindsPclsClusters) {
+  const Outcome outcome = run(std::string(LISCO_DEMO) + " results");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("the clusters are identical"), std::string::npos) << outcome.out;
+  EXPECT_TRUE(fs::exists(folder_ / "results/top_view.png"));
+}
+
+}  // namespace

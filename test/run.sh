@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs what is missing, then builds and runs all tests in a release build, and those of the engine and the programs again
+# under AddressSanitizer and UndefinedBehaviorSanitizer. Prints what ctest says at its end; more only if something fails.
+# Real scans are looked for in $LISCO_TEST_DATA (default: ../shared/data); without them their tests are skipped.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+. "$root/cmake/script_tools.sh"
+
+"$root/cmake/install_dependencies.sh"
+
+# run_tests NAME CTEST-OPTION... -- CMAKE-OPTION...
+run_tests() {
+  local name=$1 build=$root/build/$1
+  shift
+  local ctest_options=()
+  while [ "$1" != -- ]; do
+    ctest_options+=("$1")
+    shift
+  done
+  shift
+  build_quietly "$root" "$build" -DLISCO_WARNINGS_AS_ERRORS=ON "$@"
+  echo "$name:"
+  if ! (cd "$build" && ctest --output-on-failure -j "$(nproc)" "${ctest_options[@]}" >ctest.log 2>&1 </dev/null); then
+    cat "$build/ctest.log" >&2
+    return 1
+  fi
+  sed -n '/tests passed/,$p' "$build/ctest.log"
+}
+
+run_tests test -- -DCMAKE_BUILD_TYPE=Release -DLISCO_BUILD_BENCHMARKS=ON
+run_tests test-asan-ubsan -L 'core|program' -- -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+  "-DCMAKE_CXX_FLAGS=-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer"
