@@ -6,6 +6,13 @@
 
 namespace lisco {
 
+ColumnClusterer::ColumnClusterer() {
+  Parameters lightest;
+  lightest.mask = Parameters::Mask::kGrid;
+  lightest.expected_returns = 0;
+  begin(lightest);
+}
+
 void ColumnClusterer::begin(const Parameters& parameters) {
   parameters_ = parameters;
   parameters_.block_columns = std::clamp<std::size_t>(parameters.block_columns, 1, kMostBlockColumns);

@@ -7,7 +7,7 @@
 namespace lisco {
 namespace {
 
-constexpr double kCellSide = 2.5;  // in units of the tolerance
+constexpr double kCellSide = 1.5;  // in units of the tolerance
 constexpr std::size_t kLeastSlots = 64;
 constexpr std::size_t kMostSlots = std::size_t{1} << 20;
 

@@ -40,23 +40,36 @@ pcl::detail::LiscoCloudClusterer::select (std::size_t points, const Indices *ind
     few_points_ = *indices;
     std::sort (few_points_.begin (), few_points_.end ());
     few_points_.erase (std::unique (few_points_.begin (), few_points_.end ()), few_points_.end ());
-    head_of_point_.resize (points);
+    head_of_cell_.assign (few_points_.size (), kSelected);
+    return (true);
   }
-  else
-    head_of_point_.assign (points, indices ? kNotSelected : kSelected);
+  head_of_cell_.assign (points, indices ? kNotSelected : kSelected);
   if (indices)
     for (const auto &index : *indices)
-      head_of_point_[static_cast<std::size_t> (index)] = kSelected;
+      head_of_cell_[static_cast<std::size_t> (index)] = kSelected;
   return (true);
+}
+
+std::uint32_t
+pcl::detail::LiscoCloudClusterer::headOf (index_t point) const
+{
+  if (!few_)
+    return (point >= 0 && static_cast<std::size_t> (point) < head_of_cell_.size ()
+                ? head_of_cell_[static_cast<std::size_t> (point)]
+                : kNotSelected);
+  const auto place = std::lower_bound (few_points_.begin (), few_points_.end (), point);
+  return (place != few_points_.end () && *place == point
+              ? head_of_cell_[static_cast<std::size_t> (place - few_points_.begin ())]
+              : kNotSelected);
 }
 
 void
 pcl::detail::LiscoCloudClusterer::collect (const Indices *indices, const PCLHeader &header, uindex_t min_size,
                                            uindex_t max_size, std::vector<PointIndices> &clusters)
 {
-  clusterer_.forEachRun ([this] (const std::uint32_t *points, std::size_t count, std::uint32_t head) {
+  clusterer_.forEachRun ([this] (const std::uint32_t *cells, std::size_t count, std::uint32_t head) {
     for (std::size_t i = 0; i < count; ++i)
-      head_of_point_[points[i]] = head;
+      head_of_cell_[cells[i]] = head;
   });
 
   constexpr std::uint32_t kUndecided = ~std::uint32_t{0};
@@ -73,38 +86,28 @@ pcl::detail::LiscoCloudClusterer::collect (const Indices *indices, const PCLHead
     clusters.back ().header = header;
     clusters.back ().indices.reserve (size);
   };
-  const auto decide_once = [&] (index_t point) {
-    const std::uint32_t head = head_of_point_[static_cast<std::size_t> (point)];
+  const auto decide_once = [&] (std::uint32_t head) {
     if (head < kSelected && cluster_of_head_[head] == kUndecided)
       decide (head);
-  };
-  const auto append = [&] (index_t point) {
-    const std::uint32_t head = head_of_point_[static_cast<std::size_t> (point)];
-    if (head < kSelected && cluster_of_head_[head] != kNoCluster)
-      clusters[first_cluster + cluster_of_head_[head]].indices.push_back (point);
   };
 
   // The order of the clusters is that of their first points in the indices; within each, indices ascend.
   if (indices)
-    std::for_each (indices->begin (), indices->end (), decide_once);
-  if (few_)
-    std::for_each (few_points_.begin (), few_points_.end (), append);
-  else
-    for (index_t point = 0; point < static_cast<index_t> (head_of_point_.size ()); ++point)
-    {
-      decide_once (point);
-      append (point);
-    }
+    for (const auto &index : *indices)
+      decide_once (headOf (index));
+  for (std::size_t cell = 0; cell < head_of_cell_.size (); ++cell)
+  {
+    const std::uint32_t head = head_of_cell_[cell];
+    decide_once (head);
+    if (head < kSelected && cluster_of_head_[head] != kNoCluster)
+      clusters[first_cluster + cluster_of_head_[head]].indices.push_back (
+          few_ ? few_points_[cell] : static_cast<index_t> (cell));
+  }
 }
 
 bool
 pcl::detail::LiscoCloudClusterer::isSubcluster (const Indices &points) const
 {
-  const auto headOf = [this] (index_t point) {
-    const bool known = few_ ? std::binary_search (few_points_.begin (), few_points_.end (), point)
-                            : point >= 0 && static_cast<std::size_t> (point) < head_of_point_.size ();
-    return (known ? head_of_point_[static_cast<std::size_t> (point)] : kNotSelected);
-  };
   if (points.empty ())
     return (false);
   const std::uint32_t head = headOf (points.front ());

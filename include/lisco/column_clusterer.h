@@ -57,7 +57,7 @@ struct Parameters {
 /// of instances may work side by side.
 class ColumnClusterer {
  public:
-  ColumnClusterer() { begin(Parameters{}); }
+  ColumnClusterer();
 
   /// Starts a new rotation and forgets the last one.
   void begin(const Parameters& parameters);
@@ -143,7 +143,7 @@ class ColumnClusterer {
 
   Parameters parameters_;
   Tolerance tolerance_;
-  std::variant<ViewMask, GridMask> mask_;
+  std::variant<GridMask, ViewMask> mask_;
 
   std::vector<StagedRow> staged_;
   std::size_t staged_columns_ = 0;

@@ -42,8 +42,9 @@ Parameters surveyScan(std::size_t columns, std::size_t lasers, const std::array<
       std::max<std::size_t>(1, columns / std::max<std::size_t>(1, kPlaces * row_step / lasers));
   const auto valid = [](const Return& r) { return isReturn(r.x, r.y, r.z); };
 
-  ScanSurvey survey;
-  for (std::size_t laser = row_step / 2; laser < lasers; laser += row_step)
+  ScanSurvey survey;  // stays empty for a cloud so small that a view is not worth its layout
+  constexpr std::size_t kSmall = 4096;
+  for (std::size_t laser = row_step / 2; laser < lasers && columns * lasers >= kSmall; laser += row_step)
     for (std::size_t column = column_step / 2; column < columns; column += column_step) {
       const Return cell = cell_at(laser, column);
       if (!valid(cell)) continue;

@@ -56,11 +56,16 @@ class LiscoCloudClusterer
     bool
     select (std::size_t points, const Indices *indices, const char *caller);
 
+    /** \brief The head of a point's subcluster, or kSelected or kNotSelected. */
+    std::uint32_t
+    headOf (index_t point) const;
+
     lisco::ColumnClusterer clusterer_;
-    std::vector<std::uint32_t> head_of_point_;    ///< kNotSelected, kSelected (no return), or the subcluster's head
+    bool few_ = false;                          ///< only a small part of the cloud's points is to be clustered:
+    Indices few_points_;                        ///< these, ascending
+    std::vector<std::uint32_t> head_of_cell_;   ///< per point of the cloud, or of few_points_: kNotSelected, kSelected (but
+                                                ///< no return), or the head of its subcluster
     std::vector<std::uint32_t> cluster_of_head_;  ///< number in the output
-    bool few_ = false;                            ///< only a small part of the cloud's points is to be clustered:
-    Indices few_points_;                          ///< these, ascending
 };
 
 }  // namespace detail

@@ -25,10 +25,10 @@ pcl::detail::LiscoCloudClusterer::cluster (const PointCloud<PointT> &cloud, cons
   const std::size_t columns = (few_ ? few_points_.size () : cloud.size ()) / lasers;
   const PointT *const points = cloud.points.data ();
   const auto cell_at = [&, few = few_] (std::size_t laser, std::size_t column) {
-    const std::size_t cell = few ? static_cast<std::size_t> (few_points_[column]) : laser * columns + column;
-    if (head_of_point_[cell] == kNotSelected)
+    const std::size_t cell = laser * columns + column;
+    if (head_of_cell_[cell] == kNotSelected)
       return (lisco::kNoReturn);
-    const PointT &point = points[cell];
+    const PointT &point = points[few ? static_cast<std::size_t> (few_points_[cell]) : cell];
     return (lisco::Return{point.x, point.y, point.z, static_cast<std::uint32_t> (cell)});
   };
 
