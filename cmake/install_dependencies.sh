@@ -5,7 +5,7 @@
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config libpcl-dev libboost-program-options-dev libcairo2-dev fonts-dejavu-core
-          libgtest-dev libbenchmark-dev)
+          libgtest-dev liblz4-dev)
 
 missing=()
 for package in "${packages[@]}"; do

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include <pcl/pcl_base.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include "random.h"
+#include "scans.h"
+
+namespace lisco_test {
+
+/// A scan as an organized cloud: rows are lasers. Its header is filled in, as a driver does it.
+template <typename PointT = pcl::PointXYZ>
+typename pcl::PointCloud<PointT>::Ptr cloudOf(const Scan& scan) {
+  auto cloud = std::make_shared<pcl::PointCloud<PointT>>(static_cast<std::uint32_t>(scan.columns),
+                                                         static_cast<std::uint32_t>(scan.lasers));
+  for (std::size_t i = 0; i < scan.cells.size(); ++i) {
+    (*cloud)[i].x = scan.cells[i].x;
+    (*cloud)[i].y = scan.cells[i].y;
+    (*cloud)[i].z = scan.cells[i].z;
+  }
+  cloud->is_dense = false;
+  cloud->header.frame_id = "lidar";
+  cloud->header.stamp = 1234567;
+  cloud->header.seq = 89;
+  return cloud;
+}
+
+/// A rotating scan of boxes around the sensor, with steps as of a real one: columns x lasers cells.
+Scan boxesAround(Random& random, std::size_t columns, std::size_t lasers);
+
+/// What a depth camera sees: z forward, y down, a wall with a few boxes before it.
+Scan cameraView(Random& random, std::size_t columns, std::size_t lasers);
+
+/// The points in one row.
+template <typename PointT>
+typename pcl::PointCloud<PointT>::Ptr unorganized(const pcl::PointCloud<PointT>& cloud) {
+  auto row = std::make_shared<pcl::PointCloud<PointT>>(cloud);
+  row->width = static_cast<std::uint32_t>(row->size());
+  row->height = 1;
+  return row;
+}
+
+/// The cloud in a frame in which its sensor stands at (x, y, z).
+template <typename PointT>
+typename pcl::PointCloud<PointT>::Ptr displaced(const pcl::PointCloud<PointT>& cloud, float x, float y,
+                                                float z, bool with_origin) {
+  auto moved = std::make_shared<pcl::PointCloud<PointT>>(cloud);
+  for (PointT& point : *moved) {
+    if (!lisco::isReturn(point.x, point.y, point.z)) continue;
+    point.x += x;
+    point.y += y;
+    point.z += z;
+  }
+  if (with_origin) moved->sensor_origin_ << x, y, z, 0.0F;
+  return moved;
+}
+
+/// All indices of a cloud of this size, shuffled.
+inline pcl::IndicesPtr shuffledIndices(Random& random, std::size_t size) {
+  auto indices = std::make_shared<pcl::Indices>(size);
+  for (std::size_t i = 0; i < size; ++i) (*indices)[i] = static_cast<pcl::index_t>(i);
+  random.shuffle(*indices);
+  return indices;
+}
+
+}  // namespace lisco_test

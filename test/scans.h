@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "lisco/return.h"
+#include "oracle.h"
+#include "random.h"
+
+namespace lisco_test {
+
+/// A small rotation: cells laser by laser, each named by its place.
+struct Scan {
+  std::size_t columns = 0;
+  std::size_t lasers = 0;
+  std::vector<lisco::Return> cells;
+
+  Scan(std::size_t column_count, std::size_t laser_count);
+  lisco::Return& at(std::size_t laser, std::size_t column) { return cells[laser * columns + column]; }
+  const lisco::Return& at(std::size_t laser, std::size_t column) const {
+    return cells[laser * columns + column];
+  }
+  void set(std::size_t laser, std::size_t column, const Point& point);
+  std::vector<Point> points() const;
+};
+
+/// Any number of these may be wrong with a scan at once, in any strength: the sensor turns either way from
+/// any azimuth, over less or more than a turn; lasers are staggered, rings sway, rows are shuffled, columns
+/// are missing or come twice; elevations reach to straight up; returns are nearer than any tolerance, or at
+/// random ranges; cells are NaN, infinite or (0, 0, 0); the whole is of any size and stands anywhere.
+Scan randomScan(Random& random);
+
+/// Points on a lattice whose spacing is a power of two, so that distances are exact. \param spacing receives
+/// it
+Scan latticeScan(Random& random, float& spacing);
+
+/// Coordinates where floats end: 3e38, 1e30, denormals, and everything else in between.
+Scan extremeScan(Random& random);
+
+/// A tolerance near which some points of the scan change sides, often by one ulp; positive and finite.
+float criticalTolerance(Random& random, const Scan& scan);
+
+}  // namespace lisco_test

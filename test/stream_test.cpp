@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+// The engine while the sensor turns: subclusters at any time, and columns in any portions.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "engine.h"
+#include "random.h"
+#include "scans.h"
+
+namespace lisco_test {
+namespace {
+
+std::vector<lisco::Return> columnOf(const Scan& scan, std::size_t column) {
+  std::vector<lisco::Return> cells;
+  for (std::size_t laser = 0; laser < scan.lasers; ++laser) cells.push_back(scan.at(laser, column));
+  return cells;
+}
+
+lisco::Parameters withTolerance(const Setting& setting, float tolerance) {
+  lisco::Parameters parameters = setting.parameters;
+  parameters.tolerance = tolerance;
+  return parameters;
+}
+
+/// The oracle's clusters of the first columns; the others count as no returns.
+Clustering trueClustersUpTo(const Scan& scan, std::size_t columns, float tolerance) {
+  std::vector<Point> points = scan.points();
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (i % scan.columns >= columns) points[i] = {0, 0, 0};
+  return trueClusters(points, tolerance);
+}
+
+/// Calls check(random, scan, tolerance, setting) for many scans, every setting in its turn.
+template <typename Check>
+void forScans(std::uint64_t first, std::uint64_t count, Check&& check) {
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+    const Setting& setting = allSettings()[seed % allSettings().size()];
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", " + setting.name);
+    Random random(seed);
+    const Scan scan = randomScan(random);
+    check(random, scan, criticalTolerance(random, scan), setting);
+    if (testing::Test::HasFailure()) return;
+  }
+}
+
+TEST(Stream, SubclustersAfterEveryColumn) {
+  lisco::ColumnClusterer clusterer;
+  forScans(1, 300, [&](Random&, const Scan& scan, float tolerance, const Setting& setting) {
+    clusterer.begin(withTolerance(setting, tolerance));
+    for (std::size_t column = 0; column < scan.columns; ++column) {
+      clusterer.addColumn(columnOf(scan, column).data(), scan.lasers);
+      ASSERT_EQ(difference(trueClustersUpTo(scan, column + 1, tolerance), clustersOf(clusterer)), "")
+          << "column " << column;
+    }
+  });
+}
+
+TEST(Stream, SubclustersNowAndThen) {
+  lisco::ColumnClusterer clusterer;
+  forScans(1000, 600, [&](Random& random, const Scan& scan, float tolerance, const Setting& setting) {
+    clusterer.begin(withTolerance(setting, tolerance));
+    for (std::size_t column = 0; column < scan.columns; ++column) {
+      clusterer.addColumn(columnOf(scan, column).data(), scan.lasers);
+      if (!random.chance(0.1)) continue;
+      ASSERT_EQ(difference(trueClustersUpTo(scan, column + 1, tolerance), clustersOf(clusterer)), "")
+          << "column " << column;
+    }
+    EXPECT_EQ(difference(trueClusters(scan.points(), tolerance), clustersOf(clusterer)), "");
+  });
+}
+
+TEST(Stream, ColumnsInAnyPortions) {
+  lisco::ColumnClusterer clusterer;
+  forScans(2000, 800, [&](Random& random, const Scan& scan, float tolerance, const Setting& setting) {
+    clusterer.begin(withTolerance(setting, tolerance));
+    for (std::size_t first = 0; first < scan.columns;) {
+      const std::size_t count = std::min(scan.columns - first, 1 + random.below(40));
+      if (count == 1 && random.chance(0.5))
+        clusterer.addColumn(columnOf(scan, first).data(), scan.lasers);
+      else
+        clusterer.addColumns(count, scan.lasers, [&](std::size_t laser, std::size_t column) {
+          return scan.at(laser, first + column);
+        });
+      first += count;
+      if (random.chance(0.1)) clusterer.addColumn(nullptr, 0);  // a step in which nothing was measured
+    }
+    EXPECT_EQ(difference(trueClusters(scan.points(), tolerance), clustersOf(clusterer)), "");
+  });
+}
+
+// Columns may have different numbers of lasers, and their returns may be in any order.
+TEST(Stream, ColumnsOfAnyLengthAndOrder) {
+  lisco::ColumnClusterer clusterer;
+  forScans(4000, 400, [&](Random& random, const Scan& scan, float tolerance, const Setting& setting) {
+    clusterer.begin(withTolerance(setting, tolerance));
+    for (std::size_t column = 0; column < scan.columns; ++column) {
+      std::vector<lisco::Return> cells = columnOf(scan, column);
+      random.shuffle(cells);
+      while (!cells.empty() && !lisco::isReturn(cells.back().x, cells.back().y, cells.back().z))
+        cells.pop_back();
+      clusterer.addColumn(cells.data(), cells.size());
+    }
+    EXPECT_EQ(difference(trueClusters(scan.points(), tolerance), clustersOf(clusterer)), "");
+  });
+}
+
+TEST(Stream, UpdateTwiceOrWithoutColumnsChangesNothing) {
+  lisco::ColumnClusterer clusterer;
+  clusterer.update();
+  EXPECT_TRUE(clustersOf(clusterer).empty());
+  Random random(9);
+  const Scan scan = randomScan(random);
+  const Clustering once = cluster(clusterer, scan, 0.5F, allSettings().front());
+  clusterer.update();
+  EXPECT_EQ(difference(once, clustersOf(clusterer)), "");
+}
+
+TEST(Stream, ABrokenOffRotationIsForgotten) {
+  lisco::ColumnClusterer clusterer;
+  forScans(5000, 200, [&](Random& random, const Scan& scan, float tolerance, const Setting& setting) {
+    const Scan lost = randomScan(random);
+    clusterer.begin(withTolerance(random.oneOf(allSettings()), tolerance));
+    for (std::size_t column = 0; column < random.below(lost.columns + 1); ++column)
+      clusterer.addColumn(columnOf(lost, column % lost.columns).data(), lost.lasers);
+    EXPECT_EQ(
+        difference(trueClusters(scan.points(), tolerance), cluster(clusterer, scan, tolerance, setting)), "");
+  });
+}
+
+TEST(Stream, CountsItsReturns) {
+  Random random(11);
+  lisco::ColumnClusterer clusterer;
+  for (int i = 0; i < 50; ++i) {
+    const Scan scan = randomScan(random);
+    const std::vector<Point> points = scan.points();
+    const auto valid = static_cast<std::size_t>(std::count_if(points.begin(), points.end(), isValid));
+    cluster(clusterer, scan, 0.1F, random.oneOf(allSettings()));
+    EXPECT_EQ(clusterer.returnCount(), valid);
+  }
+}
+
+}  // namespace
+}  // namespace lisco_test
