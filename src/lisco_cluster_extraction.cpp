@@ -105,16 +105,6 @@ pcl::detail::LiscoCloudClusterer::collect (const Indices *indices, const PCLHead
   }
 }
 
-bool
-pcl::detail::LiscoCloudClusterer::isSubcluster (const Indices &points) const
-{
-  if (points.empty ())
-    return (false);
-  const std::uint32_t head = headOf (points.front ());
-  return (head < clusterer_.headLimit () && clusterer_.weight (head) == points.size () &&
-          std::all_of (points.begin (), points.end (), [&] (index_t point) { return (headOf (point) == head); }));
-}
-
 PCL_INSTANTIATE (LiscoClusterExtraction, PCL_XYZ_POINT_TYPES)
 PCL_INSTANTIATE (extractLiscoClusters, PCL_XYZ_POINT_TYPES)
 PCL_INSTANTIATE (extractLiscoClusters_indices, PCL_XYZ_POINT_TYPES)

@@ -35,24 +35,26 @@ class ScanSurvey {
 template <typename CellAt>
 Parameters surveyScan(std::size_t columns, std::size_t lasers, const std::array<float, 3>& sensor,
                       CellAt&& cell_at) {
+  constexpr std::size_t kSmall = 4096;  // below this a view is not worth its layout
   constexpr std::size_t kRows = 8;
   constexpr std::size_t kPlaces = 128;
-  const std::size_t row_step = std::max<std::size_t>(1, lasers / kRows);
-  const std::size_t column_step =
-      std::max<std::size_t>(1, columns / std::max<std::size_t>(1, kPlaces * row_step / lasers));
   const auto valid = [](const Return& r) { return isReturn(r.x, r.y, r.z); };
 
-  ScanSurvey survey;  // stays empty for a cloud so small that a view is not worth its layout
-  constexpr std::size_t kSmall = 4096;
-  for (std::size_t laser = row_step / 2; laser < lasers && columns * lasers >= kSmall; laser += row_step)
-    for (std::size_t column = column_step / 2; column < columns; column += column_step) {
-      const Return cell = cell_at(laser, column);
-      if (!valid(cell)) continue;
-      const Return right = column + 1 < columns ? cell_at(laser, column + 1) : kNoReturn;
-      const Return below = laser + 1 < lasers ? cell_at(laser + 1, column) : kNoReturn;
-      if (valid(right)) survey.addAlongRow(cell, right);
-      if (valid(below)) survey.addAlongColumn(cell, below);
-    }
+  ScanSurvey survey;
+  if (columns * lasers >= kSmall) {
+    const std::size_t row_step = std::max<std::size_t>(1, lasers / kRows);
+    const std::size_t places_per_row = std::max<std::size_t>(1, kPlaces * row_step / lasers);
+    const std::size_t column_step = std::max<std::size_t>(1, columns / places_per_row);
+    for (std::size_t laser = row_step / 2; laser < lasers; laser += row_step)
+      for (std::size_t column = column_step / 2; column < columns; column += column_step) {
+        const Return cell = cell_at(laser, column);
+        if (!valid(cell)) continue;
+        const Return right = column + 1 < columns ? cell_at(laser, column + 1) : kNoReturn;
+        const Return below = laser + 1 < lasers ? cell_at(laser + 1, column) : kNoReturn;
+        if (valid(right)) survey.addAlongRow(cell, right);
+        if (valid(below)) survey.addAlongColumn(cell, below);
+      }
+  }
   Parameters parameters = survey.judge(sensor, lasers > 1);
   parameters.expected_returns = columns * lasers;
   return parameters;

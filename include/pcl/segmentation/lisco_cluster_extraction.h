@@ -41,10 +41,6 @@ class LiscoCloudClusterer
     collect (const Indices *indices, const PCLHeader &header, uindex_t min_size, uindex_t max_size,
              std::vector<PointIndices> &clusters);
 
-    /** \brief Whether these are all the points of one subcluster of the last cloud, which collect () has seen. */
-    bool
-    isSubcluster (const Indices &points) const;
-
     /** \brief Whether point numbers up to \a points fit into index_t and into the engine. */
     static bool
     fitsIndexType (std::size_t points);
@@ -128,7 +124,7 @@ class LiscoClusterExtraction : public PCLBase<PointT>
     /** \brief The same, and the clusters as an image as well.
       * \param[in,out] clusters as above
       * \param[out] labels one label per point of the input, organized as the input is: 0 = in no cluster, otherwise
-      * 1 + the number of the point's cluster in \a clusters.
+      * 1 + the place of the point's cluster in \a clusters. Clusters that were there before give no labels.
       */
     void
     extract (std::vector<PointIndices> &clusters, Labels &labels);
@@ -191,6 +187,12 @@ class LiscoClusterExtraction : public PCLBase<PointT>
     virtual std::string getClassName () const { return ("LiscoClusterExtraction"); }
 
   private:
+    /** \brief Appends the clusters, not yet sorted by size, or clears the vector as extract () says.
+      * \return how many were there before
+      */
+    std::size_t
+    appendClusters (std::vector<PointIndices> &clusters);
+
     detail::LiscoCloudClusterer clusterer_;
 };
 

@@ -41,35 +41,49 @@ pcl::detail::LiscoCloudClusterer::cluster (const PointCloud<PointT> &cloud, cons
   return (true);
 }
 
-template <typename PointT> void
-pcl::LiscoClusterExtraction<PointT>::extract (std::vector<PointIndices> &clusters)
+template <typename PointT> std::size_t
+pcl::LiscoClusterExtraction<PointT>::appendClusters (std::vector<PointIndices> &clusters)
 {
   if (!initCompute () || input_->empty () || indices_->empty ())
   {
     clusters.clear ();
-    return;
+    return (0);
   }
-
+  const std::size_t first = clusters.size ();
   const Indices *const indices = fake_indices_ ? nullptr : indices_.get ();
-  if (!clusterer_.cluster (*input_, indices, static_cast<float> (cluster_tolerance_),
-                           "pcl::LiscoClusterExtraction::extract"))
-  {
+  if (clusterer_.cluster (*input_, indices, static_cast<float> (cluster_tolerance_),
+                          "pcl::LiscoClusterExtraction::extract"))
+    clusterer_.collect (indices, input_->header, min_pts_per_cluster_, max_pts_per_cluster_, clusters);
+  else
     clusters.clear ();
-    deinitCompute ();
-    return;
-  }
-  clusterer_.collect (indices, input_->header, min_pts_per_cluster_, max_pts_per_cluster_, clusters);
+  deinitCompute ();
+  return (std::min (first, clusters.size ()));
+}
 
+template <typename PointT> void
+pcl::LiscoClusterExtraction<PointT>::extract (std::vector<PointIndices> &clusters)
+{
+  appendClusters (clusters);
   // Not a stable sort: only PCL's own call on PCL's own sequence gives PCL's order among clusters of one size.
   std::sort (clusters.rbegin (), clusters.rend (), comparePointClusters);
-
-  deinitCompute ();
 }
 
 template <typename PointT> void
 pcl::LiscoClusterExtraction<PointT>::extract (std::vector<PointIndices> &clusters, Labels &labels)
 {
-  extract (clusters);
+  const std::size_t first = appendClusters (clusters);
+
+  // The same sort on the sizes alone moves them as it moves the clusters, which tells where each came from: the vector may
+  // hold clusters of other clouds, from calls before this one.
+  struct Origin
+  {
+    std::size_t size, place;
+  };
+  std::vector<Origin> origins;
+  for (const auto &cluster : clusters)
+    origins.push_back ({cluster.indices.size (), origins.size ()});
+  std::sort (origins.rbegin (), origins.rend (), [] (const Origin &a, const Origin &b) { return (a.size < b.size); });
+  std::sort (clusters.rbegin (), clusters.rend (), comparePointClusters);
 
   labels = Labels ();
   if (!input_)
@@ -83,14 +97,9 @@ pcl::LiscoClusterExtraction<PointT>::extract (std::vector<PointIndices> &cluster
   for (auto &label : labels)
     label.label = 0;
   for (std::size_t number = 0; number < clusters.size (); ++number)
-  {
-    // The vector may hold clusters of other clouds, from calls before this one.
-    const Indices &points = clusters[number].indices;
-    if (!clusterer_.isSubcluster (points))
-      continue;
-    for (const auto &point : points)
-      labels[static_cast<std::size_t> (point)].label = static_cast<std::uint32_t> (number + 1);
-  }
+    if (origins[number].place >= first)
+      for (const auto &point : clusters[number].indices)
+        labels[static_cast<std::size_t> (point)].label = static_cast<std::uint32_t> (number + 1);
 }
 
 template <typename PointT> void
