@@ -40,12 +40,21 @@ void forSeeds(std::uint64_t first, std::uint64_t count, Check&& check) {
 class RandomScans : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(RandomScans, EqualTheOracle) {
-  forSeeds(GetParam() * 10'000'000, 2000, [](Random& random, lisco::ColumnClusterer& clusterer) {
+  forSeeds(GetParam() * 10'000'000, 3000, [](Random& random, lisco::ColumnClusterer& clusterer) {
     const Scan scan = randomScan(random);
     expectExact(clusterer, scan, criticalTolerance(random, scan));
   });
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomScans, testing::Range<std::uint64_t>(1, 5));
+
+// Large enough for many patches in a tile and many tiles in a mask.
+TEST(LargerScans, EqualTheOracle) {
+  forSeeds(80'000'000, 60, [](Random& random, lisco::ColumnClusterer& clusterer) {
+    const Scan scan = randomScan(random, 3000);
+    expectExact(clusterer, scan, criticalTolerance(random, scan));
+    expectExact(clusterer, scan, 10.0F * criticalTolerance(random, scan));
+  });
+}
 
 TEST(AdversarialScans, LatticeAtExactlyTheTolerance) {
   forSeeds(100'000'000, 1000, [](Random& random, lisco::ColumnClusterer& clusterer) {

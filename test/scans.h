@@ -30,7 +30,8 @@ struct Scan {
 /// any azimuth, over less or more than a turn; lasers are staggered, rings sway, rows are shuffled, columns
 /// are missing or come twice; elevations reach to straight up; returns are nearer than any tolerance, or at
 /// random ranges; cells are NaN, infinite or (0, 0, 0); the whole is of any size and stands anywhere.
-Scan randomScan(Random& random);
+/// \param most_cells about as many as there are at the most
+Scan randomScan(Random& random, std::size_t most_cells = 150);
 
 /// Points on a lattice whose spacing is a power of two, so that distances are exact. \param spacing receives
 /// it
