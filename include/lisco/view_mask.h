@@ -138,9 +138,11 @@ void ViewMask::forEachTile(const Box& box, Visit&& visit) const {
     include(view_angle::azimuth(lo[0], hi[1]));
     include(view_angle::azimuth(hi[0], lo[1]));
     include(view_angle::azimuth(hi[0], hi[1]));
-    const double widest = view_angle::widest(reach_, near_rho);
-    azimuth_lo = static_cast<double>(corner) + static_cast<double>(left) - widest;
-    azimuth_hi = static_cast<double>(corner) + static_cast<double>(right) + widest;
+    if (right - left < 0.499F) {  // else the box spans about half a turn, and rounding hides which half
+      const double widest = view_angle::widest(reach_, near_rho);
+      azimuth_lo = static_cast<double>(corner) + static_cast<double>(left) - widest;
+      azimuth_hi = static_cast<double>(corner) + static_cast<double>(right) + widest;
+    }
   }
 
   azimuth_lo += 1.0;  // now above 0, so that truncation rounds down

@@ -20,203 +20,186 @@ namespace pcl {
 
 namespace detail {
 
-/** \brief What LiscoClusterExtraction and extractLiscoClusters () share: reads a PCL cloud into the clustering engine and
-  * writes its subclusters as PCL's clusters. Keeps its memory from cloud to cloud.
-  */
-class LiscoCloudClusterer
-{
-  public:
-    /** \brief Clusters a cloud.
-      * \param[in] indices which of its points; nullptr: all
-      * \param[in] caller named in front of a PCL_ERROR
-      * \return false, after a PCL_ERROR, if an index is not within the cloud or the cloud is too large for index_t
-      */
-    template <typename PointT> bool
-    cluster (const PointCloud<PointT> &cloud, const Indices *indices, float tolerance, const char *caller);
+/** \brief What LiscoClusterExtraction and extractLiscoClusters () share: reads a PCL cloud into the
+ * clustering engine and writes its subclusters as PCL's clusters. Keeps its memory from cloud to cloud.
+ */
+class LiscoCloudClusterer {
+ public:
+  /** \brief Clusters a cloud.
+   * \param[in] indices which of its points; nullptr: all
+   * \param[in] caller named in front of a PCL_ERROR
+   * \return false, after a PCL_ERROR, if an index is not within the cloud or the cloud is too large for
+   * index_t
+   */
+  template <typename PointT>
+  bool cluster(const PointCloud<PointT>& cloud, const Indices* indices, float tolerance, const char* caller);
 
-    /** \brief Appends the clusters of the last cloud whose size is within [min_size, max_size], in the order in which
-      * their first points appear in the indices; the indices of each ascend.
-      */
-    void
-    collect (const Indices *indices, const PCLHeader &header, uindex_t min_size, uindex_t max_size,
-             std::vector<PointIndices> &clusters);
+  /** \brief Appends the clusters of the last cloud whose size is within [min_size, max_size], in the order in
+   * which their first points appear in the indices; the indices of each ascend.
+   */
+  void collect(const Indices* indices, const PCLHeader& header, uindex_t min_size, uindex_t max_size,
+               std::vector<PointIndices>& clusters);
 
-    /** \brief Whether point numbers up to \a points fit into index_t and into the engine. */
-    static bool
-    fitsIndexType (std::size_t points);
+  /** \brief Whether point numbers up to \a points fit into index_t and into the engine. */
+  static bool fitsIndexType(std::size_t points);
 
-  private:
-    static constexpr std::uint32_t kNotSelected = ~std::uint32_t{0};
-    static constexpr std::uint32_t kSelected = kNotSelected - 1;
+ private:
+  static constexpr std::uint32_t kNotSelected = ~std::uint32_t{0};
+  static constexpr std::uint32_t kSelected = kNotSelected - 1;
 
-    bool
-    select (std::size_t points, const Indices *indices, const char *caller);
+  bool select(std::size_t points, const Indices* indices, const char* caller);
 
-    /** \brief The head of a point's subcluster, or kSelected or kNotSelected. */
-    std::uint32_t
-    headOf (index_t point) const;
+  /** \brief The head of a point's subcluster, or kSelected or kNotSelected. */
+  std::uint32_t headOf(index_t point) const;
 
-    lisco::ColumnClusterer clusterer_;
-    bool few_ = false;                          ///< only a small part of the cloud's points is to be clustered:
-    Indices few_points_;                        ///< these, ascending
-    std::vector<std::uint32_t> head_of_cell_;   ///< per point of the cloud, or of few_points_: kNotSelected, kSelected (but
-                                                ///< no return), or the head of its subcluster
-    std::vector<std::uint32_t> cluster_of_head_;  ///< number in the output
+  lisco::ColumnClusterer clusterer_;
+  bool few_ = false;                         ///< only a small part of the cloud's points is to be clustered:
+  Indices few_points_;                       ///< these, ascending
+  std::vector<std::uint32_t> head_of_cell_;  ///< per point of the cloud, or of few_points_: kNotSelected,
+                                             ///< kSelected (but no return), or the head of its subcluster
+  std::vector<std::uint32_t> cluster_of_head_;  ///< number in the output
 };
 
 }  // namespace detail
 
-/** \brief Euclidean clusters of a rotating LiDAR's scan: the clusters of pcl::EuclideanClusterExtraction, without a
-  * kd-tree.
-  *
-  * \code
-  * pcl::LiscoClusterExtraction<pcl::PointXYZI> ec;   // was: pcl::EuclideanClusterExtraction<pcl::PointXYZI>
-  * ec.setClusterTolerance (0.4);                     // metres
-  * ec.setMinClusterSize (10);
-  * ec.setInputCloud (cloud);
-  * std::vector<pcl::PointIndices> clusters;
-  * ec.extract (clusters);
-  * \endcode
-  *
-  * extract () gives, byte for byte, the vector that EuclideanClusterExtraction with pcl::search::KdTree<PointT> (false)
-  * gives: the same clusters, in the same order, with the same indices and headers. What it skips, PCL cannot use: points
-  * with a NaN or infinite coordinate, and points that are exactly (0, 0, 0), which many drivers write for "no return".
-  * They are skipped whatever the cloud's is_dense says, and appear in no cluster.
-  *
-  * Any cloud will do. It is fastest on organized scans (height = lasers, width = steps of the rotation); of an
-  * unorganized cloud, the points in the sensor's order are better than shuffled ones. Using one object for many scans
-  * saves allocations.
-  *
-  * After H. Najdataei, Y. Nikolakopoulos, V. Gulisano, M. Papatriantafilou: "Lisco: A Continuous Approach in LiDAR
-  * Point-cloud Clustering", 2018.
-  * \ingroup segmentation
-  */
+/** \brief Euclidean clusters of a rotating LiDAR's scan: the clusters of pcl::EuclideanClusterExtraction,
+ * without a kd-tree.
+ *
+ * \code
+ * pcl::LiscoClusterExtraction<pcl::PointXYZI> ec;   // was: pcl::EuclideanClusterExtraction<pcl::PointXYZI>
+ * ec.setClusterTolerance (0.4);                     // metres
+ * ec.setMinClusterSize (10);
+ * ec.setInputCloud (cloud);
+ * std::vector<pcl::PointIndices> clusters;
+ * ec.extract (clusters);
+ * \endcode
+ *
+ * extract () gives, byte for byte, the vector that EuclideanClusterExtraction with
+ * pcl::search::KdTree<PointT> (false) gives: the same clusters, in the same order, with the same indices and
+ * headers. What it skips, PCL cannot use: points with a NaN or infinite coordinate, and points that are
+ * exactly (0, 0, 0), which many drivers write for "no return". They are skipped whatever the cloud's is_dense
+ * says, and appear in no cluster.
+ *
+ * Any cloud will do. It is fastest on organized scans (height = lasers, width = steps of the rotation); of an
+ * unorganized cloud, the points in the sensor's order are better than shuffled ones. Using one object for
+ * many scans saves allocations.
+ *
+ * After H. Najdataei, Y. Nikolakopoulos, V. Gulisano, M. Papatriantafilou: "Lisco: A Continuous Approach in
+ * LiDAR Point-cloud Clustering", 2018. \ingroup segmentation
+ */
 template <typename PointT>
-class LiscoClusterExtraction : public PCLBase<PointT>
-{
+class LiscoClusterExtraction : public PCLBase<PointT> {
   using BasePCLBase = PCLBase<PointT>;
 
-  public:
-    using PointCloud = pcl::PointCloud<PointT>;
-    using PointCloudPtr = typename PointCloud::Ptr;
-    using PointCloudConstPtr = typename PointCloud::ConstPtr;
+ public:
+  using PointCloud = pcl::PointCloud<PointT>;
+  using PointCloudPtr = typename PointCloud::Ptr;
+  using PointCloudConstPtr = typename PointCloud::ConstPtr;
 
-    using KdTree = pcl::search::Search<PointT>;
-    using KdTreePtr = typename KdTree::Ptr;
+  using KdTree = pcl::search::Search<PointT>;
+  using KdTreePtr = typename KdTree::Ptr;
 
-    using PointIndicesPtr = PointIndices::Ptr;
-    using PointIndicesConstPtr = PointIndices::ConstPtr;
+  using PointIndicesPtr = PointIndices::Ptr;
+  using PointIndicesConstPtr = PointIndices::ConstPtr;
 
-    using Labels = pcl::PointCloud<pcl::Label>;
+  using Labels = pcl::PointCloud<pcl::Label>;
 
-    /** \brief Empty constructor: tolerance 0, clusters of any size. */
-    LiscoClusterExtraction () = default;
+  /** \brief Empty constructor: tolerance 0, clusters of any size. */
+  LiscoClusterExtraction() = default;
 
-    /** \brief Extract the clusters of the cloud given by setInputCloud () and setIndices ().
-      * \param[in,out] clusters receives the clusters after those it already holds; then all are sorted by size, largest
-      * first, as EuclideanClusterExtraction does it. Indices within a cluster ascend. Cleared if there is no input, or
-      * none to cluster; cleared, with a PCL_ERROR, if an index is not within the cloud or the cloud is too large for
-      * pcl::index_t.
-      */
-    void
-    extract (std::vector<PointIndices> &clusters);
+  /** \brief Extract the clusters of the cloud given by setInputCloud () and setIndices ().
+   * \param[in,out] clusters receives the clusters after those it already holds; then all are sorted by size,
+   * largest first, as EuclideanClusterExtraction does it. Indices within a cluster ascend. Cleared if there
+   * is no input, or none to cluster; cleared, with a PCL_ERROR, if an index is not within the cloud or the
+   * cloud is too large for pcl::index_t.
+   */
+  void extract(std::vector<PointIndices>& clusters);
 
-    /** \brief The same, and the clusters as an image as well.
-      * \param[in,out] clusters as above
-      * \param[out] labels one label per point of the input, organized as the input is: 0 = in no cluster, otherwise
-      * 1 + the place of the point's cluster in \a clusters. Clusters that were there before give no labels.
-      */
-    void
-    extract (std::vector<PointIndices> &clusters, Labels &labels);
+  /** \brief The same, and the clusters as an image as well.
+   * \param[in,out] clusters as above
+   * \param[out] labels one label per point of the input, organized as the input is: 0 = in no cluster,
+   * otherwise 1 + the place of the point's cluster in \a clusters. Clusters that were there before give no
+   * labels.
+   */
+  void extract(std::vector<PointIndices>& clusters, Labels& labels);
 
-    /** \brief Accepted for compatibility. Lisco searches no tree: it changes nothing. */
-    inline void
-    setSearchMethod (const KdTreePtr &tree) { tree_ = tree; }
+  /** \brief Accepted for compatibility. Lisco searches no tree: it changes nothing. */
+  inline void setSearchMethod(const KdTreePtr& tree) { tree_ = tree; }
 
-    /** \brief The search method given to setSearchMethod (). */
-    inline KdTreePtr
-    getSearchMethod () const { return (tree_); }
+  /** \brief The search method given to setSearchMethod (). */
+  inline KdTreePtr getSearchMethod() const { return (tree_); }
 
-    /** \brief Set the cluster tolerance: points nearer to each other than this belong together.
-      * \param[in] tolerance metres (default 0). A negative one acts as its absolute value; with 0 or NaN every point is
-      * a cluster of its own.
-      */
-    inline void
-    setClusterTolerance (double tolerance) { cluster_tolerance_ = tolerance; }
+  /** \brief Set the cluster tolerance: points nearer to each other than this belong together.
+   * \param[in] tolerance metres (default 0). A negative one acts as its absolute value; with 0 or NaN every
+   * point is a cluster of its own.
+   */
+  inline void setClusterTolerance(double tolerance) { cluster_tolerance_ = tolerance; }
 
-    /** \brief Get the cluster tolerance in metres. */
-    inline double
-    getClusterTolerance () const { return (cluster_tolerance_); }
+  /** \brief Get the cluster tolerance in metres. */
+  inline double getClusterTolerance() const { return (cluster_tolerance_); }
 
-    /** \brief Set the least number of points of a cluster (default 1). */
-    inline void
-    setMinClusterSize (pcl::uindex_t min_cluster_size) { min_pts_per_cluster_ = min_cluster_size; }
+  /** \brief Set the least number of points of a cluster (default 1). */
+  inline void setMinClusterSize(pcl::uindex_t min_cluster_size) { min_pts_per_cluster_ = min_cluster_size; }
 
-    /** \brief Get the least number of points of a cluster. */
-    inline pcl::uindex_t
-    getMinClusterSize () const { return (min_pts_per_cluster_); }
+  /** \brief Get the least number of points of a cluster. */
+  inline pcl::uindex_t getMinClusterSize() const { return (min_pts_per_cluster_); }
 
-    /** \brief Set the largest number of points of a cluster (default: no limit). */
-    inline void
-    setMaxClusterSize (pcl::uindex_t max_cluster_size) { max_pts_per_cluster_ = max_cluster_size; }
+  /** \brief Set the largest number of points of a cluster (default: no limit). */
+  inline void setMaxClusterSize(pcl::uindex_t max_cluster_size) { max_pts_per_cluster_ = max_cluster_size; }
 
-    /** \brief Get the largest number of points of a cluster. */
-    inline pcl::uindex_t
-    getMaxClusterSize () const { return (max_pts_per_cluster_); }
+  /** \brief Get the largest number of points of a cluster. */
+  inline pcl::uindex_t getMaxClusterSize() const { return (max_pts_per_cluster_); }
 
-  protected:
-    using BasePCLBase::deinitCompute;
-    using BasePCLBase::fake_indices_;
-    using BasePCLBase::indices_;
-    using BasePCLBase::initCompute;
-    using BasePCLBase::input_;
+ protected:
+  using BasePCLBase::deinitCompute;
+  using BasePCLBase::fake_indices_;
+  using BasePCLBase::indices_;
+  using BasePCLBase::initCompute;
+  using BasePCLBase::input_;
 
-    /** \brief The search method given to setSearchMethod (), not used. */
-    KdTreePtr tree_;
+  /** \brief The search method given to setSearchMethod (), not used. */
+  KdTreePtr tree_;
 
-    /** \brief The cluster tolerance in metres. */
-    double cluster_tolerance_ = 0;
+  /** \brief The cluster tolerance in metres. */
+  double cluster_tolerance_ = 0;
 
-    /** \brief The least number of points of a cluster. */
-    pcl::uindex_t min_pts_per_cluster_ = 1;
+  /** \brief The least number of points of a cluster. */
+  pcl::uindex_t min_pts_per_cluster_ = 1;
 
-    /** \brief The largest number of points of a cluster. */
-    pcl::uindex_t max_pts_per_cluster_ = std::numeric_limits<pcl::uindex_t>::max ();
+  /** \brief The largest number of points of a cluster. */
+  pcl::uindex_t max_pts_per_cluster_ = std::numeric_limits<pcl::uindex_t>::max();
 
-    /** \brief Class getName method. */
-    virtual std::string getClassName () const { return ("LiscoClusterExtraction"); }
+  /** \brief Class getName method. */
+  virtual std::string getClassName() const { return ("LiscoClusterExtraction"); }
 
-  private:
-    /** \brief Appends the clusters, not yet sorted by size, or clears the vector as extract () says.
-      * \return how many were there before
-      */
-    std::size_t
-    appendClusters (std::vector<PointIndices> &clusters);
+ private:
+  /** \brief Appends the clusters, not yet sorted by size, or clears the vector as extract () says.
+   * \return how many were there before
+   */
+  std::size_t appendClusters(std::vector<PointIndices>& clusters);
 
-    detail::LiscoCloudClusterer clusterer_;
+  detail::LiscoCloudClusterer clusterer_;
 };
 
 /** \brief Extract Euclidean clusters as LiscoClusterExtraction does, from a whole cloud. The counterpart of
-  * pcl::extractEuclideanClusters (cloud, tree, tolerance, clusters, min, max): clusters are appended, not sorted by size.
-  * \param[in] cloud the scan
-  * \param[in] tolerance metres
-  * \param[in,out] clusters receives the clusters after those it already holds, in the order of their first points
-  * \param[in] min_pts_per_cluster least number of points of a cluster
-  * \param[in] max_pts_per_cluster largest number of points of a cluster
-  * \ingroup segmentation
-  */
-template <typename PointT> void
-extractLiscoClusters (const PointCloud<PointT> &cloud, float tolerance, std::vector<PointIndices> &clusters,
-                      unsigned int min_pts_per_cluster = 1,
-                      unsigned int max_pts_per_cluster = (std::numeric_limits<int>::max) ());
+ * pcl::extractEuclideanClusters (cloud, tree, tolerance, clusters, min, max): clusters are appended, not
+ * sorted by size. \param[in] cloud the scan \param[in] tolerance metres \param[in,out] clusters receives the
+ * clusters after those it already holds, in the order of their first points \param[in] min_pts_per_cluster
+ * least number of points of a cluster \param[in] max_pts_per_cluster largest number of points of a cluster
+ * \ingroup segmentation
+ */
+template <typename PointT>
+void extractLiscoClusters(const PointCloud<PointT>& cloud, float tolerance,
+                          std::vector<PointIndices>& clusters, unsigned int min_pts_per_cluster = 1,
+                          unsigned int max_pts_per_cluster = (std::numeric_limits<int>::max)());
 
 /** \brief The same for some points of a cloud.
-  * \param[in] indices which points of the cloud are clustered, in any order, duplicates allowed
-  */
-template <typename PointT> void
-extractLiscoClusters (const PointCloud<PointT> &cloud, const Indices &indices, float tolerance,
-                      std::vector<PointIndices> &clusters, unsigned int min_pts_per_cluster = 1,
-                      unsigned int max_pts_per_cluster = (std::numeric_limits<int>::max) ());
+ * \param[in] indices which points of the cloud are clustered, in any order, duplicates allowed
+ */
+template <typename PointT>
+void extractLiscoClusters(const PointCloud<PointT>& cloud, const Indices& indices, float tolerance,
+                          std::vector<PointIndices>& clusters, unsigned int min_pts_per_cluster = 1,
+                          unsigned int max_pts_per_cluster = (std::numeric_limits<int>::max)());
 
 }  // namespace pcl
 

@@ -11,126 +11,116 @@
 
 #include "lisco/scan_survey.h"
 
-template <typename PointT> bool
-pcl::detail::LiscoCloudClusterer::cluster (const PointCloud<PointT> &cloud, const Indices *indices, float tolerance,
-                                           const char *caller)
-{
-  if (!select (cloud.size (), indices, caller))
-    return (false);
+template <typename PointT>
+bool pcl::detail::LiscoCloudClusterer::cluster(const PointCloud<PointT>& cloud, const Indices* indices,
+                                               float tolerance, const char* caller) {
+  if (!select(cloud.size(), indices, caller)) return (false);
 
   // Lasers are the cloud's rows and columns its columns; what is not organized is the work of one laser.
   const bool organized =
-      !few_ && cloud.height > 1 && static_cast<std::size_t> (cloud.width) * cloud.height == cloud.size ();
+      !few_ && cloud.height > 1 && static_cast<std::size_t>(cloud.width) * cloud.height == cloud.size();
   const std::size_t lasers = organized ? cloud.height : 1;
-  const std::size_t columns = (few_ ? few_points_.size () : cloud.size ()) / lasers;
-  const PointT *const points = cloud.points.data ();
-  const auto cell_at = [&, few = few_] (std::size_t laser, std::size_t column) {
+  const std::size_t columns = (few_ ? few_points_.size() : cloud.size()) / lasers;
+  const PointT* const points = cloud.points.data();
+  const auto cell_at = [&, few = few_](std::size_t laser, std::size_t column) {
     const std::size_t cell = laser * columns + column;
-    if (head_of_cell_[cell] == kNotSelected)
-      return (lisco::kNoReturn);
-    const PointT &point = points[few ? static_cast<std::size_t> (few_points_[cell]) : cell];
-    return (lisco::Return{point.x, point.y, point.z, static_cast<std::uint32_t> (cell)});
+    if (head_of_cell_[cell] == kNotSelected) return (lisco::kNoReturn);
+    const PointT& point = points[few ? static_cast<std::size_t>(few_points_[cell]) : cell];
+    return (lisco::Return{point.x, point.y, point.z, static_cast<std::uint32_t>(cell)});
   };
 
-  const std::array<float, 3> sensor{cloud.sensor_origin_[0], cloud.sensor_origin_[1], cloud.sensor_origin_[2]};
-  lisco::Parameters parameters = lisco::surveyScan (columns, lasers, sensor, cell_at);
+  const std::array<float, 3> sensor{cloud.sensor_origin_[0], cloud.sensor_origin_[1],
+                                    cloud.sensor_origin_[2]};
+  lisco::Parameters parameters = lisco::surveyScan(columns, lasers, sensor, cell_at);
   parameters.tolerance = tolerance;
-  clusterer_.begin (parameters);
-  clusterer_.addColumns (columns, lasers, cell_at);
-  clusterer_.update ();
+  clusterer_.begin(parameters);
+  clusterer_.addColumns(columns, lasers, cell_at);
+  clusterer_.update();
   return (true);
 }
 
-template <typename PointT> std::size_t
-pcl::LiscoClusterExtraction<PointT>::appendClusters (std::vector<PointIndices> &clusters)
-{
-  if (!initCompute () || input_->empty () || indices_->empty ())
-  {
-    clusters.clear ();
+template <typename PointT>
+std::size_t pcl::LiscoClusterExtraction<PointT>::appendClusters(std::vector<PointIndices>& clusters) {
+  if (!initCompute() || input_->empty() || indices_->empty()) {
+    clusters.clear();
     return (0);
   }
-  const std::size_t first = clusters.size ();
-  const Indices *const indices = fake_indices_ ? nullptr : indices_.get ();
-  if (clusterer_.cluster (*input_, indices, static_cast<float> (cluster_tolerance_),
-                          "pcl::LiscoClusterExtraction::extract"))
-    clusterer_.collect (indices, input_->header, min_pts_per_cluster_, max_pts_per_cluster_, clusters);
+  const std::size_t first = clusters.size();
+  const Indices* const indices = fake_indices_ ? nullptr : indices_.get();
+  if (clusterer_.cluster(*input_, indices, static_cast<float>(cluster_tolerance_),
+                         "pcl::LiscoClusterExtraction::extract"))
+    clusterer_.collect(indices, input_->header, min_pts_per_cluster_, max_pts_per_cluster_, clusters);
   else
-    clusters.clear ();
-  deinitCompute ();
-  return (std::min (first, clusters.size ()));
+    clusters.clear();
+  deinitCompute();
+  return (std::min(first, clusters.size()));
 }
 
-template <typename PointT> void
-pcl::LiscoClusterExtraction<PointT>::extract (std::vector<PointIndices> &clusters)
-{
-  appendClusters (clusters);
-  // Not a stable sort: only PCL's own call on PCL's own sequence gives PCL's order among clusters of one size.
-  std::sort (clusters.rbegin (), clusters.rend (), comparePointClusters);
+template <typename PointT>
+void pcl::LiscoClusterExtraction<PointT>::extract(std::vector<PointIndices>& clusters) {
+  appendClusters(clusters);
+  // Not a stable sort: only PCL's own call on PCL's own sequence gives PCL's order among clusters of one
+  // size.
+  std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);
 }
 
-template <typename PointT> void
-pcl::LiscoClusterExtraction<PointT>::extract (std::vector<PointIndices> &clusters, Labels &labels)
-{
-  const std::size_t first = appendClusters (clusters);
+template <typename PointT>
+void pcl::LiscoClusterExtraction<PointT>::extract(std::vector<PointIndices>& clusters, Labels& labels) {
+  const std::size_t first = appendClusters(clusters);
 
-  // The same sort on the sizes alone moves them as it moves the clusters, which tells where each came from: the vector may
-  // hold clusters of other clouds, from calls before this one.
-  struct Origin
-  {
+  // The same sort on the sizes alone moves them as it moves the clusters, which tells where each came from:
+  // the vector may hold clusters of other clouds, from calls before this one.
+  struct Origin {
     std::size_t size, place;
   };
   std::vector<Origin> origins;
-  for (const auto &cluster : clusters)
-    origins.push_back ({cluster.indices.size (), origins.size ()});
-  std::sort (origins.rbegin (), origins.rend (), [] (const Origin &a, const Origin &b) { return (a.size < b.size); });
-  std::sort (clusters.rbegin (), clusters.rend (), comparePointClusters);
+  for (const auto& cluster : clusters) origins.push_back({cluster.indices.size(), origins.size()});
+  std::sort(origins.rbegin(), origins.rend(),
+            [](const Origin& a, const Origin& b) { return (a.size < b.size); });
+  std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);
 
-  labels = Labels ();
-  if (!input_)
-    return;
-  const bool organized = static_cast<std::size_t> (input_->width) * input_->height == input_->size ();
+  labels = Labels();
+  if (!input_) return;
+  const bool organized = static_cast<std::size_t>(input_->width) * input_->height == input_->size();
   labels.header = input_->header;
-  labels.points.resize (input_->size ());
-  labels.width = organized ? input_->width : static_cast<std::uint32_t> (input_->size ());
+  labels.points.resize(input_->size());
+  labels.width = organized ? input_->width : static_cast<std::uint32_t>(input_->size());
   labels.height = organized ? input_->height : 1;
   labels.is_dense = true;
-  for (auto &label : labels)
-    label.label = 0;
-  for (std::size_t number = 0; number < clusters.size (); ++number)
+  for (auto& label : labels) label.label = 0;
+  for (std::size_t number = 0; number < clusters.size(); ++number)
     if (origins[number].place >= first)
-      for (const auto &point : clusters[number].indices)
-        labels[static_cast<std::size_t> (point)].label = static_cast<std::uint32_t> (number + 1);
+      for (const auto& point : clusters[number].indices)
+        labels[static_cast<std::size_t>(point)].label = static_cast<std::uint32_t>(number + 1);
 }
 
-template <typename PointT> void
-pcl::extractLiscoClusters (const PointCloud<PointT> &cloud, float tolerance, std::vector<PointIndices> &clusters,
-                           unsigned int min_pts_per_cluster, unsigned int max_pts_per_cluster)
-{
+template <typename PointT>
+void pcl::extractLiscoClusters(const PointCloud<PointT>& cloud, float tolerance,
+                               std::vector<PointIndices>& clusters, unsigned int min_pts_per_cluster,
+                               unsigned int max_pts_per_cluster) {
   detail::LiscoCloudClusterer clusterer;
-  if (clusterer.cluster (cloud, nullptr, tolerance, "pcl::extractLiscoClusters"))
-    clusterer.collect (nullptr, cloud.header, min_pts_per_cluster, max_pts_per_cluster, clusters);
+  if (clusterer.cluster(cloud, nullptr, tolerance, "pcl::extractLiscoClusters"))
+    clusterer.collect(nullptr, cloud.header, min_pts_per_cluster, max_pts_per_cluster, clusters);
   else
-    clusters.clear ();
+    clusters.clear();
 }
 
-template <typename PointT> void
-pcl::extractLiscoClusters (const PointCloud<PointT> &cloud, const Indices &indices, float tolerance,
-                           std::vector<PointIndices> &clusters, unsigned int min_pts_per_cluster,
-                           unsigned int max_pts_per_cluster)
-{
+template <typename PointT>
+void pcl::extractLiscoClusters(const PointCloud<PointT>& cloud, const Indices& indices, float tolerance,
+                               std::vector<PointIndices>& clusters, unsigned int min_pts_per_cluster,
+                               unsigned int max_pts_per_cluster) {
   detail::LiscoCloudClusterer clusterer;
-  if (clusterer.cluster (cloud, &indices, tolerance, "pcl::extractLiscoClusters"))
-    clusterer.collect (&indices, cloud.header, min_pts_per_cluster, max_pts_per_cluster, clusters);
+  if (clusterer.cluster(cloud, &indices, tolerance, "pcl::extractLiscoClusters"))
+    clusterer.collect(&indices, cloud.header, min_pts_per_cluster, max_pts_per_cluster, clusters);
   else
-    clusters.clear ();
+    clusters.clear();
 }
 
 #define PCL_INSTANTIATE_LiscoClusterExtraction(T) template class PCL_EXPORTS pcl::LiscoClusterExtraction<T>;
-#define PCL_INSTANTIATE_extractLiscoClusters(T)                                                                  \
-  template void PCL_EXPORTS pcl::extractLiscoClusters<T> (const pcl::PointCloud<T> &, float,                     \
-                                                          std::vector<pcl::PointIndices> &, unsigned int,        \
-                                                          unsigned int);
-#define PCL_INSTANTIATE_extractLiscoClusters_indices(T)                                                          \
-  template void PCL_EXPORTS pcl::extractLiscoClusters<T> (const pcl::PointCloud<T> &, const pcl::Indices &, float, \
-                                                          std::vector<pcl::PointIndices> &, unsigned int,        \
-                                                          unsigned int);
+#define PCL_INSTANTIATE_extractLiscoClusters(T)           \
+  template void PCL_EXPORTS pcl::extractLiscoClusters<T>( \
+      const pcl::PointCloud<T>&, float, std::vector<pcl::PointIndices>&, unsigned int, unsigned int);
+#define PCL_INSTANTIATE_extractLiscoClusters_indices(T)                                                  \
+  template void PCL_EXPORTS pcl::extractLiscoClusters<T>(const pcl::PointCloud<T>&, const pcl::Indices&, \
+                                                         float, std::vector<pcl::PointIndices>&,         \
+                                                         unsigned int, unsigned int);
