@@ -47,11 +47,12 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// The time of one run. What the rival before left for the allocator to tidy up (a kd-tree's worth of small
-/// free blocks, merged at the next large allocation) is tidied up before the clock starts.
+/// The time of a rival's turn: it runs twice, and the second run counts. The first brings its memory back,
+/// which the other has displaced from the caches (and, on virtual machines, its pages from the host's
+/// attention), and makes the allocator tidy up what the other has left behind.
 template <typename Run>
 double milliseconds(Run&& run) {
-  std::vector<char>(std::size_t{1} << 16).swap(*std::make_unique<std::vector<char>>());
+  run();
   const auto start = std::chrono::steady_clock::now();
   run();
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

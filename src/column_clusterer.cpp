@@ -19,7 +19,7 @@ void ColumnClusterer::begin(const Parameters& parameters) {
   tolerance_ = Tolerance(parameters.tolerance);
   if (parameters.mask == Parameters::Mask::kView) {
     if (!std::holds_alternative<ViewMask>(mask_)) mask_.emplace<ViewMask>();
-    std::get<ViewMask>(mask_).prepare(tolerance_, parameters.view);
+    std::get<ViewMask>(mask_).prepare(tolerance_, parameters.view, parameters.expected_returns);
   } else {
     if (!std::holds_alternative<GridMask>(mask_)) mask_.emplace<GridMask>();
     std::get<GridMask>(mask_).prepare(tolerance_, parameters.expected_returns);

@@ -13,12 +13,13 @@ constexpr double kLasersPerTile = 1.0;
 constexpr double kFirstRange = 2.0;  // near end of layer 1 in units of the tolerance
 constexpr double kMostSectors = 1024.0;
 constexpr double kMostRows = 1024.0;
+constexpr std::uint32_t kLeastSlots = 1024;
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::size_t kBatch = 16;
 
 }  // namespace
 
-void ViewMask::prepare(const Tolerance& tolerance, const ViewHints& hints) {
+void ViewMask::prepare(const Tolerance& tolerance, const ViewHints& hints, std::size_t expected_returns) {
   origin_ = hints.origin;
   reach_ = tolerance.reach();
   layers_.clear();
@@ -48,8 +49,9 @@ void ViewMask::prepare(const Tolerance& tolerance, const ViewHints& hints) {
       tile_count += static_cast<std::size_t>(in_row);
     }
   }
-  std::uint32_t slots = 1;
-  while (slots < tile_count) slots *= 2;
+  // Most tiles are never seen: a table with a place for every fourth return is as fast as one for every tile.
+  std::uint32_t slots = kLeastSlots;
+  while (slots < tile_count && slots < expected_returns / 4) slots *= 2;
   tile_mask_ = slots - 1;
   last_layer_ = static_cast<int>(layers_.size()) - 1;
 }

@@ -21,6 +21,9 @@
 namespace lisco_test {
 namespace {
 
+// So many that every tile has a place of its own: tiles that share one would hide mistakes.
+constexpr std::size_t kManyReturns = std::size_t{1} << 24;
+
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kPairs = 3000;
 
@@ -211,7 +214,7 @@ TEST_P(MaskSoundness, ViewMaskShowsTheTileOfEveryNeighbour) {
     Random random(hints + 1);
     lisco::ViewHints view = kHints[hints];
     view.origin = GetParam().origin;
-    mask.prepare(lisco::Tolerance(static_cast<float>(GetParam().tolerance)), view);
+    mask.prepare(lisco::Tolerance(static_cast<float>(GetParam().tolerance)), view, kManyReturns);
     EXPECT_GT(expectSound(mask, GetParam(), random), kPairs / 20);
   }
 }
@@ -224,7 +227,7 @@ TEST_P(MaskSoundness, ViewMaskFromAWrongPlace) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     view.origin[axis] =
         GetParam().origin[axis] + static_cast<float>(random.between(-3.0, 3.0) * reachOf(GetParam()));
-  mask.prepare(lisco::Tolerance(static_cast<float>(GetParam().tolerance)), view);
+  mask.prepare(lisco::Tolerance(static_cast<float>(GetParam().tolerance)), view, kManyReturns);
   expectSound(mask, GetParam(), random);
 }
 
@@ -246,7 +249,7 @@ TEST(Mask, ViewMaskOfAnyBox) {
   constexpr float kTolerance = 0.5F;
   const Geometry anywhere{"any box", anyAzimuth, anyElevation, 1e-3, 1e4, 0.5};
   lisco::ViewMask mask;
-  mask.prepare(lisco::Tolerance(kTolerance), {{}, 0.01F, 0.01F});
+  mask.prepare(lisco::Tolerance(kTolerance), {{}, 0.01F, 0.01F}, kManyReturns);
   Random random(5);
   for (int i = 0; i < 4000; ++i) {
     const Vector centre = firstOfPair(random, anywhere);
@@ -286,7 +289,7 @@ TEST(Mask, ViewMaskOfAnyBox) {
 TEST(Mask, ViewMaskOfAWallOfNearlyHalfATurn) {
   constexpr float kTolerance = 0.5F;
   lisco::ViewMask mask;
-  mask.prepare(lisco::Tolerance(kTolerance), {{}, 0.1F, 0.1F});
+  mask.prepare(lisco::Tolerance(kTolerance), {{}, 0.1F, 0.1F}, kManyReturns);
   for (const float side : {-1.0F, 1.0F})
     for (const bool along_y : {false, true}) {
       const float away = 2.0F * side;
@@ -300,7 +303,7 @@ TEST(Mask, ViewMaskOfAWallOfNearlyHalfATurn) {
 TEST(Mask, WithoutNeighboursThereIsStillATile) {
   for (const float tolerance : {0.0F, 1e-30F, std::numeric_limits<float>::quiet_NaN()}) {
     lisco::ViewMask view;
-    view.prepare(lisco::Tolerance(tolerance), {});
+    view.prepare(lisco::Tolerance(tolerance), {}, kManyReturns);
     lisco::GridMask grid;
     grid.prepare(lisco::Tolerance(tolerance), 100);
     for (const Point& p : {Point{1, 2, 3}, Point{3e38F, -3e38F, 3e38F}, Point{0, 0, -1e-45F}}) {
