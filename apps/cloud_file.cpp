@@ -47,8 +47,8 @@ std::string readWhole(const fs::path& file) {
 }
 
 /// Reads one coordinate field, float or double.
-void copyField(const pcl::PCLPointCloud2& blob, const fs::path& file, const char* name,
-               float pcl::PointXYZ::*member, Cloud& cloud) {
+void copyField(const pcl::PCLPointCloud2& blob, const fs::path& file, const char* name, float pcl::PointXYZ::*member,
+               Cloud& cloud) {
   const auto field = std::find_if(blob.fields.begin(), blob.fields.end(),
                                   [name](const pcl::PCLPointField& f) { return f.name == name; });
   if (field == blob.fields.end()) fail(file, std::string("has no field '") + name + "'");
@@ -128,8 +128,7 @@ Cloud::Ptr readKittiBin(const fs::path& file) {
   const std::string content = readWhole(file);
   constexpr std::size_t kBytesPerPoint = 4 * sizeof(float);
   if (content.size() % kBytesPerPoint != 0)
-    fail(file,
-         "is no KITTI scan: its size, " + std::to_string(content.size()) + " bytes, is no multiple of 16");
+    fail(file, "is no KITTI scan: its size, " + std::to_string(content.size()) + " bytes, is no multiple of 16");
   auto cloud = std::make_shared<Cloud>();
   cloud->resize(content.size() / kBytesPerPoint);
   for (std::size_t i = 0; i < cloud->size(); ++i)
@@ -153,10 +152,9 @@ bool parseThree(std::string_view line, std::array<double, 3>& values) {
   return true;
 }
 
-/// The format of the paper's authors: a line `lasers,steps,0`, then `distance,theta,alpha` per cell, step by
-/// step, laser by laser within a step; distance in metres, 0 for no return; theta, the elevation, and alpha,
-/// the azimuth clockwise from +y, in radians. x = d cos(theta) sin(alpha), y = d cos(theta) cos(alpha), z = d
-/// sin(theta).
+/// The format of the paper's authors: a line `lasers,steps,0`, then `distance,theta,alpha` per cell, step by step,
+/// laser by laser within a step. Distance in metres, 0 for no return; theta, the elevation, and alpha, the azimuth
+/// clockwise from +y, in radians: x = d cos(theta) sin(alpha), y = d cos(theta) cos(alpha), z = d sin(theta).
 Cloud::Ptr readAuthorsCsv(const fs::path& file) {
   const std::string content = readWhole(file);
   std::string_view rest = content;
@@ -193,11 +191,11 @@ Cloud::Ptr readAuthorsCsv(const fs::path& file) {
       if (!parseThree(next_line(), values))
         fail(file, "line " + std::to_string(line_number) + " is not 'distance,theta,alpha'");
       const double horizontal = values[0] * std::cos(values[1]);
-      (*cloud)[laser * steps + step] =
-          values[0] > 0 ? pcl::PointXYZ(static_cast<float>(horizontal * std::sin(values[2])),
-                                        static_cast<float>(horizontal * std::cos(values[2])),
-                                        static_cast<float>(values[0] * std::sin(values[1])))
-                        : pcl::PointXYZ(kNan, kNan, kNan);
+      (*cloud)[laser * steps + step] = values[0] > 0
+                                           ? pcl::PointXYZ(static_cast<float>(horizontal * std::sin(values[2])),
+                                                           static_cast<float>(horizontal * std::cos(values[2])),
+                                                           static_cast<float>(values[0] * std::sin(values[1])))
+                                           : pcl::PointXYZ(kNan, kNan, kNan);
     }
   if (rest.find_first_not_of(" \r\n") != std::string_view::npos)
     fail(file, "goes on after the " + std::to_string(lasers * steps) + " cells its first line promises");

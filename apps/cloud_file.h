@@ -13,10 +13,10 @@ namespace lisco_apps {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
-/// Reads a scan: any format PCL reads with x, y, z fields of float or double (PCD, PLY, OBJ, IFS), KITTI's
-/// `.bin` (float32 x y z intensity, unorganized), or the paper authors' `.csv` (see readAuthorsCsv).
-/// Organized as the file is. \throws std::runtime_error with one line that names the file and what is wrong
-/// with it
+/// Reads a scan: any format PCL reads with x, y, z fields of float or double (PCD, PLY, OBJ, IFS), KITTI's `.bin`
+/// (float32 x y z intensity, unorganized), or the paper authors' `.csv` (see readAuthorsCsv). Organized as the
+/// file is.
+/// \throws std::runtime_error with one line that names the file and what is wrong with it
 Cloud::Ptr readCloudFile(const std::filesystem::path& file);
 
 /// Files of the folder, sorted by name, that readCloudFile knows by their ending. Not recursive.

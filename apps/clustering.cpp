@@ -29,9 +29,9 @@ ClusterShape shapeOf(const Cloud& cloud, const pcl::PointIndices& cluster) {
       shape.lo[axis] = std::min(shape.lo[axis], point.data[axis]);
       shape.hi[axis] = std::max(shape.hi[axis], point.data[axis]);
     }
-    shape.nearest_range = std::min(
-        shape.nearest_range,
-        std::hypot(static_cast<double>(point.x), static_cast<double>(point.y), static_cast<double>(point.z)));
+    shape.nearest_range =
+        std::min(shape.nearest_range,
+                 std::hypot(static_cast<double>(point.x), static_cast<double>(point.y), static_cast<double>(point.z)));
   }
   return shape;
 }

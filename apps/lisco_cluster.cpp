@@ -51,8 +51,7 @@ unsigned countOf(const std::string& text, const char* option) {
   } catch (const std::exception&) {
   }
   if (end != text.size() || value < 1 || value > std::numeric_limits<int>::max())
-    throw std::runtime_error(std::string(option) + " must be a whole number from 1 to 2147483647, not '" +
-                             text + "'");
+    throw std::runtime_error(std::string(option) + " must be a whole number from 1 to 2147483647, not '" + text + "'");
   return static_cast<unsigned>(value);
 }
 
@@ -113,8 +112,8 @@ bool parse(int argc, char** argv, Options& options) {
 }
 
 /// What was found in one scan, for a person.
-void printSummary(const ClusteredScan& scan, const Options& options, double read_ms, double cluster_ms,
-                  double write_ms, const fs::path& folder) {
+void printSummary(const ClusteredScan& scan, const Options& options, double read_ms, double cluster_ms, double write_ms,
+                  const fs::path& folder) {
   const Cloud& cloud = *scan.cloud;
   const std::size_t returns = returnsAbove(cloud, -std::numeric_limits<float>::infinity()).size();
   std::size_t in_clusters = 0;
@@ -126,8 +125,7 @@ void printSummary(const ClusteredScan& scan, const Options& options, double read
   else
     std::printf("  scan      unorganized, %zu points, %zu returns", cloud.size(), returns);
   if (std::isfinite(options.ground_z))
-    std::printf(", %zu above the ground (z >= %g m)", scan.clustered.size(),
-                static_cast<double>(options.ground_z));
+    std::printf(", %zu above the ground (z >= %g m)", scan.clustered.size(), static_cast<double>(options.ground_z));
   std::printf("\n  clusters  %zu of at least %u returns within %g m of each other; %zu returns are noise\n",
               scan.clusters.size(), options.min_size, options.tolerance, scan.clustered.size() - in_clusters);
   if (!scan.clusters.empty()) {

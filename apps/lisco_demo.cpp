@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// The main job on a scan that is built in: a simulated street, clustered by PCL and by Lisco side by side,
-// and pictures.
+// The main job on a scan that is built in: a simulated street, clustered by PCL and by Lisco side by side, and
+// pictures.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -36,8 +36,7 @@ double medianMilliseconds(Extraction& extraction, std::vector<pcl::PointIndices>
     const auto start = std::chrono::steady_clock::now();
     clusters.clear();
     extraction.extract(clusters);
-    times.push_back(
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
   }
   std::sort(times.begin(), times.end());
   return times[times.size() / 2];
@@ -87,8 +86,7 @@ int run(const std::string& folder) {
   std::printf("  Lisco  %5zu clusters  %8.2f ms  %.0f times as fast\n", scan.clusters.size(), lisco_ms,
               pcl_ms / lisco_ms);
   std::printf("  the clusters are %s\n", identical ? "identical" : "NOT IDENTICAL");
-  std::printf("  written to %s: scan.pcd labels.pcd clusters.csv range_image.png top_view.png\n",
-              folder.c_str());
+  std::printf("  written to %s: scan.pcd labels.pcd clusters.csv range_image.png top_view.png\n", folder.c_str());
   return identical ? 0 : 1;
 }
 

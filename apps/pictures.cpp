@@ -60,14 +60,12 @@ std::vector<Color> colorsOf(const ClusteredScan& scan) {
     for (const auto& [other, color] : placed) {
       double gap = 0;
       for (int axis = 0; axis < 3; ++axis) {
-        const float apart =
-            std::max({other.lo[axis] - shape.hi[axis], shape.lo[axis] - other.hi[axis], 0.0F});
+        const float apart = std::max({other.lo[axis] - shape.hi[axis], shape.lo[axis] - other.hi[axis], 0.0F});
         gap += static_cast<double>(apart) * static_cast<double>(apart);
       }
       nearest[color] = std::min(nearest[color], gap);
     }
-    const auto best =
-        static_cast<std::size_t>(std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
+    const auto best = static_cast<std::size_t>(std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
     placed.emplace_back(shape, best);
     colors.push_back(kPalette[best]);
   }
@@ -94,8 +92,7 @@ std::vector<std::uint32_t> pointColors(const ClusteredScan& scan, bool by_range)
   for (const auto& index : scan.clustered) color(static_cast<std::size_t>(index), kNoise);
   const std::vector<Color> of_cluster = colorsOf(scan);
   for (std::size_t number = 0; number < scan.clusters.size(); ++number)
-    for (const auto& index : scan.clusters[number].indices)
-      color(static_cast<std::size_t>(index), of_cluster[number]);
+    for (const auto& index : scan.clusters[number].indices) color(static_cast<std::size_t>(index), of_cluster[number]);
   return colors;
 }
 
@@ -248,8 +245,7 @@ std::vector<int> staggerOf(const Cloud& cloud) {
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column + 1 < columns; ++column)
       if (valid(cloud.at(column, row)) && valid(cloud.at(column + 1, row)))
-        steps.push_back(
-            std::remainder(azimuth(cloud.at(column + 1, row)) - azimuth(cloud.at(column, row)), 2 * kPi));
+        steps.push_back(std::remainder(azimuth(cloud.at(column + 1, row)) - azimuth(cloud.at(column, row)), 2 * kPi));
   if (steps.empty()) return shifts;
   std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
   const double step = steps[steps.size() / 2];
@@ -296,8 +292,7 @@ Cells cellsOf(const ClusteredScan& scan) {
   double lowest = kPi / 2;
   double highest = -kPi / 2;
   const auto elevation = [](const pcl::PointXYZ& p) {
-    return std::atan2(static_cast<double>(p.z),
-                      std::hypot(static_cast<double>(p.x), static_cast<double>(p.y)));
+    return std::atan2(static_cast<double>(p.z), std::hypot(static_cast<double>(p.x), static_cast<double>(p.y)));
   };
   const auto valid = [](const pcl::PointXYZ& p) { return lisco::isReturn(p.x, p.y, p.z); };
   for (const auto& point : cloud)
@@ -346,8 +341,7 @@ void drawRangeImage(const ClusteredScan& scan, const std::filesystem::path& png)
 
   canvas.setColor(kLine);
   cairo_set_line_width(canvas.context(), 1);
-  cairo_rectangle(canvas.context(), kMargin - 0.5, kTop - 0.5, cells.columns * scale_x + 1,
-                  cells.rows * scale_y + 1);
+  cairo_rectangle(canvas.context(), kMargin - 0.5, kTop - 0.5, cells.columns * scale_x + 1, cells.rows * scale_y + 1);
   cairo_stroke(canvas.context());
   canvas.setColor(kText);
   canvas.text(kMargin, 28, 17, titleOf(scan));

@@ -11,8 +11,8 @@
 
 namespace lisco_apps {
 
-/// A line on the terminal (stderr) that shows how many of several things are done. Silent in a pipe, and for
-/// one thing.
+/// A line on the terminal (stderr) that shows how many of several things are done. Silent in a pipe, and for one
+/// thing.
 class ProgressBar {
  public:
   explicit ProgressBar(std::size_t total) : total_(total), shown_(total > 1 && isatty(STDERR_FILENO) != 0) {}

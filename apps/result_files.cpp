@@ -44,8 +44,7 @@ class TemporaryFolder {
 class MadeFolder {
  public:
   explicit MadeFolder(const fs::path& path) {
-    for (fs::path p = fs::absolute(path).lexically_normal(); !p.empty() && !fs::exists(p);
-         p = p.parent_path())
+    for (fs::path p = fs::absolute(path).lexically_normal(); !p.empty() && !fs::exists(p); p = p.parent_path())
       made_.push_back(p);
     fs::create_directories(path);
   }
@@ -79,9 +78,9 @@ void writeTable(const ClusteredScan& scan, const fs::path& file) {
     const ClusterShape s = shapeOf(*scan.cloud, scan.clusters[number]);
     char line[400];
     const auto wide = [](float value) { return static_cast<double>(value); };
-    std::snprintf(line, sizeof line, "%zu,%zu,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f\n",
-                  number + 1, s.size, s.centroid[0], s.centroid[1], s.centroid[2], wide(s.lo[0]),
-                  wide(s.lo[1]), wide(s.lo[2]), wide(s.hi[0]), wide(s.hi[1]), wide(s.hi[2]), s.nearest_range);
+    std::snprintf(line, sizeof line, "%zu,%zu,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f\n", number + 1, s.size,
+                  s.centroid[0], s.centroid[1], s.centroid[2], wide(s.lo[0]), wide(s.lo[1]), wide(s.lo[2]),
+                  wide(s.hi[0]), wide(s.hi[1]), wide(s.hi[2]), s.nearest_range);
     table << line;
   }
   table.close();
@@ -122,8 +121,7 @@ void writeResults(const ClusteredScan& scan, const fs::path& folder, bool cloud_
     drawTopView(scan, aside.path() / "top_view.png");
     if (cloud_per_cluster) writeClusterClouds(scan, aside.path() / "clusters");
 
-    std::ofstream(folder / kMarker)
-        << "The results in this folder were written by lisco and may be replaced by it.\n";
+    std::ofstream(folder / kMarker) << "The results in this folder were written by lisco and may be replaced by it.\n";
     fs::remove_all(folder / "clusters");
     for (const char* name : kResults)
       if (fs::exists(aside.path() / name)) fs::rename(aside.path() / name, folder / name);

@@ -76,9 +76,7 @@ struct Ball {
 class Street {
  public:
   explicit Street(std::mt19937& random) {
-    const auto between = [&random](double lo, double hi) {
-      return std::uniform_real_distribution<>(lo, hi)(random);
-    };
+    const auto between = [&random](double lo, double hi) { return std::uniform_real_distribution<>(lo, hi)(random); };
     for (const double side : {-1.0, 1.0}) {
       // Houses with gaps between them, then parked cars, trees and lamps along the kerb.
       for (double x = -70; x < 70;) {
@@ -87,10 +85,8 @@ class Street {
         addBlock(x + front / 2, side * (set_back + 4), front, 8, between(5, 12), 0);
         x += front + between(1.5, 6);
       }
-      for (double x = -48; x < 48; x += between(6.2, 11))
-        addCar(x, side * between(4.4, 4.8), between(-0.04, 0.04));
-      for (double x = -55; x < 55; x += between(9, 15))
-        addTree(x, side * between(7.0, 7.6), between(1.0, 1.8));
+      for (double x = -48; x < 48; x += between(6.2, 11)) addCar(x, side * between(4.4, 4.8), between(-0.04, 0.04));
+      for (double x = -55; x < 55; x += between(9, 15)) addTree(x, side * between(7.0, 7.6), between(1.0, 1.8));
       for (double x = -60; x < 60; x += 24) posts_.push_back({x + 3, side * 6.3, 0.08, kGround, kGround + 6});
       for (int i = 0; i < 7; ++i) addPerson(between(-30, 30), side * between(8.3, 10.0));
     }
@@ -110,8 +106,7 @@ class Street {
  private:
   static constexpr double kGround = static_cast<double>(kStreetZ);
 
-  void addBlock(double x, double y, double length, double width, double height, double heading,
-                double lift = 0) {
+  void addBlock(double x, double y, double length, double width, double height, double heading, double lift = 0) {
     blocks_.push_back({x, y, kGround + lift + height / 2, length, width, height, heading});
   }
   void addCar(double x, double y, double heading) {
@@ -120,8 +115,7 @@ class Street {
     for (const double along : {-1.35, 1.35})
       for (const double across : {-0.75, 0.75})
         posts_.push_back({x + along * std::cos(heading) - across * std::sin(heading),
-                          y + along * std::sin(heading) + across * std::cos(heading), 0.22, kGround,
-                          kGround + 0.5});
+                          y + along * std::sin(heading) + across * std::cos(heading), 0.22, kGround, kGround + 0.5});
   }
   void addTree(double x, double y, double crown) {
     posts_.push_back({x, y, 0.16, kGround, kGround + 3});

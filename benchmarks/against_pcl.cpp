@@ -42,8 +42,7 @@ pcl::PointCloud<Point>::Ptr withoutGround(const Cloud& cloud, float ground_z) {
 }
 
 double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
   return values[values.size() / 2];
 }
 
@@ -68,19 +67,18 @@ Turn timed(Run&& run) {
 
 bool same(const Clusters& a, const Clusters& b) {
   return a.size() == b.size() &&
-         std::equal(a.begin(), a.end(), b.begin(),
-                    [](const pcl::PointIndices& x, const pcl::PointIndices& y) {
-                      return x.indices == y.indices && x.header.frame_id == y.header.frame_id &&
-                             x.header.seq == y.header.seq && x.header.stamp == y.header.stamp;
-                    });
+         std::equal(a.begin(), a.end(), b.begin(), [](const pcl::PointIndices& x, const pcl::PointIndices& y) {
+           return x.indices == y.indices && x.header.frame_id == y.header.frame_id && x.header.seq == y.header.seq &&
+                  x.header.stamp == y.header.stamp;
+         });
 }
 
 int run(const std::vector<std::string>& inputs, const std::map<std::string, float>& ground,
         const std::vector<double>& tolerances, int runs, bool unorganized) {
-  std::printf("lisco %s, compiler %s, %u threads on this machine, %d runs each in turn, medians\n",
-              LISCO_VERSION, __VERSION__, std::thread::hardware_concurrency(), runs);
-  std::printf("%-22s %9s %5s %9s %10s %10s %8s  %s\n", "scan", "returns", "eps", "clusters", "PCL ms",
-              "Lisco ms", "ratio", "identical");
+  std::printf("lisco %s, compiler %s, %u threads on this machine, %d runs each in turn, medians\n", LISCO_VERSION,
+              __VERSION__, std::thread::hardware_concurrency(), runs);
+  std::printf("%-22s %9s %5s %9s %10s %10s %8s  %s\n", "scan", "returns", "eps", "clusters", "PCL ms", "Lisco ms",
+              "ratio", "identical");
   double log_sum = 0;
   double first_log_sum = 0;
   double worst = std::numeric_limits<double>::infinity();
@@ -144,8 +142,8 @@ int run(const std::vector<std::string>& inputs, const std::map<std::string, floa
       }
       const double pcl_ms = median(pcl_second);
       const double lisco_ms = median(lisco_second);
-      std::printf("%-22s %9zu %5.2f %9zu %10.2f %10.3f %8.1f  yes\n", name.c_str(), indices->size(),
-                  tolerance, expected.size(), pcl_ms, lisco_ms, pcl_ms / lisco_ms);
+      std::printf("%-22s %9zu %5.2f %9zu %10.2f %10.3f %8.1f  yes\n", name.c_str(), indices->size(), tolerance,
+                  expected.size(), pcl_ms, lisco_ms, pcl_ms / lisco_ms);
       std::fflush(stdout);
       log_sum += std::log(pcl_ms / lisco_ms);
       first_log_sum += std::log(median(pcl_first) / median(lisco_first));
@@ -154,9 +152,8 @@ int run(const std::vector<std::string>& inputs, const std::map<std::string, floa
     }
   }
   if (cases > 0)
-    std::printf(
-        "geometric mean of the ratios %.1f, lowest %.1f, %d cases; of first runs, with cold memory, %.1f\n",
-        std::exp(log_sum / cases), worst, cases, std::exp(first_log_sum / cases));
+    std::printf("geometric mean of the ratios %.1f, lowest %.1f, %d cases; of first runs, with cold memory, %.1f\n",
+                std::exp(log_sum / cases), worst, cases, std::exp(first_log_sum / cases));
   return all_same ? 0 : 1;
 }
 
@@ -166,13 +163,11 @@ int main(int argc, char** argv) {
   namespace po = boost::program_options;
   omp_set_num_threads(1);  // PCL's kd-tree would wake threads that spin on while its rival runs
   po::options_description options("against_pcl [options] SCAN-OR-FOLDER...");
-  options.add_options()("help", "print this")("input", po::value<std::vector<std::string>>(),
-                                              "scans or folders")(
+  options.add_options()("help", "print this")("input", po::value<std::vector<std::string>>(), "scans or folders")(
       "ground", po::value<std::vector<std::string>>()->default_value({}, ""),
       "NAME=Z: remove what lies below z of the scan with that file name (without its ending)")(
       "tolerance",
-      po::value<std::vector<double>>()->multitoken()->default_value({0.1, 0.3, 0.4, 0.7, 1.0},
-                                                                    "0.1 0.3 0.4 0.7 1.0"),
+      po::value<std::vector<double>>()->multitoken()->default_value({0.1, 0.3, 0.4, 0.7, 1.0}, "0.1 0.3 0.4 0.7 1.0"),
       "metres")("runs", po::value<int>()->default_value(5), "timed runs of each")(
       "unorganized", po::bool_switch(), "cluster the returns as an unorganized cloud");
   po::positional_options_description positional;
@@ -188,9 +183,8 @@ int main(int argc, char** argv) {
     std::map<std::string, float> ground;
     for (const std::string& entry : given["ground"].as<std::vector<std::string>>())
       ground[entry.substr(0, entry.find('='))] = std::stof(entry.substr(entry.find('=') + 1));
-    return run(given["input"].as<std::vector<std::string>>(), ground,
-               given["tolerance"].as<std::vector<double>>(), std::max(1, given["runs"].as<int>()),
-               given["unorganized"].as<bool>());
+    return run(given["input"].as<std::vector<std::string>>(), ground, given["tolerance"].as<std::vector<double>>(),
+               std::max(1, given["runs"].as<int>()), given["unorganized"].as<bool>());
   } catch (const std::exception& error) {
     std::cerr << "against_pcl: " << error.what() << '\n';
     return 2;

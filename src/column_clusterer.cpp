@@ -59,8 +59,7 @@ void ColumnClusterer::update() {
   young_columns_ = 0;
 }
 
-/// Reads a block of columns row by row into runs and patches, then closes the patches that are no longer
-/// young.
+/// Reads a block of columns row by row into runs and patches, then closes the patches that are no longer young.
 void ColumnClusterer::clusterBlock() {
   std::visit(
       [&](const auto& mask) {
@@ -96,13 +95,12 @@ void ColumnClusterer::readRow(const Mask& mask, const StagedRow& row) {
     const std::size_t begin = i;
     Box box = Box::around(row.x[i], row.y[i], row.z[i]);
     for (++i; i < row.count && tiles[i] == tiles[begin]; ++i) {
-      const float d2 =
-          squaredDistance(row.x[i] - row.x[i - 1], row.y[i] - row.y[i - 1], row.z[i] - row.z[i - 1]);
+      const float d2 = squaredDistance(row.x[i] - row.x[i - 1], row.y[i] - row.y[i - 1], row.z[i] - row.z[i - 1]);
       if (!(d2 < squared_tolerance)) break;
       box.add(Box::around(row.x[i], row.y[i], row.z[i]));
     }
-    runs_.push_back({box, first_return + static_cast<std::uint32_t>(begin),
-                     static_cast<std::uint32_t>(i - begin), kNone, kNone});
+    runs_.push_back(
+        {box, first_return + static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(i - begin), kNone, kNone});
     placeRun(static_cast<std::uint32_t>(runs_.size() - 1), tiles[begin]);
   }
 }
@@ -116,8 +114,7 @@ void ColumnClusterer::placeRun(std::uint32_t run_number, std::uint32_t tile) {
   std::uint32_t candidate = newest;
   for (int tried = 0; tried < kMostTried && candidate != kNone && candidate >= first_open_patch_; ++tried) {
     Patch& patch = patches_[candidate];
-    if (Box::squaredSpan(patch.box, run.box) < tolerance_.squared() ||
-        neighbours(run, runs_[patch.last_run])) {
+    if (Box::squaredSpan(patch.box, run.box) < tolerance_.squared() || neighbours(run, runs_[patch.last_run])) {
       patch.box.add(run.box);
       runs_[patch.last_run].next_in_patch = run_number;
       patch.last_run = run_number;

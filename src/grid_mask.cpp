@@ -22,8 +22,7 @@ void GridMask::prepare(const Tolerance& tolerance, std::size_t expected_returns)
   slot_mask_ = static_cast<std::uint32_t>(slots - 1);
 }
 
-void GridMask::tilesOf(const float* x, const float* y, const float* z, std::size_t count,
-                       std::uint32_t* tiles) const {
+void GridMask::tilesOf(const float* x, const float* y, const float* z, std::size_t count, std::uint32_t* tiles) const {
   for (std::size_t i = 0; i < count; ++i) tiles[i] = slotOf(cellOf(x[i]), cellOf(y[i]), cellOf(z[i]));
 }
 

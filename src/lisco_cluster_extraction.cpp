@@ -12,8 +12,7 @@ bool pcl::detail::LiscoCloudClusterer::fitsIndexType(std::size_t points) {
   return (points <= static_cast<std::size_t>(std::numeric_limits<index_t>::max()) && points < kSelected);
 }
 
-bool pcl::detail::LiscoCloudClusterer::select(std::size_t points, const Indices* indices,
-                                              const char* caller) {
+bool pcl::detail::LiscoCloudClusterer::select(std::size_t points, const Indices* indices, const char* caller) {
   if (!fitsIndexType(points)) {
     PCL_ERROR("[%s] The cloud has %zu points, more than pcl::index_t can number.\n", caller, points);
     return (false);
@@ -21,8 +20,8 @@ bool pcl::detail::LiscoCloudClusterer::select(std::size_t points, const Indices*
   if (indices)
     for (const auto& index : *indices)
       if (index < 0 || static_cast<std::size_t>(index) >= points) {
-        PCL_ERROR("[%s] Index %lld is not within the cloud of %zu points.\n", caller,
-                  static_cast<long long>(index), points);
+        PCL_ERROR("[%s] Index %lld is not within the cloud of %zu points.\n", caller, static_cast<long long>(index),
+                  points);
         return (false);
       }
 
@@ -54,9 +53,8 @@ std::uint32_t pcl::detail::LiscoCloudClusterer::headOf(index_t point) const {
               : kNotSelected);
 }
 
-void pcl::detail::LiscoCloudClusterer::collect(const Indices* indices, const PCLHeader& header,
-                                               uindex_t min_size, uindex_t max_size,
-                                               std::vector<PointIndices>& clusters) {
+void pcl::detail::LiscoCloudClusterer::collect(const Indices* indices, const PCLHeader& header, uindex_t min_size,
+                                               uindex_t max_size, std::vector<PointIndices>& clusters) {
   clusterer_.forEachRun([this](const std::uint32_t* cells, std::size_t count, std::uint32_t head) {
     for (std::size_t i = 0; i < count; ++i) head_of_cell_[cells[i]] = head;
   });

@@ -56,8 +56,7 @@ Parameters ScanSurvey::judge(const std::array<float, 3>& sensor, bool organized)
   Parameters parameters;
   // Cells of an unorganized cloud are no columns: there, patches stay open to the end.
   if (!organized) parameters.open_columns = std::numeric_limits<std::size_t>::max();
-  parameters.mask =
-      Parameters::Mask::kGrid;  // needs no layout, so it also serves what is too small for a survey
+  parameters.mask = Parameters::Mask::kGrid;  // needs no layout, so it also serves what is too small for a survey
   if (along_row_.size() + along_column_.size() < kFewest) return parameters;
 
   constexpr float kInfinity = std::numeric_limits<float>::infinity();

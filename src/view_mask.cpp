@@ -28,11 +28,10 @@ void ViewMask::prepare(const Tolerance& tolerance, const ViewHints& hints, std::
 
   const double first_range = kFirstRange * std::max(reach_, 1e-22);
   per_first_range_ = 1.0 / first_range;
-  const double most_sectors =
-      std::clamp(2.0 * kPi / (kColumnsPerTile * std::max(1e-6, static_cast<double>(hints.azimuth_step))), 4.0,
-                 kMostSectors);
-  const double most_rows = std::clamp(
-      kPi / (kLasersPerTile * std::max(1e-6, static_cast<double>(hints.elevation_step))), 2.0, kMostRows);
+  const double most_sectors = std::clamp(
+      2.0 * kPi / (kColumnsPerTile * std::max(1e-6, static_cast<double>(hints.azimuth_step))), 4.0, kMostSectors);
+  const double most_rows =
+      std::clamp(kPi / (kLasersPerTile * std::max(1e-6, static_cast<double>(hints.elevation_step))), 2.0, kMostRows);
 
   float near_end = 0.0F;
   double width = kTileWidth / kFirstRange;                                       // radians
@@ -56,8 +55,7 @@ void ViewMask::prepare(const Tolerance& tolerance, const ViewHints& hints, std::
   last_layer_ = static_cast<int>(layers_.size()) - 1;
 }
 
-void ViewMask::tilesOf(const float* x, const float* y, const float* z, std::size_t count,
-                       std::uint32_t* tiles) const {
+void ViewMask::tilesOf(const float* x, const float* y, const float* z, std::size_t count, std::uint32_t* tiles) const {
   const auto per_first_range = static_cast<float>(std::min(per_first_range_, 1e38));
   float azimuth[kBatch];
   float elevation[kBatch];

@@ -62,8 +62,7 @@ TEST(Box, GapIsNeverMoreAndSpanNeverLessThanAnyDistance) {
       }
     for (const Group* group : {&a, &b})
       for (const Point& p : group->points)
-        for (const Point& q : group->points)
-          ASSERT_GE(Box::squaredSpan(a.box, b.box), squaredDistance(p, q)) << i;
+        for (const Point& q : group->points) ASSERT_GE(Box::squaredSpan(a.box, b.box), squaredDistance(p, q)) << i;
     ASSERT_EQ(Box::squaredGap(a.box, b.box), Box::squaredGap(b.box, a.box));
   }
 }

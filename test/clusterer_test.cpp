@@ -63,8 +63,7 @@ TEST(AdversarialScans, LatticeAtExactlyTheTolerance) {
     // At the spacing only equal points are neighbours; one ulp above, the whole lattice hangs together.
     expectExact(clusterer, scan, spacing);
     expectExact(clusterer, scan, std::nextafter(spacing, kInfinity));
-    expectExact(clusterer, scan,
-                std::nextafter(std::sqrt(2.0F) * spacing, random.chance(0.5) ? 0.0F : kInfinity));
+    expectExact(clusterer, scan, std::nextafter(std::sqrt(2.0F) * spacing, random.chance(0.5) ? 0.0F : kInfinity));
   });
 }
 
@@ -80,8 +79,7 @@ TEST(AdversarialScans, WhereFloatsEnd) {
 TEST(AdversarialScans, AnyTolerance) {
   forSeeds(300'000'000, 60, [](Random& random, lisco::ColumnClusterer& clusterer) {
     const Scan scan = randomScan(random);
-    for (const float tolerance :
-         {0.0F, -0.0F, -0.5F, kNan, kInfinity, -kInfinity, 1e-30F, 1e30F, 1e-20F, 3e38F})
+    for (const float tolerance : {0.0F, -0.0F, -0.5F, kNan, kInfinity, -kInfinity, 1e-30F, 1e30F, 1e-20F, 3e38F})
       expectExact(clusterer, scan, tolerance);
   });
 }
@@ -132,8 +130,7 @@ TEST(AdversarialScans, Duplicates) {
   });
 }
 
-// Two long sheets just over the tolerance apart: every comparison of their patches must fail, but for one
-// pair.
+// Two long sheets just over the tolerance apart: every comparison of their patches must fail, but for one pair.
 TEST(AdversarialScans, TwoSheetsOneBridge) {
   forSeeds(700'000'000, 150, [](Random& random, lisco::ColumnClusterer& clusterer) {
     Scan scan(40, 4);

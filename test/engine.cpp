@@ -60,8 +60,7 @@ Clustering clustersOf(lisco::ColumnClusterer& clusterer) {
   return inOrder(std::move(clusters));
 }
 
-Clustering cluster(lisco::ColumnClusterer& clusterer, const Scan& scan, float tolerance,
-                   const Setting& setting) {
+Clustering cluster(lisco::ColumnClusterer& clusterer, const Scan& scan, float tolerance, const Setting& setting) {
   lisco::Parameters parameters = setting.parameters;
   parameters.tolerance = tolerance;
   clusterer.begin(parameters);
@@ -77,8 +76,8 @@ bool expectExact(lisco::ColumnClusterer& clusterer, const Scan& scan, float tole
   for (const Setting& setting : allSettings()) {
     const Clustering found = cluster(clusterer, scan, tolerance, setting);
     const std::string wrong = difference(right, found);
-    EXPECT_EQ(wrong, "") << setting.name << ", tolerance " << std::hexfloat << tolerance << std::defaultfloat
-                         << " = " << tolerance << ", " << scan.lasers << " x " << scan.columns;
+    EXPECT_EQ(wrong, "") << setting.name << ", tolerance " << std::hexfloat << tolerance << std::defaultfloat << " = "
+                         << tolerance << ", " << scan.lasers << " x " << scan.columns;
     all_right = all_right && wrong.empty();
   }
   const std::vector<std::string> violated =

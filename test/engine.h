@@ -25,8 +25,7 @@ const std::vector<Setting>& allSettings();
 Clustering clustersOf(lisco::ColumnClusterer& clusterer);
 
 /// Clusters the scan with one setting.
-Clustering cluster(lisco::ColumnClusterer& clusterer, const Scan& scan, float tolerance,
-                   const Setting& setting);
+Clustering cluster(lisco::ColumnClusterer& clusterer, const Scan& scan, float tolerance, const Setting& setting);
 
 /// Holds every setting's outcome against the oracle's and against the verifier.
 /// \return whether all were right; otherwise test failures have been added

@@ -31,8 +31,7 @@ struct NominalSensor {
 };
 
 /// Whether q's cell is within the literal mask of p, whose steps wrap around at the end of the rotation.
-bool literalMaskShows(const NominalSensor& sensor, double p_distance, double eps, const Cell& p,
-                      const Cell& q) {
+bool literalMaskShows(const NominalSensor& sensor, double p_distance, double eps, const Cell& p, const Cell& q) {
   const double angle = std::fabs(std::asin(eps / p_distance));
   const auto sigma = static_cast<std::size_t>(std::ceil(angle / sensor.delta_alpha));
   const auto lambda = static_cast<std::size_t>(std::ceil(angle / sensor.delta_theta));
@@ -52,8 +51,8 @@ double distanceOf(const Point& p) {
 }
 
 /// A rotation with only these two returns: neighbours, not in each other's literal mask, and one cluster.
-void expectMissedByTheLiteralMaskOnly(const NominalSensor& sensor, std::size_t lasers, float eps,
-                                      const Cell& p, const Point& at_p, const Cell& q, const Point& at_q) {
+void expectMissedByTheLiteralMaskOnly(const NominalSensor& sensor, std::size_t lasers, float eps, const Cell& p,
+                                      const Point& at_p, const Cell& q, const Point& at_q) {
   EXPECT_TRUE(areNeighbours(at_p, at_q, eps));
   EXPECT_FALSE(literalMaskShows(sensor, distanceOf(at_p), static_cast<double>(eps), p, q));
   EXPECT_FALSE(literalMaskShows(sensor, distanceOf(at_q), static_cast<double>(eps), q, p));
@@ -81,8 +80,8 @@ TEST(MaskCounterexample, HorizonError) {
   constexpr double kDistance = 10.0;
   constexpr float kEps = 1.0F;  // sigma = ceil(5.74) = 6
   const double elevation = 60.0 * kDegree;
-  expectMissedByTheLiteralMaskOnly(sensor, 32, kEps, {3, 100}, polar(kDistance, 100 * kDegree, elevation),
-                                   {3, 110}, polar(kDistance, 110 * kDegree, elevation));
+  expectMissedByTheLiteralMaskOnly(sensor, 32, kEps, {3, 100}, polar(kDistance, 100 * kDegree, elevation), {3, 110},
+                                   polar(kDistance, 110 * kDegree, elevation));
 }
 
 // The same at the zenith, where a whole turn of steps may lie within eps.
@@ -105,8 +104,7 @@ TEST(MaskCounterexample, SeamOfACaptureOverMoreThanATurn) {
                                    polar(10.01, 370 * kDegree, 0.0));
 }
 
-// Packets that came twice just before the seam: 3 columns are there again, so that steps no longer count
-// degrees.
+// Packets that came twice just before the seam: 3 columns are there again, so that steps no longer count degrees.
 //
 //   azimuth  356 357 357 358 358 359 359 | 0   1   2
 //   step     356 357 358 359 360 361 362 | 0   1   2

@@ -32,8 +32,7 @@ struct Vector {
 };
 
 Vector direction(double azimuth, double elevation) {
-  return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
-          std::sin(elevation)};
+  return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
 }
 
 Vector anyDirection(Random& random) {
@@ -169,8 +168,8 @@ bool shows(const Mask& mask, const lisco::Box& box, std::uint32_t tile) {
 }
 
 std::string print(const Point& p) {
-  return "(" + testing::PrintToString(p.x) + ", " + testing::PrintToString(p.y) + ", " +
-         testing::PrintToString(p.z) + ")";
+  return "(" + testing::PrintToString(p.x) + ", " + testing::PrintToString(p.y) + ", " + testing::PrintToString(p.z) +
+         ")";
 }
 
 /// Draws pairs until enough are neighbours; also with other returns of the first one's tile around it, as a
@@ -225,8 +224,7 @@ TEST_P(MaskSoundness, ViewMaskFromAWrongPlace) {
   Random random(77);
   lisco::ViewHints view;
   for (std::size_t axis = 0; axis < 3; ++axis)
-    view.origin[axis] =
-        GetParam().origin[axis] + static_cast<float>(random.between(-3.0, 3.0) * reachOf(GetParam()));
+    view.origin[axis] = GetParam().origin[axis] + static_cast<float>(random.between(-3.0, 3.0) * reachOf(GetParam()));
   mask.prepare(lisco::Tolerance(static_cast<float>(GetParam().tolerance)), view, kManyReturns);
   expectSound(mask, GetParam(), random);
 }
@@ -274,9 +272,7 @@ TEST(Mask, ViewMaskOfAnyBox) {
       const Vector p{inside(0), inside(1), inside(2)};
       const Point q = placed(anywhere, secondOfPair(random, anywhere, p));
       const Point first = placed(anywhere, p);
-      const auto within = [&](float value, std::size_t axis) {
-        return value >= box.lo[axis] && value <= box.hi[axis];
-      };
+      const auto within = [&](float value, std::size_t axis) { return value >= box.lo[axis] && value <= box.hi[axis]; };
       if (!within(first.x, 0) || !within(first.y, 1) || !within(first.z, 2)) continue;
       if (!areNeighbours(first, q, kTolerance)) continue;
       ASSERT_TRUE(shows(mask, box, tileOf(mask, q)))

@@ -51,8 +51,7 @@ Clustering trueClusters(const std::vector<Point>& points, float tolerance) {
 
 Clustering inOrder(Clustering clusters) {
   for (Cluster& cluster : clusters) std::sort(cluster.members.begin(), cluster.members.end());
-  std::sort(clusters.begin(), clusters.end(),
-            [](const Cluster& a, const Cluster& b) { return a.members < b.members; });
+  std::sort(clusters.begin(), clusters.end(), [](const Cluster& a, const Cluster& b) { return a.members < b.members; });
   return clusters;
 }
 
@@ -73,8 +72,8 @@ std::string difference(const Clustering& expected, const Clustering& actual) {
         expected[i].claimed_size == actual[i].claimed_size)
       continue;
     std::ostringstream out;
-    out << expected.size() << " clusters expected, " << actual.size() << " found; the first to differ is "
-        << i << ": expected ";
+    out << expected.size() << " clusters expected, " << actual.size() << " found; the first to differ is " << i
+        << ": expected ";
     print(out, expected, i);
     out << ", found ";
     print(out, actual, i);

@@ -87,8 +87,7 @@ TEST(Verifier, AgreesWithTheOracleOnRandomPoints) {
     Random random(seed);
     std::vector<Point> points(2 + random.below(60));
     const auto coordinate = [&] { return static_cast<float>(random.between(1.0, 6.0)); };
-    for (Point& point : points)
-      point = {coordinate(), coordinate(), random.chance(0.1) ? kNan : coordinate()};
+    for (Point& point : points) point = {coordinate(), coordinate(), random.chance(0.1) ? kNan : coordinate()};
     const auto tolerance = static_cast<float>(random.between(0.0, 2.0));
     const Clustering right = trueClusters(points, tolerance);
     EXPECT_TRUE(violations(points, right, tolerance).empty());

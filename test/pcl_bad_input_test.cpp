@@ -30,8 +30,7 @@ Cloud::Ptr fivePoints() {
 /// One client body again: both classes clear the vector and return.
 template <typename Extraction>
 class PclMissingInput : public testing::Test {};
-using Extractions =
-    testing::Types<pcl::EuclideanClusterExtraction<PointXYZ>, pcl::LiscoClusterExtraction<PointXYZ>>;
+using Extractions = testing::Types<pcl::EuclideanClusterExtraction<PointXYZ>, pcl::LiscoClusterExtraction<PointXYZ>>;
 TYPED_TEST_SUITE(PclMissingInput, Extractions);
 
 TYPED_TEST(PclMissingInput, ClearsTheVector) {
@@ -172,8 +171,7 @@ TEST(PclNoReturn, IsInNoCluster) {
   cloud->push_back(PointXYZ(-0.0F, 0, -0.0F));
   cloud->push_back(PointXYZ(0, 0, 1e-40F));  // a return, if a strange one
   for (const bool is_dense : {false, true})
-    for (const double tolerance :
-         {0.2, 0.0, 100.0, static_cast<double>(kInfinity), static_cast<double>(kNan)}) {
+    for (const double tolerance : {0.2, 0.0, 100.0, static_cast<double>(kInfinity), static_cast<double>(kNan)}) {
       cloud->is_dense = is_dense;
       SCOPED_TRACE(tolerance);
       Random random(1);

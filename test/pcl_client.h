@@ -40,8 +40,8 @@ class Client {
   Client() { extraction.setSearchMethod(std::make_shared<pcl::search::KdTree<PointT>>(false)); }
 
   /// Appends to the clusters, as both classes do.
-  void extract(const typename PointCloud::ConstPtr& cloud, const pcl::IndicesPtr& indices,
-               const Request& request, Clusters& clusters) {
+  void extract(const typename PointCloud::ConstPtr& cloud, const pcl::IndicesPtr& indices, const Request& request,
+               Clusters& clusters) {
     extraction.setInputCloud(cloud);
     extraction.setIndices(indices);
     extraction.setClusterTolerance(request.tolerance);
@@ -58,8 +58,7 @@ using PclClient = Client<pcl::EuclideanClusterExtraction<PointT>>;
 template <typename PointT>
 using LiscoClient = Client<pcl::LiscoClusterExtraction<PointT>>;
 
-/// Those of the indices (nullptr: of all points) that are returns: what PCL is to be given, in the same
-/// order.
+/// Those of the indices (nullptr: of all points) that are returns: what PCL is to be given, in the same order.
 template <typename PointT>
 pcl::IndicesPtr returnsOf(const pcl::PointCloud<PointT>& cloud, const pcl::IndicesPtr& indices = nullptr) {
   auto returns = std::make_shared<pcl::Indices>();
@@ -79,10 +78,9 @@ pcl::IndicesPtr returnsOf(const pcl::PointCloud<PointT>& cloud, const pcl::Indic
 inline bool expectSame(const Clusters& expected, const Clusters& actual) {
   EXPECT_EQ(expected.size(), actual.size());
   for (std::size_t i = 0; i < std::min(expected.size(), actual.size()); ++i) {
-    const bool same = expected[i].indices == actual[i].indices &&
-                      expected[i].header.frame_id == actual[i].header.frame_id &&
-                      expected[i].header.stamp == actual[i].header.stamp &&
-                      expected[i].header.seq == actual[i].header.seq;
+    const bool same =
+        expected[i].indices == actual[i].indices && expected[i].header.frame_id == actual[i].header.frame_id &&
+        expected[i].header.stamp == actual[i].header.stamp && expected[i].header.seq == actual[i].header.seq;
     if (same) continue;
     ADD_FAILURE() << "cluster " << i << " of " << expected.size() << ": " << expected[i].indices.size()
                   << " points expected, " << actual[i].indices.size() << " found, or others";
@@ -93,8 +91,8 @@ inline bool expectSame(const Clusters& expected, const Clusters& actual) {
 
 /// Both clients' clusters of the same returns are the same vector. \return PCL's
 template <typename PointT>
-Clusters expectSameAsPcl(const typename pcl::PointCloud<PointT>::ConstPtr& cloud,
-                         const pcl::IndicesPtr& indices, const Request& request) {
+Clusters expectSameAsPcl(const typename pcl::PointCloud<PointT>::ConstPtr& cloud, const pcl::IndicesPtr& indices,
+                         const Request& request) {
   Clusters expected;
   Clusters actual;
   // Without a return PCL would be given no index at all, and clears the vector.

@@ -49,8 +49,8 @@ typename pcl::PointCloud<PointT>::Ptr unorganized(const pcl::PointCloud<PointT>&
 
 /// The cloud in a frame in which its sensor stands at (x, y, z).
 template <typename PointT>
-typename pcl::PointCloud<PointT>::Ptr displaced(const pcl::PointCloud<PointT>& cloud, float x, float y,
-                                                float z, bool with_origin) {
+typename pcl::PointCloud<PointT>::Ptr displaced(const pcl::PointCloud<PointT>& cloud, float x, float y, float z,
+                                                bool with_origin) {
   auto moved = std::make_shared<pcl::PointCloud<PointT>>(cloud);
   for (PointT& point : *moved) {
     if (!lisco::isReturn(point.x, point.y, point.z)) continue;

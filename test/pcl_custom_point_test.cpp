@@ -17,9 +17,8 @@ struct LidarPoint {
 }  // namespace lisco_test
 
 POINT_CLOUD_REGISTER_POINT_STRUCT(lisco_test::LidarPoint,
-                                  (float, x, x)(float, y, y)(float, z, z)(float, intensity,
-                                                                          intensity)(std::uint16_t, ring,
-                                                                                     ring))
+                                  (float, x, x)(float, y, y)(float, z, z)(float, intensity, intensity)(std::uint16_t,
+                                                                                                       ring, ring))
 
 #include "pcl_client.h"
 #include "pcl_clouds.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// pcl::extractLiscoClusters against pcl::extractEuclideanClusters: appended in order of discovery, not
-// sorted.
+// pcl::extractLiscoClusters against pcl::extractEuclideanClusters: appended in order of discovery, not sorted.
 #include "pcl_client.h"
 #include "pcl_clouds.h"
 

@@ -51,8 +51,7 @@ TEST(Pcl, WholeScanAtManyTolerances) {
 
 TEST(Pcl, AnyTolerance) {
   const Cloud::Ptr cloud = scanOfBoxes();
-  for (const double tolerance :
-       {0.0, -0.0, -0.5, 1e-30, 1e-22, 1e15, 1e30, 1e300, kNan, kInfinity, -kInfinity}) {
+  for (const double tolerance : {0.0, -0.0, -0.5, 1e-30, 1e-22, 1e15, 1e30, 1e300, kNan, kInfinity, -kInfinity}) {
     SCOPED_TRACE(tolerance);
     expectSameAsPcl<PointXYZ>(cloud, nullptr, {tolerance});
   }
@@ -77,8 +76,7 @@ TEST(Pcl, IndicesShuffledDoubledAndFew) {
   for (const std::size_t count : {cloud->size() / 2, cloud->size() / 4, cloud->size() / 8, cloud->size() / 20,
                                   std::size_t{100}, std::size_t{5}, std::size_t{1}}) {
     SCOPED_TRACE(count);
-    const auto some =
-        std::make_shared<pcl::Indices>(all->begin(), all->begin() + static_cast<std::ptrdiff_t>(count));
+    const auto some = std::make_shared<pcl::Indices>(all->begin(), all->begin() + static_cast<std::ptrdiff_t>(count));
     expectSameAsPcl<PointXYZ>(cloud, some, {0.8});
     auto doubled = std::make_shared<pcl::Indices>(*some);
     doubled->insert(doubled->end(), some->begin(), some->end());
@@ -185,15 +183,13 @@ TEST(Pcl, AnyOrganization) {
   const Cloud::Ptr cloud = scanOfBoxes();
   expectSameAsPcl<PointXYZ>(unorganized(*cloud), nullptr, {0.5});
   const Cloud::Ptr dense = unorganized(*cloud);
-  dense->erase(
-      std::remove_if(dense->begin(), dense->end(), [](const PointXYZ& p) { return !pcl::isFinite(p); }),
-      dense->end());
+  dense->erase(std::remove_if(dense->begin(), dense->end(), [](const PointXYZ& p) { return !pcl::isFinite(p); }),
+               dense->end());
   dense->is_dense = true;
   expectSameAsPcl<PointXYZ>(dense, nullptr, {0.5});
   random.shuffle(*dense);
   expectSameAsPcl<PointXYZ>(dense, nullptr, {0.5});
-  for (const std::uint32_t width :
-       {1U, 7U, 179U, 2160U, 5000U}) {  // of which only some give the right product
+  for (const std::uint32_t width : {1U, 7U, 179U, 2160U, 5000U}) {  // of which only some give the right product
     const auto wrong = std::make_shared<Cloud>(*cloud);
     wrong->width = width;
     SCOPED_TRACE(width);
@@ -231,15 +227,14 @@ TEST(Pcl, DisplacedClouds) {
   for (const bool with_origin : {false, true})
     for (const float distance : {1.0F, 30.0F, 1000.0F, 1e6F}) {
       SCOPED_TRACE(distance);
-      expectSameAsPcl<PointXYZ>(displaced(*cloud, distance, -distance, 0.1F * distance, with_origin), nullptr,
-                                {0.5});
+      expectSameAsPcl<PointXYZ>(displaced(*cloud, distance, -distance, 0.1F * distance, with_origin), nullptr, {0.5});
     }
 }
 
 TEST(Pcl, SensorOriginThatIsNoNumberOrElsewhere) {
   const Cloud::Ptr cloud = displaced(*scanOfBoxes(), 1000.0F, 1000.0F, 0.0F, false);
-  const std::array<float, 4> origins{std::numeric_limits<float>::quiet_NaN(),
-                                     std::numeric_limits<float>::infinity(), 3e38F, -1000.0F};
+  const std::array<float, 4> origins{std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                                     3e38F, -1000.0F};
   for (const float origin : origins) {
     cloud->sensor_origin_ << origin, origin, 1.0F, 0.0F;
     expectSameAsPcl<PointXYZ>(cloud, nullptr, {0.5});

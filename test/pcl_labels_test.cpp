@@ -34,10 +34,8 @@ void expectLabelsOf(const Clusters& clusters, const Cloud& cloud, const Extracti
     if (label == 0) continue;
     ASSERT_LE(label, clusters.size());
     const pcl::PointIndices& cluster = clusters[label - 1];
-    ASSERT_EQ(cluster.header.seq, cloud.header.seq)
-        << "point " << point << " is labelled by another cloud's cluster";
-    ASSERT_TRUE(
-        std::binary_search(cluster.indices.begin(), cluster.indices.end(), static_cast<pcl::index_t>(point)));
+    ASSERT_EQ(cluster.header.seq, cloud.header.seq) << "point " << point << " is labelled by another cloud's cluster";
+    ASSERT_TRUE(std::binary_search(cluster.indices.begin(), cluster.indices.end(), static_cast<pcl::index_t>(point)));
   }
 }
 

@@ -9,8 +9,7 @@ namespace {
 
 template <typename PointT>
 class PclPointTypes : public testing::Test {};
-using PointTypes =
-    testing::Types<pcl::PointXYZ, pcl::PointXYZI, pcl::PointXYZRGB, pcl::PointXYZL, pcl::PointNormal>;
+using PointTypes = testing::Types<pcl::PointXYZ, pcl::PointXYZI, pcl::PointXYZRGB, pcl::PointXYZL, pcl::PointNormal>;
 TYPED_TEST_SUITE(PclPointTypes, PointTypes);
 
 TYPED_TEST(PclPointTypes, EqualPcl) {

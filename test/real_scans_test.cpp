@@ -57,8 +57,7 @@ class RealScan : public testing::TestWithParam<ScanFile> {
   void SetUp() override {
     const fs::path scans = dataFolder() / "scans";
     if (!fs::is_directory(scans))
-      GTEST_SKIP() << "no real scans: there is no folder " << scans
-                   << "; set LISCO_TEST_DATA to the data folder";
+      GTEST_SKIP() << "no real scans: there is no folder " << scans << "; set LISCO_TEST_DATA to the data folder";
     cloud_ = lisco_apps::readCloudFile(scans / (std::string(GetParam().name) + ".pcd"));
     ASSERT_GT(cloud_->height, 1U);
   }

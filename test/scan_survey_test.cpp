@@ -75,8 +75,7 @@ TEST(ScanSurvey, ADisplacedSensorIsUsedIfTheCloudTells) {
 TEST(ScanSurvey, ASensorThatIsNoNumberIsNotUsed) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
-  for (const Origin& sensor :
-       {Origin{nan, nan, nan}, Origin{10000.0F, nan, 0.0F}, Origin{infinity, 0.0F, 0.0F}})
+  for (const Origin& sensor : {Origin{nan, nan, nan}, Origin{10000.0F, nan, 0.0F}, Origin{infinity, 0.0F, 0.0F}})
     EXPECT_EQ(survey(rotation({10000.0F, 0.0F, 0.0F}), sensor).mask, Mask::kGrid);
 }
 

@@ -128,8 +128,8 @@ Scan randomScan(Random& random, std::size_t most_cells) {
       const double azimuth = start + direction * column_step * static_cast<double>(column) + lag[laser] +
                              noise * random.between(-1.0, 1.0);
       const double fraction = lasers > 1 ? static_cast<double>(laser) / static_cast<double>(lasers - 1) : 0.5;
-      const double elevation = std::clamp(
-          lowest + (highest - lowest) * fraction + sway * std::sin(2.0 * azimuth), -kPi / 2, kPi / 2);
+      const double elevation =
+          std::clamp(lowest + (highest - lowest) * fraction + sway * std::sin(2.0 * azimuth), -kPi / 2, kPi / 2);
       const double range = scale * ranges.at(random, azimuth, elevation);
       scan.set(row[laser], column,
                {static_cast<float>(range * std::cos(elevation) * std::cos(azimuth) + scale * displacement),
@@ -146,9 +146,7 @@ Scan latticeScan(Random& random, float& spacing) {
   Scan scan(1 + random.below(20), lasers);
   const std::array<int, 3> offsets{0, 3, 1000};
   const int offset = random.oneOf(offsets);
-  const auto coordinate = [&] {
-    return spacing * static_cast<float>(static_cast<int>(random.below(7)) - 3 + offset);
-  };
+  const auto coordinate = [&] { return spacing * static_cast<float>(static_cast<int>(random.below(7)) - 3 + offset); };
   for (lisco::Return& cell : scan.cells) {
     cell.x = coordinate();
     cell.y = coordinate();
@@ -172,15 +170,13 @@ Scan extremeScan(Random& random) {
   };
   for (std::size_t laser = 0; laser < scan.lasers; ++laser)
     for (std::size_t column = 0; column < scan.columns; ++column)
-      scan.set(laser, column,
-               random.chance(0.1) ? noReturn(random) : Point{coordinate(), coordinate(), coordinate()});
+      scan.set(laser, column, random.chance(0.1) ? noReturn(random) : Point{coordinate(), coordinate(), coordinate()});
   return scan;
 }
 
 float criticalTolerance(Random& random, const Scan& scan) {
   std::vector<Point> valid = scan.points();
-  valid.erase(std::remove_if(valid.begin(), valid.end(), [](const Point& p) { return !isValid(p); }),
-              valid.end());
+  valid.erase(std::remove_if(valid.begin(), valid.end(), [](const Point& p) { return !isValid(p); }), valid.end());
   if (valid.size() < 2) return 0.5F;
   const Point from = random.oneOf(valid);
   std::vector<double> distances;
@@ -193,8 +189,7 @@ float criticalTolerance(Random& random, const Scan& scan) {
   auto tolerance = static_cast<float>(std::clamp(distance, 1e-44, 3e38));
   const std::array<int, 6> ulps{-1, 0, 0, 1, 2, 3};
   const int steps = random.oneOf(ulps);
-  for (int i = 0; i < std::abs(steps); ++i)
-    tolerance = std::nextafter(tolerance, steps > 0 ? kInfinity : 0.0F);
+  for (int i = 0; i < std::abs(steps); ++i) tolerance = std::nextafter(tolerance, steps > 0 ? kInfinity : 0.0F);
   if (random.chance(0.4)) tolerance *= static_cast<float>(random.between(0.5, 3.0));
   return tolerance;
 }

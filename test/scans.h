@@ -19,9 +19,7 @@ struct Scan {
 
   Scan(std::size_t column_count, std::size_t laser_count);
   lisco::Return& at(std::size_t laser, std::size_t column) { return cells[laser * columns + column]; }
-  const lisco::Return& at(std::size_t laser, std::size_t column) const {
-    return cells[laser * columns + column];
-  }
+  const lisco::Return& at(std::size_t laser, std::size_t column) const { return cells[laser * columns + column]; }
   void set(std::size_t laser, std::size_t column, const Point& point);
   std::vector<Point> points() const;
 };
@@ -33,8 +31,8 @@ struct Scan {
 /// \param most_cells about as many as there are at the most
 Scan randomScan(Random& random, std::size_t most_cells = 150);
 
-/// Points on a lattice whose spacing is a power of two, so that distances are exact. \param spacing receives
-/// it
+/// Points on a lattice whose spacing is a power of two, so that distances are exact.
+/// \param spacing receives it
 Scan latticeScan(Random& random, float& spacing);
 
 /// Coordinates where floats end: 3e38, 1e30, denormals, and everything else in between.

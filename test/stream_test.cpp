@@ -82,9 +82,8 @@ TEST(Stream, ColumnsInAnyPortions) {
       if (count == 1 && random.chance(0.5))
         clusterer.addColumn(columnOf(scan, first).data(), scan.lasers);
       else
-        clusterer.addColumns(count, scan.lasers, [&](std::size_t laser, std::size_t column) {
-          return scan.at(laser, first + column);
-        });
+        clusterer.addColumns(count, scan.lasers,
+                             [&](std::size_t laser, std::size_t column) { return scan.at(laser, first + column); });
       first += count;
       if (random.chance(0.1)) clusterer.addColumn(nullptr, 0);  // a step in which nothing was measured
     }
@@ -100,8 +99,7 @@ TEST(Stream, ColumnsOfAnyLengthAndOrder) {
     for (std::size_t column = 0; column < scan.columns; ++column) {
       std::vector<lisco::Return> cells = columnOf(scan, column);
       random.shuffle(cells);
-      while (!cells.empty() && !lisco::isReturn(cells.back().x, cells.back().y, cells.back().z))
-        cells.pop_back();
+      while (!cells.empty() && !lisco::isReturn(cells.back().x, cells.back().y, cells.back().z)) cells.pop_back();
       clusterer.addColumn(cells.data(), cells.size());
     }
     EXPECT_EQ(difference(trueClusters(scan.points(), tolerance), clustersOf(clusterer)), "");
@@ -126,8 +124,7 @@ TEST(Stream, ABrokenOffRotationIsForgotten) {
     clusterer.begin(withTolerance(random.oneOf(allSettings()), tolerance));
     for (std::size_t column = 0; column < random.below(lost.columns + 1); ++column)
       clusterer.addColumn(columnOf(lost, column % lost.columns).data(), lost.lasers);
-    EXPECT_EQ(
-        difference(trueClusters(scan.points(), tolerance), cluster(clusterer, scan, tolerance, setting)), "");
+    EXPECT_EQ(difference(trueClusters(scan.points(), tolerance), cluster(clusterer, scan, tolerance, setting)), "");
   });
 }
 

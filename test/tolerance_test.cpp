@@ -55,8 +55,7 @@ TEST(Tolerance, ReachBoundsEveryNeighbour) {
     const float dy = random.chance(0.5) ? 0.0F : coordinate();
     const float dz = random.chance(0.5) ? 0.0F : coordinate();
     if (!(lisco::squaredDistance(dx, dy, dz) < tolerance.squared())) continue;
-    const double distance =
-        std::hypot(static_cast<double>(dx), static_cast<double>(dy), static_cast<double>(dz));
+    const double distance = std::hypot(static_cast<double>(dx), static_cast<double>(dy), static_cast<double>(dz));
     ASSERT_LE(distance, tolerance.reach()) << metres;
   }
 }

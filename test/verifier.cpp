@@ -33,13 +33,12 @@ bool connected(const std::vector<Point>& points, const std::vector<std::uint32_t
 }
 
 /// Sweeps along x: once x alone is too far, so is everything behind it, since rounding is monotone.
-void checkSeparation(const std::vector<Point>& points, const std::vector<std::uint32_t>& cluster_of,
-                     float tolerance, std::vector<std::string>& found) {
+void checkSeparation(const std::vector<Point>& points, const std::vector<std::uint32_t>& cluster_of, float tolerance,
+                     std::vector<std::string>& found) {
   std::vector<std::uint32_t> by_x;
   for (std::uint32_t i = 0; i < points.size(); ++i)
     if (cluster_of[i] != kNoCluster && isValid(points[i])) by_x.push_back(i);
-  std::sort(by_x.begin(), by_x.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return points[a].x < points[b].x; });
+  std::sort(by_x.begin(), by_x.end(), [&](std::uint32_t a, std::uint32_t b) { return points[a].x < points[b].x; });
   for (std::size_t i = 0; i < by_x.size(); ++i)
     for (std::size_t k = i + 1; k < by_x.size(); ++k) {
       const Point a = points[by_x[i]];
@@ -54,15 +53,14 @@ void checkSeparation(const std::vector<Point>& points, const std::vector<std::ui
 
 }  // namespace
 
-std::vector<std::string> violations(const std::vector<Point>& points, const Clustering& clusters,
-                                    float tolerance) {
+std::vector<std::string> violations(const std::vector<Point>& points, const Clustering& clusters, float tolerance) {
   std::vector<std::string> found;
   std::vector<std::uint32_t> cluster_of(points.size(), kNoCluster);
   for (std::uint32_t c = 0; c < clusters.size(); ++c) {
     const Cluster& cluster = clusters[c];
     if (cluster.members.size() != cluster.claimed_size || cluster.members.empty())
-      found.push_back("size: cluster " + number(c) + " claims " + number(cluster.claimed_size) +
-                      " points, holds " + number(cluster.members.size()));
+      found.push_back("size: cluster " + number(c) + " claims " + number(cluster.claimed_size) + " points, holds " +
+                      number(cluster.members.size()));
     bool all_exist = !cluster.members.empty();
     for (const std::uint32_t member : cluster.members) {
       if (member >= points.size()) {

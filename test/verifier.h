@@ -13,7 +13,6 @@ namespace lisco_test {
 /// coverage (every valid point in exactly one cluster, no other point in any), sizes (each cluster as large
 /// as it claims), connectivity (each cluster connected by neighbours), separation (no neighbours in different
 /// clusters). \return one line per violated invariant; empty if the clustering is right
-std::vector<std::string> violations(const std::vector<Point>& points, const Clustering& clusters,
-                                    float tolerance);
+std::vector<std::string> violations(const std::vector<Point>& points, const Clustering& clusters, float tolerance);
 
 }  // namespace lisco_test

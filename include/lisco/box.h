@@ -8,9 +8,8 @@
 
 namespace lisco {
 
-/// Axis-aligned bounding box of some returns. Its tests are exact, without any margin: rounding is monotone,
-/// so the same float formula applied to a larger (smaller) difference per axis never gives a smaller (larger)
-/// d2.
+/// Axis-aligned bounding box of some returns. Its tests are exact, without any margin: rounding is monotone, so
+/// the same float formula applied to a larger (smaller) difference per axis never gives a smaller (larger) d2.
 struct Box {
   float lo[3], hi[3];
 

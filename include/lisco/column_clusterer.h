@@ -33,25 +33,22 @@ struct Parameters {
   std::size_t open_columns = 16;
 };
 
-/// Lisco: Euclidean clustering of a rotating LiDAR's returns, column by column (Algorithms 3 and 4 of the
-/// paper).
+/// Lisco: Euclidean clustering of a rotating LiDAR's returns, column by column (Algorithms 3 and 4 of the paper).
 ///
 ///   lisco::ColumnClusterer clusterer;
 ///   clusterer.begin({0.4F});                                // eps = 0.4 m
 ///   while (...) clusterer.addColumn(returns, lasers);       // upon reception of step s
-///   clusterer.update();                                     // upon all steps processed, or at any time
-///   before clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t
-///   head) {...});
+///   clusterer.update();                                     // upon all steps processed, or before
+///   clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t head) { ... });
 ///
 /// Returns that lie within eps of each other belong to the same subcluster, which is named by its head.
 /// update() makes the subclusters exact for all columns added so far; more columns may follow it.
 ///
 /// From the smallest unit to the largest: a *run* is a chain of neighbours that one laser returned within one
 /// block of columns and one tile of the mask; a *patch* is a connected group of runs within one tile; a
-/// *subcluster* is a set of patches. A patch stays open to new runs for a while; then it is closed and
-/// compared once with all patches before it that its mask shows (the half mask of the paper). So a pair is
-/// compared when its later patch closes, and the seam needs no care: the mask of the last columns reaches the
-/// first.
+/// *subcluster* is a set of patches. A patch stays open to new runs for a while; then it is closed and compared
+/// once with all patches before it that its mask shows (the half mask of the paper). So a pair is compared when
+/// its later patch closes, and the seam needs no care: the mask of the last columns reaches the first.
 ///
 /// Nothing is allocated once the buffers have grown to the largest rotation seen. Not thread safe; any number
 /// of instances may work side by side.
@@ -63,25 +60,23 @@ class ColumnClusterer {
   void begin(const Parameters& parameters);
 
   /// Event "reception of step s": cells[l] is what laser l measured; cells that are no returns are skipped.
-  /// \param lasers number of cells, may differ from column to column; the order of the lasers is free, but
-  /// must
-  ///        stay the same for speed.
+  /// \param lasers number of cells, may differ from column to column; the order of the lasers is free, but must stay
+  ///        the same for speed.
   void addColumn(const Return* cells, std::size_t lasers) {
     addColumns(1, lasers, [cells](std::size_t laser, std::size_t) { return cells[laser]; });
   }
 
-  /// Adds several columns at once, in the order of their numbers, read laser by laser as an organized cloud
-  /// lies in memory. The outcome is the same as by addColumn. \param cell_at callable as Return (std::size_t
-  /// laser, std::size_t column), column in 0..columns-1
+  /// Adds several columns at once, in the order of their numbers, read laser by laser as an organized cloud lies in
+  /// memory. The outcome is the same as by addColumn.
+  /// \param cell_at callable as Return (std::size_t laser, std::size_t column), column in 0..columns-1
   template <typename CellAt>
   void addColumns(std::size_t columns, std::size_t lasers, CellAt&& cell_at);
 
-  /// Event "all steps processed", or a look in between: brings the subclusters up to date with all columns
-  /// added.
+  /// Event "all steps processed", or a look in between: brings the subclusters up to date with all columns added.
   void update();
 
-  /// Calls visit(source_indices, count, head) for all returns, in groups of the same subcluster. Call
-  /// update() first.
+  /// Calls visit(source_indices, count, head) for all returns, in groups of the same subcluster. Call update()
+  /// first.
   template <typename Visit>
   void forEachRun(Visit&& visit);
 
@@ -114,7 +109,6 @@ class ColumnClusterer {
     std::uint32_t tile;
     std::uint32_t first_run, last_run;
   };
-  /// Up to four closed patches of a tile side by side, so that one pass tests all their boxes.
   /// What a tile of the mask holds. Numbers are kept with the rotation's stamp added, so that what earlier
   /// rotations left behind is recognized by being smaller and the tiles need no emptying.
   struct Tile {
@@ -189,8 +183,7 @@ void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt
 template <typename Visit>
 void ColumnClusterer::forEachRun(Visit&& visit) {
   for (const Run& run : runs_)
-    visit(source_index_.data() + run.first_return, static_cast<std::size_t>(run.count),
-          subclusters_.head(run.patch));
+    visit(source_index_.data() + run.first_return, static_cast<std::size_t>(run.count), subclusters_.head(run.patch));
 }
 
 }  // namespace lisco

@@ -8,8 +8,8 @@
 
 namespace lisco {
 
-/// One cell of a column: what one laser measured in one step of the rotation (the paper's section II-A),
-/// in Cartesian coordinates.
+/// One cell of a column: what one laser measured in one step of the rotation (the paper's section II-A), in
+/// Cartesian coordinates.
 struct Return {
   float x, y, z;               ///< metres, in the cloud's own frame
   std::uint32_t source_index;  ///< the caller's name for this cell, handed back with its subcluster

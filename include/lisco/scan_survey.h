@@ -33,8 +33,7 @@ class ScanSurvey {
 /// Looks at about a hundred cells of an organized cloud (lasers > 1) or of an unorganized one (lasers == 1).
 /// \param cell_at callable as Return (std::size_t laser, std::size_t column)
 template <typename CellAt>
-Parameters surveyScan(std::size_t columns, std::size_t lasers, const std::array<float, 3>& sensor,
-                      CellAt&& cell_at) {
+Parameters surveyScan(std::size_t columns, std::size_t lasers, const std::array<float, 3>& sensor, CellAt&& cell_at) {
   constexpr std::size_t kSmall = 4096;  // below this a view is not worth its layout
   constexpr std::size_t kRows = 8;
   constexpr std::size_t kPlaces = 128;

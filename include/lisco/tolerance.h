@@ -26,9 +26,8 @@ class Tolerance {
     constexpr double kRounding = 1.0 + 1e-6;
     constexpr double kUnderflow = 1e-44;
     constexpr double kOverflow = 1.85e19;
-    reach_ = squared_ > 0.0F
-                 ? std::min(std::sqrt(static_cast<double>(squared_) * kRounding + kUnderflow), kOverflow)
-                 : 0.0;
+    reach_ =
+        squared_ > 0.0F ? std::min(std::sqrt(static_cast<double>(squared_) * kRounding + kUnderflow), kOverflow) : 0.0;
   }
 
   /// The squared tolerance the test compares with; may be 0, infinite or NaN.

@@ -33,8 +33,7 @@ inline float azimuth(float x, float y) {
   return (y < 0.0F ? 8.0F - half : half) * 0.125F;
 }
 
-/// Elevation over the horizontal plane, 0 straight down to 1 straight up, of a return at horizontal distance
-/// rho.
+/// Elevation over the horizontal plane, 0 straight down to 1 straight up, of a return at horizontal distance rho.
 inline float elevation(float rho, float z) {
   const float az = std::fabs(z);
   const float g = octantFraction(std::min(rho, az), std::max(rho, az));

@@ -34,8 +34,7 @@ struct ViewHints {
 /// their elevation asks for.
 class ViewMask {
  public:
-  /// Lays out the tiles, and the table for about `expected_returns` returns. Keeps its memory when called
-  /// again.
+  /// Lays out the tiles, and the table for about `expected_returns` returns. Keeps its memory when called again.
   void prepare(const Tolerance& tolerance, const ViewHints& hints, std::size_t expected_returns);
 
   std::size_t tileCount() const { return std::size_t{tile_mask_} + 1; }

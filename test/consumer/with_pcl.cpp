@@ -21,8 +21,8 @@ int main() {
   extraction.setInputCloud(cloud);
   std::vector<pcl::PointIndices> clusters;
   extraction.extract(clusters);
-  const bool right = clusters.size() == 2 && clusters[0].indices == pcl::Indices{1, 3, 4} &&
-                     clusters[1].indices == pcl::Indices{0, 2};
+  const bool right =
+      clusters.size() == 2 && clusters[0].indices == pcl::Indices{1, 3, 4} && clusters[1].indices == pcl::Indices{0, 2};
   std::puts(right ? "two clusters, as expected" : "not the two clusters expected");
   return right ? 0 : 1;
 }

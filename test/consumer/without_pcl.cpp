@@ -14,8 +14,7 @@ int main() {
   clusterer.begin(parameters);
   for (std::uint32_t step = 0; step < 3; ++step) {
     const float y = 0.2F * static_cast<float>(step);
-    const lisco::Return column[] = {
-        {5.0F, y, 0.0F, 2 * step}, lisco::kNoReturn, {9.0F, y, 1.0F, 2 * step + 1}};
+    const lisco::Return column[] = {{5.0F, y, 0.0F, 2 * step}, lisco::kNoReturn, {9.0F, y, 1.0F, 2 * step + 1}};
     clusterer.addColumn(column, 3);
   }
   clusterer.update();

@@ -49,8 +49,7 @@ class Programs : public testing::Test {
 
   /// Runs a command line with this folder as the current one.
   Outcome run(const std::string& command) const {
-    const std::string whole =
-        "cd '" + folder_.string() + "' && " + command + " >out.txt 2>err.txt </dev/null";
+    const std::string whole = "cd '" + folder_.string() + "' && " + command + " >out.txt 2>err.txt </dev/null";
     const int status = std::system(whole.c_str());
     Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, textOf(folder_ / "out.txt"),
                     textOf(folder_ / "err.txt")};
@@ -58,9 +57,7 @@ class Programs : public testing::Test {
     fs::remove(folder_ / "err.txt");
     return outcome;
   }
-  Outcome cluster(const std::string& arguments) const {
-    return run(std::string(LISCO_CLUSTER) + " " + arguments);
-  }
+  Outcome cluster(const std::string& arguments) const { return run(std::string(LISCO_CLUSTER) + " " + arguments); }
 
   std::vector<std::string> filesLeft() const {
     std::vector<std::string> files;
@@ -166,8 +163,7 @@ TEST_F(Programs, ClusterReadsEveryFormat) {
   const Outcome outcome = cluster(". --tolerance 0.3 --min-size 1");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   std::size_t found = 0;
-  for (std::size_t at = 0; (at = outcome.out.find("clusters  2 of at least 1 ", at)) != std::string::npos;
-       ++at)
+  for (std::size_t at = 0; (at = outcome.out.find("clusters  2 of at least 1 ", at)) != std::string::npos; ++at)
     ++found;
   EXPECT_EQ(found, 4U) << outcome.out;
   EXPECT_NE(outcome.out.find("2 lasers x 2 columns, 3 returns"), std::string::npos) << outcome.out;
@@ -266,8 +262,7 @@ TEST_F(Programs, ClusterGoesOnAfterABadFileAmongMany) {
   EXPECT_EQ(outcome.status, 2);
   EXPECT_NE(outcome.err.find("b.bin"), std::string::npos);
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  for (const char* made : {"a", "c", "a-2"})
-    EXPECT_TRUE(fs::exists(folder_ / "results" / made / "labels.pcd")) << made;
+  for (const char* made : {"a", "c", "a-2"}) EXPECT_TRUE(fs::exists(folder_ / "results" / made / "labels.pcd")) << made;
   EXPECT_FALSE(fs::exists(folder_ / "results/b"));
 }
 

@@ -53,10 +53,10 @@ class LiscoCloudClusterer {
   std::uint32_t headOf(index_t point) const;
 
   lisco::ColumnClusterer clusterer_;
-  bool few_ = false;                         ///< only a small part of the cloud's points is to be clustered:
-  Indices few_points_;                       ///< these, ascending
-  std::vector<std::uint32_t> head_of_cell_;  ///< per point of the cloud, or of few_points_: kNotSelected,
-                                             ///< kSelected (but no return), or the head of its subcluster
+  bool few_ = false;                            ///< only a small part of the cloud's points is to be clustered:
+  Indices few_points_;                          ///< these, ascending
+  std::vector<std::uint32_t> head_of_cell_;     ///< per point of the cloud, or of few_points_: kNotSelected,
+                                                ///< kSelected (but no return), or the head of its subcluster
   std::vector<std::uint32_t> cluster_of_head_;  ///< number in the output
 };
 
@@ -189,8 +189,8 @@ class LiscoClusterExtraction : public PCLBase<PointT> {
  * \ingroup segmentation
  */
 template <typename PointT>
-void extractLiscoClusters(const PointCloud<PointT>& cloud, float tolerance,
-                          std::vector<PointIndices>& clusters, unsigned int min_pts_per_cluster = 1,
+void extractLiscoClusters(const PointCloud<PointT>& cloud, float tolerance, std::vector<PointIndices>& clusters,
+                          unsigned int min_pts_per_cluster = 1,
                           unsigned int max_pts_per_cluster = (std::numeric_limits<int>::max)());
 
 /** \brief The same for some points of a cloud.

@@ -12,8 +12,8 @@
 #include "lisco/scan_survey.h"
 
 template <typename PointT>
-bool pcl::detail::LiscoCloudClusterer::cluster(const PointCloud<PointT>& cloud, const Indices* indices,
-                                               float tolerance, const char* caller) {
+bool pcl::detail::LiscoCloudClusterer::cluster(const PointCloud<PointT>& cloud, const Indices* indices, float tolerance,
+                                               const char* caller) {
   if (!select(cloud.size(), indices, caller)) return (false);
 
   // Lasers are the cloud's rows and columns its columns; what is not organized is the work of one laser.
@@ -29,8 +29,7 @@ bool pcl::detail::LiscoCloudClusterer::cluster(const PointCloud<PointT>& cloud, 
     return (lisco::Return{point.x, point.y, point.z, static_cast<std::uint32_t>(cell)});
   };
 
-  const std::array<float, 3> sensor{cloud.sensor_origin_[0], cloud.sensor_origin_[1],
-                                    cloud.sensor_origin_[2]};
+  const std::array<float, 3> sensor{cloud.sensor_origin_[0], cloud.sensor_origin_[1], cloud.sensor_origin_[2]};
   lisco::Parameters parameters = lisco::surveyScan(columns, lasers, sensor, cell_at);
   parameters.tolerance = tolerance;
   clusterer_.begin(parameters);
@@ -59,8 +58,7 @@ std::size_t pcl::LiscoClusterExtraction<PointT>::appendClusters(std::vector<Poin
 template <typename PointT>
 void pcl::LiscoClusterExtraction<PointT>::extract(std::vector<PointIndices>& clusters) {
   appendClusters(clusters);
-  // Not a stable sort: only PCL's own call on PCL's own sequence gives PCL's order among clusters of one
-  // size.
+  // Not a stable sort: only PCL's own call on PCL's own sequence gives PCL's order among clusters of one size.
   std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);
 }
 
@@ -75,8 +73,7 @@ void pcl::LiscoClusterExtraction<PointT>::extract(std::vector<PointIndices>& clu
   };
   std::vector<Origin> origins;
   for (const auto& cluster : clusters) origins.push_back({cluster.indices.size(), origins.size()});
-  std::sort(origins.rbegin(), origins.rend(),
-            [](const Origin& a, const Origin& b) { return (a.size < b.size); });
+  std::sort(origins.rbegin(), origins.rend(), [](const Origin& a, const Origin& b) { return (a.size < b.size); });
   std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);
 
   labels = Labels();
@@ -95,9 +92,8 @@ void pcl::LiscoClusterExtraction<PointT>::extract(std::vector<PointIndices>& clu
 }
 
 template <typename PointT>
-void pcl::extractLiscoClusters(const PointCloud<PointT>& cloud, float tolerance,
-                               std::vector<PointIndices>& clusters, unsigned int min_pts_per_cluster,
-                               unsigned int max_pts_per_cluster) {
+void pcl::extractLiscoClusters(const PointCloud<PointT>& cloud, float tolerance, std::vector<PointIndices>& clusters,
+                               unsigned int min_pts_per_cluster, unsigned int max_pts_per_cluster) {
   detail::LiscoCloudClusterer clusterer;
   if (clusterer.cluster(cloud, nullptr, tolerance, "pcl::extractLiscoClusters"))
     clusterer.collect(nullptr, cloud.header, min_pts_per_cluster, max_pts_per_cluster, clusters);
@@ -117,10 +113,9 @@ void pcl::extractLiscoClusters(const PointCloud<PointT>& cloud, const Indices& i
 }
 
 #define PCL_INSTANTIATE_LiscoClusterExtraction(T) template class PCL_EXPORTS pcl::LiscoClusterExtraction<T>;
-#define PCL_INSTANTIATE_extractLiscoClusters(T)           \
-  template void PCL_EXPORTS pcl::extractLiscoClusters<T>( \
-      const pcl::PointCloud<T>&, float, std::vector<pcl::PointIndices>&, unsigned int, unsigned int);
-#define PCL_INSTANTIATE_extractLiscoClusters_indices(T)                                                  \
-  template void PCL_EXPORTS pcl::extractLiscoClusters<T>(const pcl::PointCloud<T>&, const pcl::Indices&, \
-                                                         float, std::vector<pcl::PointIndices>&,         \
-                                                         unsigned int, unsigned int);
+#define PCL_INSTANTIATE_extractLiscoClusters(T)                                            \
+  template void PCL_EXPORTS pcl::extractLiscoClusters<T>(const pcl::PointCloud<T>&, float, \
+                                                         std::vector<pcl::PointIndices>&, unsigned int, unsigned int);
+#define PCL_INSTANTIATE_extractLiscoClusters_indices(T)                                                         \
+  template void PCL_EXPORTS pcl::extractLiscoClusters<T>(const pcl::PointCloud<T>&, const pcl::Indices&, float, \
+                                                         std::vector<pcl::PointIndices>&, unsigned int, unsigned int);
