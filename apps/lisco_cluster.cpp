@@ -3,14 +3,18 @@
 //
 // Clusters scan files and writes what it found.
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <limits>
 #include <map>
+#include <mutex>
 #include <stdexcept>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include <pcl/segmentation/lisco_cluster_extraction.h>
@@ -36,22 +40,24 @@ struct Options {
   float ground_z = -std::numeric_limits<float>::infinity();
   fs::path output;
   bool cloud_per_cluster = false;
+  unsigned threads = 1;  ///< files worked on side by side
 };
 
 double milliseconds(std::chrono::steady_clock::duration time) {
   return std::chrono::duration<double, std::milli>(time).count();
 }
 
-/// Reads a count that boost would also accept as "-1" (as a huge number).
-unsigned countOf(const std::string& text, const char* option) {
+/// Reads a whole number; boost would also accept "-1" (as a huge one).
+unsigned countOf(const std::string& text, const char* option, int least) {
   std::size_t end = 0;
   long long value = -1;
   try {
     value = std::stoll(text, &end);
   } catch (const std::exception&) {
   }
-  if (end != text.size() || value < 1 || value > std::numeric_limits<int>::max())
-    throw std::runtime_error(std::string(option) + " must be a whole number from 1 to 2147483647, not '" + text + "'");
+  if (end != text.size() || value < least || value > std::numeric_limits<int>::max())
+    throw std::runtime_error(std::string(option) + " must be a whole number from " + std::to_string(least) +
+                             " to 2147483647, not '" + text + "'");
   return static_cast<unsigned>(value);
 }
 
@@ -65,6 +71,7 @@ bool parse(int argc, char** argv, Options& options) {
       "Options");
   std::string min_size = "10";
   std::string max_size;
+  std::string threads = "1";
   std::string output;
   // clang-format off
   shown.add_options()
@@ -73,6 +80,8 @@ bool parse(int argc, char** argv, Options& options) {
     ("max-size", po::value<std::string>(&max_size)->value_name("N"), "most returns of a cluster (default: no limit)")
     ("ground-z", po::value<float>(&options.ground_z)->value_name("M"),
      "leave out returns below this height in metres (default: none)")
+    ("threads", po::value<std::string>(&threads)->value_name("N"),
+     "work on N files side by side (default 1; 0: as many as there are processors)")
     ("output,o", po::value<std::string>(&output)->value_name("DIR"),
      "folder for labels.pcd, clusters.csv, range_image.png and top_view.png; of several inputs, each has a folder in it")
     ("clouds", po::bool_switch(&options.cloud_per_cluster), "also write one cloud per cluster (needs --output)")
@@ -102,9 +111,11 @@ bool parse(int argc, char** argv, Options& options) {
     throw std::runtime_error("--tolerance must be a positive number of metres");
   if (given.count("ground-z") != 0 && !std::isfinite(options.ground_z))
     throw std::runtime_error("--ground-z must be a number of metres");
-  options.min_size = countOf(min_size, "--min-size");
-  if (given.count("max-size") != 0) options.max_size = countOf(max_size, "--max-size");
+  options.min_size = countOf(min_size, "--min-size", 1);
+  if (given.count("max-size") != 0) options.max_size = countOf(max_size, "--max-size", 1);
   if (options.max_size < options.min_size) throw std::runtime_error("--max-size is smaller than --min-size");
+  options.threads = countOf(threads, "--threads", 0);
+  if (options.threads == 0) options.threads = std::max(1U, std::thread::hardware_concurrency());
   if (given.count("output") != 0 && output.empty()) throw std::runtime_error("--output is empty");
   options.output = output;
   if (options.cloud_per_cluster && output.empty()) throw std::runtime_error("--clouds needs --output");
@@ -139,66 +150,111 @@ void printSummary(const ClusteredScan& scan, const Options& options, double read
   std::printf("\n");
 }
 
-void clusterFile(const fs::path& file, const fs::path& folder, const Options& options,
-                 pcl::LiscoClusterExtraction<pcl::PointXYZ>& extraction, ProgressBar& progress) {
-  using Clock = std::chrono::steady_clock;
-  const auto start = Clock::now();
-  ClusteredScan scan;
-  scan.name = file.filename().string();
-  scan.tolerance = options.tolerance;
-  scan.cloud = readCloudFile(file);
-  if (scan.cloud->empty()) throw std::runtime_error(file.string() + ": holds no points");
-  scan.clustered = returnsAbove(*scan.cloud, options.ground_z);
+/// A file and where its results go (nowhere, if empty).
+struct Job {
+  fs::path file, folder;
+};
 
-  const auto read = Clock::now();
-  extraction.setInputCloud(scan.cloud);
-  extraction.setIndices(std::make_shared<const pcl::Indices>(scan.clustered));
-  extraction.extract(scan.clusters);
-
-  const auto clustered = Clock::now();
-  if (!folder.empty()) writeResults(scan, folder, options.cloud_per_cluster);
-  const auto written = Clock::now();
-
-  progress.clear();
-  printSummary(scan, options, milliseconds(read - start), milliseconds(clustered - read),
-               milliseconds(written - clustered), folder);
-}
-
-int run(const Options& options) {
+/// One job per input file. Of several, each has a folder of its own, numbered where file names repeat.
+std::vector<Job> jobsOf(const Options& options) {
   const std::vector<fs::path> files = expandInputs(options.inputs);
-  pcl::LiscoClusterExtraction<pcl::PointXYZ> extraction;
-  extraction.setClusterTolerance(options.tolerance);
-  extraction.setMinClusterSize(options.min_size);
-  extraction.setMaxClusterSize(options.max_size);
-
-  ProgressBar progress(files.size());
-  std::map<std::string, int> used;  // names of output folders
-  bool all_well = true;
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    progress.show(i, files[i].filename().string());
+  std::vector<Job> jobs;
+  std::map<std::string, int> used;
+  for (const fs::path& file : files) {
     fs::path folder = options.output;
     if (!folder.empty() && files.size() > 1) {
-      const std::string stem = files[i].stem().string();
+      const std::string stem = file.stem().string();
       const int before = used[stem]++;
       folder /= before == 0 ? stem : stem + "-" + std::to_string(before + 1);
     }
-    try {
-      clusterFile(files[i], folder, options, extraction, progress);
-    } catch (const std::exception& error) {
-      progress.clear();
-      std::cerr << "lisco_cluster: " << error.what() << '\n';
-      all_well = false;
+    jobs.push_back({file, folder});
+  }
+  return jobs;
+}
+
+/// Works off jobs one after the other; any number of workers may share them.
+class Workers {
+ public:
+  Workers(const Options& options, std::vector<Job> jobs)
+      : options_(options), jobs_(std::move(jobs)), progress_(jobs_.size()) {}
+
+  /// \return whether all went well
+  bool run() {
+    std::vector<std::thread> others;
+    for (std::size_t i = 1; i < std::min<std::size_t>(options_.threads, jobs_.size()); ++i)
+      others.emplace_back([this] { work(); });
+    work();
+    for (std::thread& other : others) other.join();
+    return all_well_;
+  }
+
+ private:
+  void work() {
+    pcl::LiscoClusterExtraction<pcl::PointXYZ> extraction;
+    extraction.setClusterTolerance(options_.tolerance);
+    extraction.setMinClusterSize(options_.min_size);
+    extraction.setMaxClusterSize(options_.max_size);
+    for (std::size_t job = next_++; job < jobs_.size(); job = next_++) {
+      {
+        const std::lock_guard<std::mutex> lock(terminal_);
+        progress_.show(done_, jobs_[job].file.filename().string());
+      }
+      std::string failure;
+      try {
+        clusterFile(jobs_[job], extraction);
+      } catch (const std::exception& error) {
+        failure = error.what();
+      }
+      const std::lock_guard<std::mutex> lock(terminal_);
+      ++done_;
+      if (failure.empty()) continue;
+      progress_.clear();
+      std::cerr << "lisco_cluster: " << failure << '\n';
+      all_well_ = false;
     }
   }
-  return all_well ? 0 : 2;
-}
+
+  void clusterFile(const Job& job, pcl::LiscoClusterExtraction<pcl::PointXYZ>& extraction) {
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    ClusteredScan scan;
+    scan.name = job.file.filename().string();
+    scan.tolerance = options_.tolerance;
+    scan.cloud = readCloudFile(job.file);
+    if (scan.cloud->empty()) throw std::runtime_error(job.file.string() + ": holds no points");
+    scan.clustered = returnsAbove(*scan.cloud, options_.ground_z);
+
+    const auto read = Clock::now();
+    extraction.setInputCloud(scan.cloud);
+    extraction.setIndices(std::make_shared<const pcl::Indices>(scan.clustered));
+    extraction.extract(scan.clusters);
+
+    const auto clustered = Clock::now();
+    if (!job.folder.empty()) writeResults(scan, job.folder, options_.cloud_per_cluster);
+    const auto written = Clock::now();
+
+    const std::lock_guard<std::mutex> lock(terminal_);
+    progress_.clear();
+    printSummary(scan, options_, milliseconds(read - start), milliseconds(clustered - read),
+                 milliseconds(written - clustered), job.folder);
+  }
+
+  const Options& options_;
+  const std::vector<Job> jobs_;
+  std::atomic<std::size_t> next_{0};
+  std::mutex terminal_;  ///< guards what follows, and what is printed
+  ProgressBar progress_;
+  std::size_t done_ = 0;
+  bool all_well_ = true;
+};
 
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
     Options options;
-    return parse(argc, argv, options) ? run(options) : 0;
+    if (!parse(argc, argv, options)) return 0;
+    return Workers(options, jobsOf(options)).run() ? 0 : 2;
   } catch (const std::exception& error) {
     std::cerr << "lisco_cluster: " << error.what() << '\n';
     return 2;

@@ -233,6 +233,8 @@ TEST_F(Programs, ClusterRefusesBadOptionsInOneLine) {
   expectRefusal("walls.pcd --tolerance 0.3 --ground-z low", {"ground-z"});
   expectRefusal("walls.pcd --tolerance 0.3 --ground-z nan", {"ground-z"});
   expectRefusal("walls.pcd --tolerance 0.3 --nonsense", {"nonsense"});
+  expectRefusal("walls.pcd --tolerance 0.3 --threads -1", {"threads"});
+  expectRefusal("walls.pcd --tolerance 0.3 --threads many", {"--threads"});
   expectRefusal("walls.pcd --tolerance 0.3 --clouds", {"--clouds needs --output"});
   expectRefusal("walls.pcd --tolerance 0.3 -o file/results", {"file/results", "cannot be written"});
 }
@@ -266,6 +268,21 @@ TEST_F(Programs, ClusterGoesOnAfterABadFileAmongMany) {
   EXPECT_FALSE(fs::exists(folder_ / "results/b"));
 }
 
+TEST_F(Programs, ClusterFindsTheSameOnAnyNumberOfThreads) {
+  for (const char* name : {"a.pcd", "b.pcd", "c.pcd", "d.pcd", "e.pcd"}) write(name, twoWalls());
+  ASSERT_EQ(cluster(". --tolerance 0.3 -o one").status, 0);
+  for (const char* threads : {"3", "0"}) {
+    const std::string folder = std::string("with_") + threads;
+    const Outcome outcome =
+        cluster("a.pcd b.pcd c.pcd d.pcd e.pcd --tolerance 0.3 --threads " + std::string(threads) + " -o " + folder);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    for (const char* name : {"a", "b", "c", "d", "e"})
+      for (const char* result : {"labels.pcd", "clusters.csv", "range_image.png", "top_view.png"})
+        EXPECT_EQ(textOf(folder_ / folder / name / result), textOf(folder_ / "one" / name / result))
+            << name << ' ' << result;
+  }
+}
+
 TEST_F(Programs, ScanWithoutAnyReturnHasNoClusters) {
   write("none.pcd",
         "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 2\nVIEWPOINT 0 0 0 "
@@ -280,7 +297,8 @@ TEST_F(Programs, ScanWithoutAnyReturnHasNoClusters) {
 TEST_F(Programs, TellTheirUseAndVersion) {
   const Outcome help = cluster("--help");
   EXPECT_EQ(help.status, 0);
-  for (const char* option : {"--tolerance", "--min-size", "--max-size", "--ground-z", "--output", "--clouds"})
+  for (const char* option :
+       {"--tolerance", "--min-size", "--max-size", "--ground-z", "--output", "--clouds", "--threads"})
     EXPECT_NE(help.out.find(option), std::string::npos) << option;
   EXPECT_EQ(cluster("--version").out.rfind("lisco_cluster 0.1.0", 0), 0U);
 }
