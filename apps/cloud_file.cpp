@@ -6,9 +6,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -70,23 +72,36 @@ void copyField(const pcl::PCLPointCloud2& blob, const fs::path& file, const char
   }
 }
 
-/// Whether a PCD file has a header that ends: PCL 1.13's reader crashes without one.
-bool hasPcdHeader(const fs::path& file) {
+/// Looks at a PCD file's header before PCL does: PCL 1.13's reader crashes without one, and asks for all the memory that
+/// a wrong one promises.
+void checkPcdHeader(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  bool fields = false;
   constexpr int kMostLines = 1000;
+  bool fields = false;
+  double width = 0;
+  double height = 1;
   std::string line;
   for (int i = 0; i < kMostLines && std::getline(stream, line); ++i) {
-    fields = fields || line.rfind("FIELDS", 0) == 0 || line.rfind("COLUMNS", 0) == 0;
-    if (line.rfind("DATA", 0) == 0) return fields;
+    std::istringstream words(line);
+    std::string key, value;
+    words >> key >> value;
+    fields = fields || key == "FIELDS" || key == "COLUMNS";
+    if (key == "WIDTH") width = std::strtod(value.c_str(), nullptr);
+    if (key == "HEIGHT") height = std::strtod(value.c_str(), nullptr);
+    if (key != "DATA") continue;
+    // A point takes a byte at least; compressed, a few hundred may share one.
+    const double most = static_cast<double>(fs::file_size(file)) * (value == "binary_compressed" ? 300 : 1);
+    if (fields && width * height > most) fail(file, "is truncated: it holds fewer points than its header says");
+    if (fields) return;
+    break;
   }
-  return false;
+  fail(file, "is no pcd file: it has no header");
 }
 
 Cloud::Ptr readByPcl(const fs::path& file, const std::string& ending) {
   // PCL's readers print what they think; this program says it once, in its own words.
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
-  if (ending == ".pcd" && !hasPcdHeader(file)) fail(file, "is no pcd file: it has no header");
+  if (ending == ".pcd") checkPcdHeader(file);
   pcl::PCLPointCloud2 blob;
   auto cloud = std::make_shared<Cloud>();
   Eigen::Vector4f origin = Eigen::Vector4f::Zero();
@@ -171,7 +186,7 @@ Cloud::Ptr readAuthorsCsv(const fs::path& file) {
   constexpr double kMost = 1e6;
   const bool header = parseThree(next_line(), values);
   if (!header || values[0] < 1 || values[1] < 1 || values[0] > kMost || values[1] > kMost ||
-      values[0] != std::floor(values[0]) || values[1] != std::floor(values[1]))
+      values[0] != std::floor(values[0]) || values[1] != std::floor(values[1]) || values[2] != 0)
     fail(file, "line 1 is not 'lasers,steps,0'");
   const auto lasers = static_cast<std::size_t>(values[0]);
   const auto steps = static_cast<std::size_t>(values[1]);
@@ -223,10 +238,19 @@ Cloud::Ptr readCloudFile(const fs::path& file) {
 
 std::vector<fs::path> cloudFilesIn(const fs::path& folder) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.is_regular_file() &&
-        std::find(kEndings.begin(), kEndings.end(), endingOf(entry.path())) != kEndings.end())
-      files.push_back(entry.path());
+  try {
+    // What these programs have written into a folder is no scan of it.
+    const bool results = fs::exists(folder / kResultMarker);
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      const std::string name = entry.path().filename().string();
+      if (results && (name == "labels.pcd" || name == "clusters.csv")) continue;
+      if (entry.is_regular_file() &&
+          std::find(kEndings.begin(), kEndings.end(), endingOf(entry.path())) != kEndings.end())
+        files.push_back(entry.path());
+    }
+  } catch (const fs::filesystem_error& error) {
+    fail(folder, "cannot be read: " + error.code().message());
+  }
   std::sort(files.begin(), files.end());
   return files;
 }

@@ -19,7 +19,12 @@ using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 /// \throws std::runtime_error with one line that names the file and what is wrong with it
 Cloud::Ptr readCloudFile(const std::filesystem::path& file);
 
-/// Files of the folder, sorted by name, that readCloudFile knows by their ending. Not recursive.
+/// Name of the file by which a folder with results of these programs is known.
+inline constexpr const char* kResultMarker = ".lisco_results";
+
+/// Files of the folder, sorted by name, that readCloudFile knows by their ending, but for results written there. Not
+/// recursive.
+/// \throws std::runtime_error if it cannot be read
 std::vector<std::filesystem::path> cloudFilesIn(const std::filesystem::path& folder);
 
 /// Inputs as given on a command line, each folder replaced by the files in it.

@@ -9,8 +9,8 @@
 #include <cstdio>
 #include <iostream>
 #include <limits>
-#include <map>
 #include <mutex>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -132,7 +132,7 @@ void printSummary(const ClusteredScan& scan, const Options& options, double read
 
   std::printf("%s\n", scan.name.c_str());
   if (cloud.height > 1)
-    std::printf("  scan      %u lasers x %u columns, %zu returns", cloud.height, cloud.width, returns);
+    std::printf("  scan      %u rows x %u columns, %zu returns", cloud.height, cloud.width, returns);
   else
     std::printf("  scan      unorganized, %zu points, %zu returns", cloud.size(), returns);
   if (std::isfinite(options.ground_z))
@@ -159,13 +159,14 @@ struct Job {
 std::vector<Job> jobsOf(const Options& options) {
   const std::vector<fs::path> files = expandInputs(options.inputs);
   std::vector<Job> jobs;
-  std::map<std::string, int> used;
+  std::set<std::string> taken;
   for (const fs::path& file : files) {
     fs::path folder = options.output;
     if (!folder.empty() && files.size() > 1) {
       const std::string stem = file.stem().string();
-      const int before = used[stem]++;
-      folder /= before == 0 ? stem : stem + "-" + std::to_string(before + 1);
+      std::string name = stem;
+      for (int number = 2; !taken.insert(name).second; ++number) name = stem + "-" + std::to_string(number);
+      folder /= name;
     }
     jobs.push_back({file, folder});
   }

@@ -20,6 +20,7 @@
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 
 #include "clustering.h"
+#include "lisco/version.h"
 #include "result_files.h"
 #include "simulated_street.h"
 
@@ -79,7 +80,8 @@ int run(const std::string& folder) {
     throw std::runtime_error(scan_file.string() +
                              ": exists and was not written by this program; choose another folder");
   writeResults(scan, folder, false);
-  pcl::PCDWriter().writeBinary(scan_file.string(), *scan.cloud);
+  if (pcl::PCDWriter().writeBinary(scan_file.string(), *scan.cloud) != 0)
+    throw std::runtime_error(scan_file.string() + ": cannot be written");
   std::printf("simulated street: 64 lasers x 1800 columns, %zu returns above the ground, tolerance %g m\n",
               scan.clustered.size(), kTolerance);
   std::printf("  PCL    %5zu clusters  %8.2f ms\n", pcl_clusters.size(), pcl_ms);
@@ -94,11 +96,17 @@ int run(const std::string& folder) {
 
 int main(int argc, char** argv) {
   try {
-    if (argc != 2 || std::string(argv[1]).rfind("--", 0) == 0) {
-      std::cerr << "Usage: lisco_demo FOLDER-FOR-RESULTS\n";
-      return 2;
+    const std::string argument = argc == 2 ? argv[1] : "";
+    if (argument == "--version") {
+      std::cout << "lisco_demo " << LISCO_VERSION << '\n';
+      return 0;
     }
-    return run(argv[1]);
+    const bool asked = argument == "--help";
+    if (asked || argument.empty() || argument[0] == '-') {
+      (asked ? std::cout : std::cerr) << "Usage: lisco_demo FOLDER-FOR-RESULTS\n";
+      return asked ? 0 : 2;
+    }
+    return run(argument);
   } catch (const std::exception& error) {
     std::cerr << "lisco_demo: " << error.what() << '\n';
     return 2;

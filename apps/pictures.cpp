@@ -249,7 +249,8 @@ std::vector<int> staggerOf(const Cloud& cloud) {
   if (steps.empty()) return shifts;
   std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
   const double step = steps[steps.size() / 2];
-  if (step == 0) return shifts;
+  constexpr double kLeastStep = 1e-6;
+  if (std::fabs(step) < kLeastStep) return shifts;
 
   double first = std::numeric_limits<double>::quiet_NaN();
   for (int row = 0; row < rows; ++row) {
@@ -268,6 +269,20 @@ std::vector<int> staggerOf(const Cloud& cloud) {
         static_cast<int>(std::lround(std::remainder(offset - first, 2 * kPi) / step));
   }
   return shifts;
+}
+
+/// Every n-th cell, so that a picture has at most 8000 columns and rows.
+Cells thinnedOut(const Cells& cells) {
+  constexpr int kMost = 8000;
+  const int n = (cells.columns + kMost - 1) / kMost;
+  const int m = (cells.rows + kMost - 1) / kMost;
+  if (n == 1 && m == 1) return cells;
+  Cells thin{(cells.columns + n - 1) / n, (cells.rows + m - 1) / m, {}};
+  for (int row = 0; row < cells.rows; row += m)
+    for (int column = 0; column < cells.columns; column += n)
+      thin.colors.push_back(cells.colors[static_cast<std::size_t>(row) * static_cast<std::size_t>(cells.columns) +
+                                         static_cast<std::size_t>(column)]);
+  return thin;
 }
 
 /// The cells of an organized scan, each row shifted by its stagger; of any other, a projection by azimuth and
@@ -324,11 +339,11 @@ Cells cellsOf(const ClusteredScan& scan) {
 }  // namespace
 
 void drawRangeImage(const ClusteredScan& scan, const std::filesystem::path& png) {
-  const Cells cells = cellsOf(scan);
+  const Cells cells = thinnedOut(cellsOf(scan));
   constexpr int kMargin = 40;
   constexpr int kTop = 44;
   const int scale_x = std::clamp(1800 / cells.columns, 1, 12);
-  const int scale_y = std::clamp(420 / cells.rows, scale_x, 12);
+  const int scale_y = std::clamp(std::max(420 / cells.rows, std::min(scale_x, 2000 / cells.rows)), 1, 12);
   Canvas canvas(cells.columns * scale_x + 2 * kMargin, cells.rows * scale_y + kTop + kMargin);
 
   canvas.beginPixels();
@@ -360,7 +375,7 @@ void drawRangeImage(const ClusteredScan& scan, const std::filesystem::path& png)
                           : "azimuth " + std::to_string(180 - 360 * column / cells.columns) + "\u00b0");
   }
   canvas.text(canvas.width() - kMargin, bottom + 22, 13,
-              organized ? std::to_string(cells.rows) + " lasers" : "unorganized: by azimuth and elevation",
+              organized ? std::to_string(scan.cloud->height) + " rows" : "unorganized: by azimuth and elevation",
               Canvas::Align::kRight);
   canvas.save(png);
 }

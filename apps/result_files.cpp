@@ -22,7 +22,6 @@ namespace fs = std::filesystem;
 
 constexpr std::array<const char*, 5> kResults{"labels.pcd", "clusters.csv", "range_image.png", "top_view.png",
                                               "clusters"};
-constexpr const char* kMarker = ".lisco_results";  // says that the results in a folder are ours to replace
 
 /// A folder that disappears again unless it is kept.
 class TemporaryFolder {
@@ -76,7 +75,7 @@ void writeTable(const ClusteredScan& scan, const fs::path& file) {
   table << "id,size,centroid_x,centroid_y,centroid_z,min_x,min_y,min_z,max_x,max_y,max_z,nearest_range\n";
   for (std::size_t number = 0; number < scan.clusters.size(); ++number) {
     const ClusterShape s = shapeOf(*scan.cloud, scan.clusters[number]);
-    char line[400];
+    char line[1024];  // twelve numbers of up to 46 characters
     const auto wide = [](float value) { return static_cast<double>(value); };
     std::snprintf(line, sizeof line, "%zu,%zu,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f\n", number + 1, s.size,
                   s.centroid[0], s.centroid[1], s.centroid[2], wide(s.lo[0]), wide(s.lo[1]), wide(s.lo[2]),
@@ -99,10 +98,22 @@ void writeClusterClouds(const ClusteredScan& scan, const fs::path& folder) {
   }
 }
 
+/// Removes what an earlier run has written there, and nothing else.
+void removeClusterClouds(const fs::path& folder) {
+  if (!fs::is_directory(folder)) return;
+  std::vector<fs::path> ours;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind("cluster_", 0) == 0 && entry.path().extension() == ".pcd") ours.push_back(entry.path());
+  }
+  for (const fs::path& file : ours) fs::remove(file);
+  if (fs::is_empty(folder)) fs::remove(folder);
+}
+
 }  // namespace
 
 bool isResultFolder(const fs::path& folder) {
-  return fs::exists(folder / kMarker);
+  return fs::exists(folder / kResultMarker);
 }
 
 void writeResults(const ClusteredScan& scan, const fs::path& folder, bool cloud_per_cluster) {
@@ -121,13 +132,22 @@ void writeResults(const ClusteredScan& scan, const fs::path& folder, bool cloud_
     drawTopView(scan, aside.path() / "top_view.png");
     if (cloud_per_cluster) writeClusterClouds(scan, aside.path() / "clusters");
 
-    std::ofstream(folder / kMarker) << "The results in this folder were written by lisco and may be replaced by it.\n";
-    fs::remove_all(folder / "clusters");
-    for (const char* name : kResults)
-      if (fs::exists(aside.path() / name)) fs::rename(aside.path() / name, folder / name);
+    std::ofstream(folder / kResultMarker)
+        << "The results in this folder were written by lisco and may be replaced by it.\n";
+    removeClusterClouds(folder / "clusters");
+    for (const char* name : kResults) {
+      if (!fs::is_directory(aside.path() / name)) {
+        if (fs::exists(aside.path() / name)) fs::rename(aside.path() / name, folder / name);
+        continue;
+      }
+      fs::create_directory(folder / name);  // it may be there, with things of somebody else
+      for (const auto& entry : fs::directory_iterator(aside.path() / name))
+        fs::rename(entry.path(), folder / name / entry.path().filename());
+    }
     made.keep();
   } catch (const fs::filesystem_error& error) {
-    throw std::runtime_error(error.path1().string() + ": cannot be written: " + error.code().message());
+    const fs::path& path = error.path2().empty() ? error.path1() : error.path2();
+    throw std::runtime_error(path.string() + ": cannot be written: " + error.code().message());
   } catch (const pcl::IOException&) {
     throw std::runtime_error(folder.string() + ": cannot be written");
   }

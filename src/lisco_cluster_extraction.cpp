@@ -8,8 +8,8 @@
 #include <pcl/segmentation/impl/lisco_cluster_extraction.hpp>
 
 bool pcl::detail::LiscoCloudClusterer::fitsIndexType(std::size_t points) {
-  // The engine numbers points with 32 bits, and two of those numbers have a meaning of their own.
-  return (points <= static_cast<std::size_t>(std::numeric_limits<index_t>::max()) && points < kSelected);
+  // The engine numbers points, runs and patches with 31 bits.
+  return (points <= static_cast<std::size_t>(std::numeric_limits<index_t>::max()) && points < std::size_t{1} << 31);
 }
 
 bool pcl::detail::LiscoCloudClusterer::select(std::size_t points, const Indices* indices, const char* caller) {

@@ -25,6 +25,15 @@ Direction directionOf(const Return& point, const std::array<float, 3>& origin) {
   return {std::atan2(y, x), std::atan2(z, std::hypot(x, y))};
 }
 
+double angleBetween(const Return& a, const Return& b, const std::array<float, 3>& origin) {
+  const Direction p = directionOf(a, origin);
+  const Direction q = directionOf(b, origin);
+  const double across = std::sin(0.5 * (p.azimuth - q.azimuth));
+  const double along = std::sin(0.5 * (p.elevation - q.elevation));
+  const double chord = along * along + std::cos(p.elevation) * std::cos(q.elevation) * across * across;  // haversine
+  return 2.0 * std::asin(std::sqrt(std::min(chord, 1.0)));
+}
+
 float median(std::vector<double>& values, float if_empty) {
   if (values.empty()) return if_empty;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -50,7 +59,7 @@ bool mayHaveSeen(const std::array<float, 3>& origin, const Box& box) {
 
 Parameters ScanSurvey::judge(const std::array<float, 3>& sensor, bool organized) const {
   // A view whose neighbouring cells lie further apart than this, in the median, is no view.
-  constexpr float kWidestStep = 0.05F;
+  constexpr double kWidestStep = 0.05;
   constexpr std::size_t kFewest = 8;
 
   Parameters parameters;
@@ -71,6 +80,10 @@ Parameters ScanSurvey::judge(const std::array<float, 3>& sensor, bool organized)
 
   std::vector<double> azimuth_steps;
   for (const Pair& pair : along_row_) {
+    if (!organized) {  // consecutive points may follow each other up and down as well
+      azimuth_steps.push_back(angleBetween(pair.a, pair.b, parameters.view.origin));
+      continue;
+    }
     const double turn = std::fabs(directionOf(pair.a, parameters.view.origin).azimuth -
                                   directionOf(pair.b, parameters.view.origin).azimuth);
     azimuth_steps.push_back(std::min(turn, 2.0 * kPi - turn));
@@ -81,8 +94,12 @@ Parameters ScanSurvey::judge(const std::array<float, 3>& sensor, bool organized)
                                         directionOf(pair.b, parameters.view.origin).elevation));
   parameters.view.azimuth_step = median(azimuth_steps, parameters.view.azimuth_step);
   parameters.view.elevation_step = median(elevation_steps, parameters.view.elevation_step);
-  if (parameters.view.azimuth_step <= kWidestStep && parameters.view.elevation_step <= 4.0F * kWidestStep)
-    parameters.mask = Parameters::Mask::kView;
+  const auto azimuth_step = static_cast<double>(parameters.view.azimuth_step);
+  const auto elevation_step = static_cast<double>(parameters.view.elevation_step);
+  const bool coarse = azimuth_step > kWidestStep || elevation_step > 4.0 * kWidestStep;
+  const bool fine = azimuth_step * ViewMask::kColumnsPerTile < kPi / ViewMask::kMostSectors ||
+                    elevation_step * ViewMask::kLasersPerTile < 0.5 * kPi / ViewMask::kMostRows;
+  if (!coarse && !fine) parameters.mask = Parameters::Mask::kView;
   return parameters;
 }
 

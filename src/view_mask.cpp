@@ -5,14 +5,10 @@
 namespace lisco {
 namespace {
 
-// A tile's width in units of what the tolerance is seen under from the near end of its layer, and its least
-// size in columns and lasers. Measured: see doc/algorithm.md.
+// A tile's width in units of what the tolerance is seen under from the near end of its layer. Measured: see
+// doc/algorithm.md.
 constexpr double kTileWidth = 2.0;
-constexpr double kColumnsPerTile = 4.0;
-constexpr double kLasersPerTile = 1.0;
 constexpr double kFirstRange = 2.0;  // near end of layer 1 in units of the tolerance
-constexpr double kMostSectors = 1024.0;
-constexpr double kMostRows = 1024.0;
 constexpr std::uint32_t kLeastSlots = 1024;
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::size_t kBatch = 16;

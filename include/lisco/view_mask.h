@@ -34,6 +34,13 @@ struct ViewHints {
 /// their elevation asks for.
 class ViewMask {
  public:
+  /// The least size of a tile, in columns and lasers, and the most tiles around the turn and from straight down to
+  /// straight up. A view with finer steps than these allow has too much in a tile to be fast.
+  static constexpr double kColumnsPerTile = 4.0;
+  static constexpr double kLasersPerTile = 1.0;
+  static constexpr double kMostSectors = 4096.0;
+  static constexpr double kMostRows = 4096.0;
+
   /// Lays out the tiles, and the table for about `expected_returns` returns. Keeps its memory when called again.
   void prepare(const Tolerance& tolerance, const ViewHints& hints, std::size_t expected_returns);
 

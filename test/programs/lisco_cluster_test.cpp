@@ -105,7 +105,7 @@ TEST_F(Programs, ClusterWritesLabelsTableAndPictures) {
   const Outcome outcome = cluster("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
-  EXPECT_NE(outcome.out.find("4 lasers x 41 columns, 160 returns, 120 above the ground"), std::string::npos)
+  EXPECT_NE(outcome.out.find("4 rows x 41 columns, 160 returns, 120 above the ground"), std::string::npos)
       << outcome.out;
   EXPECT_NE(outcome.out.find("clusters  2 of at least 10"), std::string::npos) << outcome.out;
 
@@ -143,7 +143,14 @@ TEST_F(Programs, ClusterWritesOneCloudPerClusterOnRequest) {
   ASSERT_EQ(cluster("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results --clouds").status, 0);
   for (const char* name : {"cluster_0001.pcd", "cluster_0002.pcd"})
     EXPECT_EQ(lisco_apps::readCloudFile(folder_ / "results/clusters" / name)->size(), 60U) << name;
-  // A second run replaces them, and one without them leaves none behind.
+  // A second run replaces them, and one without them leaves none behind, but what is somebody else's.
+  write("results/clusters/mine.txt", "keep me");
+  ASSERT_EQ(cluster("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results --clouds").status, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "results/clusters/cluster_0002.pcd"));
+  ASSERT_EQ(cluster("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results").status, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "results/clusters/cluster_0002.pcd"));
+  EXPECT_EQ(textOf(folder_ / "results/clusters/mine.txt"), "keep me");
+  fs::remove(folder_ / "results/clusters/mine.txt");
   ASSERT_EQ(cluster("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results").status, 0);
   EXPECT_FALSE(fs::exists(folder_ / "results/clusters"));
 }
@@ -166,7 +173,7 @@ TEST_F(Programs, ClusterReadsEveryFormat) {
   for (std::size_t at = 0; (at = outcome.out.find("clusters  2 of at least 1 ", at)) != std::string::npos; ++at)
     ++found;
   EXPECT_EQ(found, 4U) << outcome.out;
-  EXPECT_NE(outcome.out.find("2 lasers x 2 columns, 3 returns"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("2 rows x 2 columns, 3 returns"), std::string::npos) << outcome.out;
 
   const auto csv = lisco_apps::readCloudFile(folder_ / "b.csv");
   EXPECT_NEAR(csv->at(0, 0).x, 5.0F, 1e-5F);
@@ -193,7 +200,11 @@ TEST_F(Programs, ClusterRefusesBadFilesInOneLine) {
         "ascii\n1 2 3\n");
   write("odd.bin", "seventeen bytes!!");
   write("nothing.bin", "");
+  write("promises.pcd",
+        "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 500000000\nHEIGHT 1\nPOINTS 500000000\n"
+        "DATA ascii\n1 2 3\n");
   write("header.csv", "lasers,steps,0\n");
+  write("third.csv", "1,1,7\n1,0,0\n");
   write("short.csv", "2,2,0\n1,0,0\n1,0,0\n1,0,0\n");
   write("long.csv", "1,1,0\n1,0,0\n1,0,0\n");
   write("words.csv", "1,1,0\none,0,0\n");
@@ -211,6 +222,8 @@ TEST_F(Programs, ClusterRefusesBadFilesInOneLine) {
   expectRefusal("integers.pcd" + options, {"integers.pcd", "neither float nor double"});
   expectRefusal("odd.bin" + options, {"odd.bin", "17 bytes", "multiple of 16"});
   expectRefusal("nothing.bin" + options, {"nothing.bin", "holds no points"});
+  expectRefusal("promises.pcd" + options, {"promises.pcd", "fewer points than its header says"});
+  expectRefusal("third.csv" + options, {"third.csv", "line 1"});
   expectRefusal("header.csv" + options, {"header.csv", "line 1", "lasers,steps,0"});
   expectRefusal("short.csv" + options, {"short.csv", "promises 4 cells"});
   expectRefusal("long.csv" + options, {"long.csv", "goes on"});
@@ -266,6 +279,45 @@ TEST_F(Programs, ClusterGoesOnAfterABadFileAmongMany) {
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   for (const char* made : {"a", "c", "a-2"}) EXPECT_TRUE(fs::exists(folder_ / "results" / made / "labels.pcd")) << made;
   EXPECT_FALSE(fs::exists(folder_ / "results/b"));
+}
+
+TEST_F(Programs, ClusterGivesEachInputAFolderOfItsOwn) {
+  write("x.pcd", twoWalls());
+  write("x-2.pcd", twoWalls());
+  write("x.bin", floats({5, 0, 0, 1}));
+  const Outcome outcome = cluster(". --tolerance 0.3 -o results");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* made : {"x", "x-2", "x-3"})
+    EXPECT_TRUE(fs::exists(folder_ / "results" / made / "labels.pcd")) << made;
+}
+
+TEST_F(Programs, ClusterMayWriteBesideItsInput) {
+  write("x.pcd", twoWalls());
+  for (int run = 0; run < 2; ++run) {
+    const Outcome outcome = cluster(". --tolerance 0.3 -o .");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.out.rfind("x.pcd\n", 0), 0U) << outcome.out;
+  }
+}
+
+TEST_F(Programs, ClusterWritesAnyCoordinates) {
+  write("far.pcd",
+        "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\n"
+        "POINTS 2\nDATA ascii\n3e38 1e30 -3e38\n-3e38 -3e38 -3e38\n");
+  ASSERT_EQ(cluster("far.pcd --tolerance 0.3 --min-size 1 -o results").status, 0);
+  const std::string table = textOf(folder_ / "results/clusters.csv");
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
+  EXPECT_EQ(std::count(table.begin(), table.end(), ','), 3 * 11);
+}
+
+TEST_F(Programs, ClusterDrawsScansOfAnyShape) {
+  std::string header = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nVIEWPOINT 0 0 0 1 0 0 0\n";
+  const std::string data = floats(std::vector<float>(3U * 80000U, 1.5F));
+  write("wide.pcd", header + "WIDTH 40000\nHEIGHT 2\nPOINTS 80000\nDATA binary\n" + data);
+  write("tall.pcd", header + "WIDTH 1\nHEIGHT 80000\nPOINTS 80000\nDATA binary\n" + data);
+  const Outcome outcome = cluster("wide.pcd tall.pcd --tolerance 0.3 -o results");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(fs::exists(folder_ / "results/tall/range_image.png"));
 }
 
 TEST_F(Programs, ClusterFindsTheSameOnAnyNumberOfThreads) {

@@ -182,10 +182,12 @@ class LiscoClusterExtraction : public PCLBase<PointT> {
 };
 
 /** \brief Extract Euclidean clusters as LiscoClusterExtraction does, from a whole cloud. The counterpart of
- * pcl::extractEuclideanClusters (cloud, tree, tolerance, clusters, min, max): clusters are appended, not
- * sorted by size. \param[in] cloud the scan \param[in] tolerance metres \param[in,out] clusters receives the
- * clusters after those it already holds, in the order of their first points \param[in] min_pts_per_cluster
- * least number of points of a cluster \param[in] max_pts_per_cluster largest number of points of a cluster
+ * pcl::extractEuclideanClusters (cloud, tree, tolerance, clusters, min, max): clusters are appended, not sorted by size.
+ * \param[in] cloud the scan
+ * \param[in] tolerance metres
+ * \param[in,out] clusters receives the clusters after those it already holds, in the order of their first points
+ * \param[in] min_pts_per_cluster least number of points of a cluster
+ * \param[in] max_pts_per_cluster largest number of points of a cluster
  * \ingroup segmentation
  */
 template <typename PointT>
