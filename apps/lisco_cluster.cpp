@@ -139,12 +139,9 @@ void printSummary(const ClusteredScan& scan, const Options& options, double read
     std::printf(", %zu above the ground (z >= %g m)", scan.clustered.size(), static_cast<double>(options.ground_z));
   std::printf("\n  clusters  %zu of at least %u returns within %g m of each other; %zu returns are noise\n",
               scan.clusters.size(), options.min_size, options.tolerance, scan.clustered.size() - in_clusters);
-  if (!scan.clusters.empty()) {
-    std::vector<std::size_t> sizes;
-    for (const auto& cluster : scan.clusters) sizes.push_back(cluster.indices.size());
-    std::printf("  sizes     largest %zu, median %zu, smallest %zu\n", sizes.front(), sizes[sizes.size() / 2],
-                sizes.back());
-  }
+  if (!scan.clusters.empty())  // sorted by size
+    std::printf("  sizes     largest %zu, median %zu, smallest %zu\n", scan.clusters.front().indices.size(),
+                scan.clusters[scan.clusters.size() / 2].indices.size(), scan.clusters.back().indices.size());
   std::printf("  time      read %.1f ms, cluster %.2f ms", read_ms, cluster_ms);
   if (!folder.empty()) std::printf(", write %.1f ms\n  written   %s", write_ms, folder.c_str());
   std::printf("\n");

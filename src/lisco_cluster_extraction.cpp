@@ -43,14 +43,11 @@ bool pcl::detail::LiscoCloudClusterer::select(std::size_t points, const Indices*
 }
 
 std::uint32_t pcl::detail::LiscoCloudClusterer::headOf(index_t point) const {
-  if (!few_)
-    return (point >= 0 && static_cast<std::size_t>(point) < head_of_cell_.size()
-                ? head_of_cell_[static_cast<std::size_t>(point)]
-                : kNotSelected);
-  const auto place = std::lower_bound(few_points_.begin(), few_points_.end(), point);
-  return (place != few_points_.end() && *place == point
-              ? head_of_cell_[static_cast<std::size_t>(place - few_points_.begin())]
-              : kNotSelected);
+  const std::size_t cell =
+      few_ ? static_cast<std::size_t>(std::lower_bound(few_points_.begin(), few_points_.end(), point) -
+                                      few_points_.begin())
+           : static_cast<std::size_t>(point);
+  return (head_of_cell_[cell]);
 }
 
 void pcl::detail::LiscoCloudClusterer::collect(const Indices* indices, const PCLHeader& header, uindex_t min_size,
