@@ -23,6 +23,7 @@
 #include "cloud_file.h"
 #include "clustering.h"
 #include "lisco/version.h"
+#include "options.h"
 #include "progress_bar.h"
 #include "result_files.h"
 
@@ -45,20 +46,6 @@ struct Options {
 
 double milliseconds(std::chrono::steady_clock::duration time) {
   return std::chrono::duration<double, std::milli>(time).count();
-}
-
-/// Reads a whole number; boost would also accept "-1" (as a huge one).
-unsigned countOf(const std::string& text, const char* option, int least) {
-  std::size_t end = 0;
-  long long value = -1;
-  try {
-    value = std::stoll(text, &end);
-  } catch (const std::exception&) {
-  }
-  if (end != text.size() || value < least || value > std::numeric_limits<int>::max())
-    throw std::runtime_error(std::string(option) + " must be a whole number from " + std::to_string(least) +
-                             " to 2147483647, not '" + text + "'");
-  return static_cast<unsigned>(value);
 }
 
 /// \return false if there is nothing to do but to print help or version, which has been done
@@ -249,12 +236,9 @@ class Workers {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
+  return runProgram("lisco_cluster", [&] {
     Options options;
     if (!parse(argc, argv, options)) return 0;
     return Workers(options, jobsOf(options)).run() ? 0 : 2;
-  } catch (const std::exception& error) {
-    std::cerr << "lisco_cluster: " << error.what() << '\n';
-    return 2;
-  }
+  });
 }

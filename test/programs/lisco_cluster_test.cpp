@@ -2,84 +2,23 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 //
 // lisco_cluster and lisco_demo as a user runs them.
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "cloud_file.h"
+#include "program_test.h"
 
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Outcome {
-  int status;
-  std::string out, err;
-};
-
-/// A folder of its own for each test, in which the programs are run.
-class Programs : public testing::Test {
+class LiscoCluster : public ProgramTest {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "lisco_programs_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  static std::string textOf(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  }
-
-  void write(const std::string& name, const std::string& content) const {
-    std::ofstream(folder_ / name, std::ios::binary) << content;
-  }
-
-  /// Runs a command line with this folder as the current one.
-  Outcome run(const std::string& command) const {
-    const std::string whole = "cd '" + folder_.string() + "' && " + command + " >out.txt 2>err.txt </dev/null";
-    const int status = std::system(whole.c_str());
-    Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, textOf(folder_ / "out.txt"),
-                    textOf(folder_ / "err.txt")};
-    fs::remove(folder_ / "out.txt");
-    fs::remove(folder_ / "err.txt");
-    return outcome;
-  }
-  Outcome cluster(const std::string& arguments) const { return run(std::string(LISCO_CLUSTER) + " " + arguments); }
-
-  std::vector<std::string> filesLeft() const {
-    std::vector<std::string> files;
-    for (const auto& entry : fs::recursive_directory_iterator(folder_))
-      files.push_back(fs::relative(entry.path(), folder_).string());
-    std::sort(files.begin(), files.end());
-    return files;
-  }
-
-  /// One clear line on stderr that says all of these, exit code 2, and no file but the inputs.
-  void expectRefusal(const std::string& arguments, const std::vector<std::string>& words) const {
-    SCOPED_TRACE(arguments);
-    const std::vector<std::string> before = filesLeft();
-    const Outcome outcome = cluster(arguments);
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    EXPECT_EQ(outcome.err.rfind("lisco_cluster: ", 0), 0U) << outcome.err;
-    for (const std::string& word : words) EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
-    EXPECT_EQ(filesLeft(), before);
-  }
-
-  fs::path folder_;
+  LiscoCluster() : ProgramTest(LISCO_CLUSTER) {}
 };
 
 /// Two walls of 3 x 20 returns 5 m and 9 m ahead of the sensor, as an organized ASCII PCD with one no-return
@@ -96,13 +35,9 @@ std::string twoWalls() {
   return pcd.str();
 }
 
-std::string floats(const std::vector<float>& values) {
-  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
-}
-
-TEST_F(Programs, ClusterWritesLabelsTableAndPictures) {
+TEST_F(LiscoCluster, WritesLabelsTableAndPictures) {
   write("walls.pcd", twoWalls());
-  const Outcome outcome = cluster("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results");
+  const Outcome outcome = run("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   EXPECT_NE(outcome.out.find("4 rows x 41 columns, 160 returns, 120 above the ground"), std::string::npos)
@@ -138,24 +73,24 @@ TEST_F(Programs, ClusterWritesLabelsTableAndPictures) {
   EXPECT_EQ(label(3, 5), 0U);
 }
 
-TEST_F(Programs, ClusterWritesOneCloudPerClusterOnRequest) {
+TEST_F(LiscoCluster, WritesOneCloudPerClusterOnRequest) {
   write("walls.pcd", twoWalls());
-  ASSERT_EQ(cluster("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results --clouds").status, 0);
+  ASSERT_EQ(run("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results --clouds").status, 0);
   for (const char* name : {"cluster_0001.pcd", "cluster_0002.pcd"})
     EXPECT_EQ(lisco_apps::readCloudFile(folder_ / "results/clusters" / name)->size(), 60U) << name;
   // A second run replaces them, and one without them leaves none behind, but what is somebody else's.
   write("results/clusters/mine.txt", "keep me");
-  ASSERT_EQ(cluster("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results --clouds").status, 0);
+  ASSERT_EQ(run("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results --clouds").status, 0);
   EXPECT_TRUE(fs::exists(folder_ / "results/clusters/cluster_0002.pcd"));
-  ASSERT_EQ(cluster("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results").status, 0);
+  ASSERT_EQ(run("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results").status, 0);
   EXPECT_FALSE(fs::exists(folder_ / "results/clusters/cluster_0002.pcd"));
   EXPECT_EQ(textOf(folder_ / "results/clusters/mine.txt"), "keep me");
   fs::remove(folder_ / "results/clusters/mine.txt");
-  ASSERT_EQ(cluster("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results").status, 0);
+  ASSERT_EQ(run("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results").status, 0);
   EXPECT_FALSE(fs::exists(folder_ / "results/clusters"));
 }
 
-TEST_F(Programs, ClusterReadsEveryFormat) {
+TEST_F(LiscoCluster, ReadsEveryFormat) {
   write("a.bin", floats({5, 0, 0, 1, 5, 0.1F, 0, 1, 9, 0, 0, 1}));
   // Two steps of two lasers; straight ahead is alpha = 90 degrees, clockwise from +y.
   write("b.csv", "2,2,0\n5,0,1.5707963\n0,0,0\n5,0,1.5507963\n9.0,0.1,1.5507963\n");
@@ -167,7 +102,7 @@ TEST_F(Programs, ClusterReadsEveryFormat) {
         "VERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 3\nHEIGHT 1\nVIEWPOINT 0 0 0 "
         "1 0 0 0\n"
         "POINTS 3\nDATA ascii\n5 0 0\n5 0.1 0\n9 0 0\n");
-  const Outcome outcome = cluster(". --tolerance 0.3 --min-size 1");
+  const Outcome outcome = run(". --tolerance 0.3 --min-size 1");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   std::size_t found = 0;
   for (std::size_t at = 0; (at = outcome.out.find("clusters  2 of at least 1 ", at)) != std::string::npos; ++at)
@@ -182,7 +117,7 @@ TEST_F(Programs, ClusterReadsEveryFormat) {
   EXPECT_TRUE(std::isnan(csv->at(0, 1).x));
 }
 
-TEST_F(Programs, ClusterRefusesBadFilesInOneLine) {
+TEST_F(LiscoCluster, RefusesBadFilesInOneLine) {
   const std::string good = twoWalls();
   const std::string header =
       "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 4\nHEIGHT 1\nVIEWPOINT 0 0 0 1 "
@@ -232,7 +167,7 @@ TEST_F(Programs, ClusterRefusesBadFilesInOneLine) {
   expectRefusal("hollow" + options, {"hollow", "holds no scans"});
 }
 
-TEST_F(Programs, ClusterRefusesBadOptionsInOneLine) {
+TEST_F(LiscoCluster, RefusesBadOptionsInOneLine) {
   write("walls.pcd", twoWalls());
   write("file", "");
   expectRefusal("", {"no input"});
@@ -252,7 +187,7 @@ TEST_F(Programs, ClusterRefusesBadOptionsInOneLine) {
   expectRefusal("walls.pcd --tolerance 0.3 -o file/results", {"file/results", "cannot be written"});
 }
 
-TEST_F(Programs, ClusterLeavesForeignFilesAlone) {
+TEST_F(LiscoCluster, LeavesForeignFilesAlone) {
   write("walls.pcd", twoWalls());
   fs::create_directory(folder_ / "mine");
   write("mine/clusters.csv", "my own table");
@@ -262,18 +197,18 @@ TEST_F(Programs, ClusterLeavesForeignFilesAlone) {
   // Beside other things it is welcome, and may replace what it has written itself.
   fs::create_directory(folder_ / "shared");
   write("shared/notes.txt", "keep me");
-  EXPECT_EQ(cluster("walls.pcd --tolerance 0.3 -o shared").status, 0);
-  EXPECT_EQ(cluster("walls.pcd --tolerance 0.3 -o shared").status, 0);
+  EXPECT_EQ(run("walls.pcd --tolerance 0.3 -o shared").status, 0);
+  EXPECT_EQ(run("walls.pcd --tolerance 0.3 -o shared").status, 0);
   EXPECT_EQ(textOf(folder_ / "shared/notes.txt"), "keep me");
 }
 
-TEST_F(Programs, ClusterGoesOnAfterABadFileAmongMany) {
+TEST_F(LiscoCluster, GoesOnAfterABadFileAmongMany) {
   write("a.pcd", twoWalls());
   write("b.bin", "odd");
   write("c.pcd", twoWalls());
   fs::create_directory(folder_ / "sub");
   write("sub/a.pcd", twoWalls());
-  const Outcome outcome = cluster("a.pcd b.bin c.pcd sub --tolerance 0.3 -o results");
+  const Outcome outcome = run("a.pcd b.bin c.pcd sub --tolerance 0.3 -o results");
   EXPECT_EQ(outcome.status, 2);
   EXPECT_NE(outcome.err.find("b.bin"), std::string::npos);
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
@@ -281,52 +216,52 @@ TEST_F(Programs, ClusterGoesOnAfterABadFileAmongMany) {
   EXPECT_FALSE(fs::exists(folder_ / "results/b"));
 }
 
-TEST_F(Programs, ClusterGivesEachInputAFolderOfItsOwn) {
+TEST_F(LiscoCluster, GivesEachInputAFolderOfItsOwn) {
   write("x.pcd", twoWalls());
   write("x-2.pcd", twoWalls());
   write("x.bin", floats({5, 0, 0, 1}));
-  const Outcome outcome = cluster(". --tolerance 0.3 -o results");
+  const Outcome outcome = run(". --tolerance 0.3 -o results");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   for (const char* made : {"x", "x-2", "x-3"})
     EXPECT_TRUE(fs::exists(folder_ / "results" / made / "labels.pcd")) << made;
 }
 
-TEST_F(Programs, ClusterMayWriteBesideItsInput) {
+TEST_F(LiscoCluster, MayWriteBesideItsInput) {
   write("x.pcd", twoWalls());
-  for (int run = 0; run < 2; ++run) {
-    const Outcome outcome = cluster(". --tolerance 0.3 -o .");
+  for (int time = 0; time < 2; ++time) {
+    const Outcome outcome = run(". --tolerance 0.3 -o .");
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.out.rfind("x.pcd\n", 0), 0U) << outcome.out;
   }
 }
 
-TEST_F(Programs, ClusterWritesAnyCoordinates) {
+TEST_F(LiscoCluster, WritesAnyCoordinates) {
   write("far.pcd",
         "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\n"
         "POINTS 2\nDATA ascii\n3e38 1e30 -3e38\n-3e38 -3e38 -3e38\n");
-  ASSERT_EQ(cluster("far.pcd --tolerance 0.3 --min-size 1 -o results").status, 0);
+  ASSERT_EQ(run("far.pcd --tolerance 0.3 --min-size 1 -o results").status, 0);
   const std::string table = textOf(folder_ / "results/clusters.csv");
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
   EXPECT_EQ(std::count(table.begin(), table.end(), ','), 3 * 11);
 }
 
-TEST_F(Programs, ClusterDrawsScansOfAnyShape) {
+TEST_F(LiscoCluster, DrawsScansOfAnyShape) {
   std::string header = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nVIEWPOINT 0 0 0 1 0 0 0\n";
   const std::string data = floats(std::vector<float>(3U * 80000U, 1.5F));
   write("wide.pcd", header + "WIDTH 40000\nHEIGHT 2\nPOINTS 80000\nDATA binary\n" + data);
   write("tall.pcd", header + "WIDTH 1\nHEIGHT 80000\nPOINTS 80000\nDATA binary\n" + data);
-  const Outcome outcome = cluster("wide.pcd tall.pcd --tolerance 0.3 -o results");
+  const Outcome outcome = run("wide.pcd tall.pcd --tolerance 0.3 -o results");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_TRUE(fs::exists(folder_ / "results/tall/range_image.png"));
 }
 
-TEST_F(Programs, ClusterFindsTheSameOnAnyNumberOfThreads) {
+TEST_F(LiscoCluster, FindsTheSameOnAnyNumberOfThreads) {
   for (const char* name : {"a.pcd", "b.pcd", "c.pcd", "d.pcd", "e.pcd"}) write(name, twoWalls());
-  ASSERT_EQ(cluster(". --tolerance 0.3 -o one").status, 0);
+  ASSERT_EQ(run(". --tolerance 0.3 -o one").status, 0);
   for (const char* threads : {"3", "0"}) {
     const std::string folder = std::string("with_") + threads;
     const Outcome outcome =
-        cluster("a.pcd b.pcd c.pcd d.pcd e.pcd --tolerance 0.3 --threads " + std::string(threads) + " -o " + folder);
+        run("a.pcd b.pcd c.pcd d.pcd e.pcd --tolerance 0.3 --threads " + std::string(threads) + " -o " + folder);
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     for (const char* name : {"a", "b", "c", "d", "e"})
       for (const char* result : {"labels.pcd", "clusters.csv", "range_image.png", "top_view.png"})
@@ -335,28 +270,28 @@ TEST_F(Programs, ClusterFindsTheSameOnAnyNumberOfThreads) {
   }
 }
 
-TEST_F(Programs, ScanWithoutAnyReturnHasNoClusters) {
+TEST_F(LiscoCluster, ScanWithoutAnyReturnHasNoClusters) {
   write("none.pcd",
         "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 2\nVIEWPOINT 0 0 0 "
         "1 0 0 0\n"
         "POINTS 4\nDATA ascii\nnan nan nan\n0 0 0\n0 0 0\nnan nan nan\n");
-  const Outcome outcome = cluster("none.pcd --tolerance 0.3 -o results");
+  const Outcome outcome = run("none.pcd --tolerance 0.3 -o results");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("0 returns"), std::string::npos) << outcome.out;
   EXPECT_TRUE(fs::exists(folder_ / "results/labels.pcd"));
 }
 
-TEST_F(Programs, TellTheirUseAndVersion) {
-  const Outcome help = cluster("--help");
+TEST_F(LiscoCluster, TellTheirUseAndVersion) {
+  const Outcome help = run("--help");
   EXPECT_EQ(help.status, 0);
   for (const char* option :
        {"--tolerance", "--min-size", "--max-size", "--ground-z", "--output", "--clouds", "--threads"})
     EXPECT_NE(help.out.find(option), std::string::npos) << option;
-  EXPECT_EQ(cluster("--version").out.rfind("lisco_cluster 0.1.0", 0), 0U);
+  EXPECT_EQ(run("--version").out.rfind("lisco_cluster 0.1.0", 0), 0U);
 }
 
-TEST_F(Programs, DemoFindsPclsClusters) {
-  const Outcome outcome = run(std::string(LISCO_DEMO) + " results");
+TEST_F(LiscoCluster, DemoFindsPclsClusters) {
+  const Outcome outcome = runLine(std::string(LISCO_DEMO) + " results");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("the clusters are identical"), std::string::npos) << outcome.out;
   EXPECT_TRUE(fs::exists(folder_ / "results/top_view.png"));

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "options.h"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace lisco_apps {
+
+unsigned countOf(const std::string& text, const char* option, int least) {
+  std::size_t end = 0;
+  long long value = -1;
+  try {
+    value = std::stoll(text, &end);
+  } catch (const std::exception&) {
+  }
+  if (end != text.size() || value < least || value > std::numeric_limits<int>::max())
+    throw std::runtime_error(std::string(option) + " must be a whole number from " + std::to_string(least) +
+                             " to 2147483647, not '" + text + "'");
+  return static_cast<unsigned>(value);
+}
+
+double numberOf(const std::string& text, const char* option) {
+  std::size_t end = 0;
+  double value = std::numeric_limits<double>::quiet_NaN();
+  try {
+    value = std::stod(text, &end);
+  } catch (const std::exception&) {
+  }
+  if (end != text.size() || !std::isfinite(value))
+    throw std::runtime_error(std::string(option) + " must be a number, not '" + text + "'");
+  return value;
+}
+
+std::vector<std::string> itemsOf(const std::string& text) {
+  std::vector<std::string> items(1);
+  for (const char c : text)
+    if (c == ',')
+      items.emplace_back();
+    else
+      items.back() += c;
+  return items;
+}
+
+}  // namespace lisco_apps
