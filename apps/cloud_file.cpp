@@ -10,6 +10,7 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -22,6 +23,7 @@
 #include <pcl/io/ply_io.h>
 
 #include "lisco/return.h"
+#include "output_file.h"
 
 namespace lisco_apps {
 namespace {
@@ -72,6 +74,18 @@ void copyField(const pcl::PCLPointCloud2& blob, const fs::path& file, const char
   }
 }
 
+/// Reads the field `label`, if there is one.
+std::vector<std::uint32_t> labelsIn(const pcl::PCLPointCloud2& blob) {
+  std::vector<std::uint32_t> labels;
+  for (const pcl::PCLPointField& field : blob.fields) {
+    if (field.name != "label" || field.datatype != pcl::PCLPointField::UINT32) continue;
+    labels.resize(static_cast<std::size_t>(blob.width) * blob.height);
+    for (std::size_t i = 0; i < labels.size(); ++i)
+      std::memcpy(&labels[i], blob.data.data() + i * blob.point_step + field.offset, sizeof(std::uint32_t));
+  }
+  return labels;
+}
+
 /// Looks at a PCD file's header before PCL does: PCL 1.13's reader crashes without one, and asks for all the memory that
 /// a wrong one promises.
 void checkPcdHeader(const fs::path& file) {
@@ -98,7 +112,7 @@ void checkPcdHeader(const fs::path& file) {
   fail(file, "is no pcd file: it has no header");
 }
 
-Cloud::Ptr readByPcl(const fs::path& file, const std::string& ending) {
+Cloud::Ptr readByPcl(const fs::path& file, const std::string& ending, std::vector<std::uint32_t>* object_of) {
   // PCL's readers print what they think; this program says it once, in its own words.
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
   if (ending == ".pcd") checkPcdHeader(file);
@@ -136,6 +150,7 @@ Cloud::Ptr readByPcl(const fs::path& file, const std::string& ending) {
   copyField(blob, file, "x", &pcl::PointXYZ::x, *cloud);
   copyField(blob, file, "y", &pcl::PointXYZ::y, *cloud);
   copyField(blob, file, "z", &pcl::PointXYZ::z, *cloud);
+  if (object_of != nullptr) *object_of = labelsIn(blob);
   return cloud;
 }
 
@@ -219,7 +234,8 @@ Cloud::Ptr readAuthorsCsv(const fs::path& file) {
 
 }  // namespace
 
-Cloud::Ptr readCloudFile(const fs::path& file) {
+Cloud::Ptr readCloudFile(const fs::path& file, std::vector<std::uint32_t>* object_of) {
+  if (object_of != nullptr) object_of->clear();
   std::error_code error;
   if (!fs::exists(file, error)) fail(file, "does not exist");
   if (!fs::is_regular_file(file, error)) fail(file, "is no file");
@@ -230,7 +246,7 @@ Cloud::Ptr readCloudFile(const fs::path& file) {
   if (std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end())
     fail(file, "has an unknown ending (known: pcd, ply, obj, ifs, bin, csv)");
   try {
-    return readByPcl(file, ending);
+    return readByPcl(file, ending, object_of);
   } catch (const std::bad_alloc&) {
     fail(file, "is too large for this machine's memory");
   }
@@ -268,6 +284,18 @@ std::vector<fs::path> expandInputs(const std::vector<std::string>& inputs) {
     files.insert(files.end(), found.begin(), found.end());
   }
   return files;
+}
+
+std::vector<std::string> namesOf(const std::vector<fs::path>& files) {
+  std::vector<std::string> names;
+  std::set<std::string> taken;
+  for (const fs::path& file : files) {
+    const std::string stem = file.stem().string();
+    names.push_back(stem);
+    for (int number = 2; !taken.insert(names.back()).second; ++number)
+      names.back() = stem + "-" + std::to_string(number);
+  }
+  return names;
 }
 
 pcl::Indices returnsAbove(const Cloud& cloud, float ground_z) {

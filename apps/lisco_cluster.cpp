@@ -10,7 +10,6 @@
 #include <iostream>
 #include <limits>
 #include <mutex>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -142,18 +141,11 @@ struct Job {
 /// One job per input file. Of several, each has a folder of its own, numbered where file names repeat.
 std::vector<Job> jobsOf(const Options& options) {
   const std::vector<fs::path> files = expandInputs(options.inputs);
+  const std::vector<std::string> names = namesOf(files);
   std::vector<Job> jobs;
-  std::set<std::string> taken;
-  for (const fs::path& file : files) {
-    fs::path folder = options.output;
-    if (!folder.empty() && files.size() > 1) {
-      const std::string stem = file.stem().string();
-      std::string name = stem;
-      for (int number = 2; !taken.insert(name).second; ++number) name = stem + "-" + std::to_string(number);
-      folder /= name;
-    }
-    jobs.push_back({file, folder});
-  }
+  for (std::size_t i = 0; i < files.size(); ++i)
+    jobs.push_back(
+        {files[i], options.output.empty() || files.size() == 1 ? options.output : options.output / names[i]});
   return jobs;
 }
 

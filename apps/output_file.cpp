@@ -12,6 +12,48 @@ namespace lisco_apps {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// A folder that disappears again unless it is kept.
+class TemporaryFolder {
+ public:
+  explicit TemporaryFolder(fs::path path) : path_(std::move(path)) { fs::create_directory(path_); }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// Makes a folder and those above it; unless kept, removes the ones it made.
+class MadeFolder {
+ public:
+  explicit MadeFolder(const fs::path& path) {
+    for (fs::path p = fs::absolute(path).lexically_normal(); !p.empty() && !fs::exists(p); p = p.parent_path())
+      made_.push_back(p);
+    fs::create_directories(path);
+  }
+  ~MadeFolder() {
+    std::error_code ignored;
+    if (!kept_)
+      for (const fs::path& p : made_) fs::remove(p, ignored);  // innermost first, only if empty
+  }
+  MadeFolder(const MadeFolder&) = delete;
+  MadeFolder& operator=(const MadeFolder&) = delete;
+  void keep() { kept_ = true; }
+
+ private:
+  std::vector<fs::path> made_;
+  bool kept_ = false;
+};
+
+}  // namespace
+
 void checkMayWrite(const fs::path& file, const std::string& signature) {
   std::error_code error;
   if (!fs::exists(file, error)) return;
@@ -36,6 +78,40 @@ void writeOwnFile(const fs::path& file, const std::string& content, const std::s
     std::error_code ignored;
     fs::remove(aside, ignored);
     throw std::runtime_error(file.string() + ": cannot be written");
+  }
+}
+
+void checkMayWriteInto(const fs::path& folder, const std::vector<std::string>& names) {
+  if (fs::exists(folder / kResultMarker)) return;
+  for (const std::string& name : names)
+    if (fs::exists(folder / name))
+      throw std::runtime_error((folder / name).string() +
+                               ": exists and was not written by this program; choose another folder");
+}
+
+void writeOwnFolder(const fs::path& folder, const std::vector<std::string>& names,
+                    const std::function<void(const fs::path&)>& make, const std::function<void()>& tidy) {
+  try {
+    MadeFolder made(folder);
+    checkMayWriteInto(folder, names);
+    const TemporaryFolder aside(folder / (".lisco_partial_" + std::to_string(getpid())));
+    make(aside.path());
+    std::ofstream(folder / kResultMarker)
+        << "The results in this folder were written by lisco and may be replaced by it.\n";
+    tidy();
+    for (const std::string& name : names) {
+      if (!fs::is_directory(aside.path() / name)) {
+        if (fs::exists(aside.path() / name)) fs::rename(aside.path() / name, folder / name);
+        continue;
+      }
+      fs::create_directory(folder / name);  // it may be there, with things of somebody else
+      for (const auto& entry : fs::directory_iterator(aside.path() / name))
+        fs::rename(entry.path(), folder / name / entry.path().filename());
+    }
+    made.keep();
+  } catch (const fs::filesystem_error& error) {
+    const fs::path& path = error.path2().empty() ? error.path1() : error.path2();
+    throw std::runtime_error(path.string() + ": cannot be written: " + error.code().message());
   }
 }
 

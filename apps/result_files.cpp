@@ -2,17 +2,16 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "result_files.h"
 
-#include <unistd.h>
-
-#include <array>
 #include <cstdio>
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <pcl/common/io.h>
 #include <pcl/io/pcd_io.h>
 
+#include "output_file.h"
 #include "pictures.h"
 
 namespace lisco_apps {
@@ -20,46 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 5> kResults{"labels.pcd", "clusters.csv", "range_image.png", "top_view.png",
-                                              "clusters"};
-
-/// A folder that disappears again unless it is kept.
-class TemporaryFolder {
- public:
-  explicit TemporaryFolder(fs::path path) : path_(std::move(path)) { fs::create_directory(path_); }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
-/// Makes a folder and those above it; unless kept, removes the ones it made.
-class MadeFolder {
- public:
-  explicit MadeFolder(const fs::path& path) {
-    for (fs::path p = fs::absolute(path).lexically_normal(); !p.empty() && !fs::exists(p); p = p.parent_path())
-      made_.push_back(p);
-    fs::create_directories(path);
-  }
-  ~MadeFolder() {
-    std::error_code ignored;
-    if (!kept_)
-      for (const fs::path& p : made_) fs::remove(p, ignored);  // innermost first, only if empty
-  }
-  MadeFolder(const MadeFolder&) = delete;
-  MadeFolder& operator=(const MadeFolder&) = delete;
-  void keep() { kept_ = true; }
-
- private:
-  std::vector<fs::path> made_;
-  bool kept_ = false;
-};
+const std::vector<std::string> kResults{"labels.pcd", "clusters.csv", "range_image.png", "top_view.png", "clusters"};
 
 void writeLabels(const ClusteredScan& scan, const fs::path& file) {
   pcl::PointCloud<pcl::PointXYZL> labelled;
@@ -112,45 +72,21 @@ void removeClusterClouds(const fs::path& folder) {
 
 }  // namespace
 
-bool isResultFolder(const fs::path& folder) {
-  return fs::exists(folder / kResultMarker);
-}
-
 void writeResults(const ClusteredScan& scan, const fs::path& folder, bool cloud_per_cluster) {
-  try {
-    MadeFolder made(folder);
-    if (!isResultFolder(folder))
-      for (const char* name : kResults)
-        if (fs::exists(folder / name))
-          throw std::runtime_error((folder / name).string() +
-                                   ": exists and was not written by this program; choose another folder");
-
-    const TemporaryFolder aside(folder / (".lisco_partial_" + std::to_string(getpid())));
-    writeLabels(scan, aside.path() / "labels.pcd");
-    writeTable(scan, aside.path() / "clusters.csv");
-    drawRangeImage(scan, aside.path() / "range_image.png");
-    drawTopView(scan, aside.path() / "top_view.png");
-    if (cloud_per_cluster) writeClusterClouds(scan, aside.path() / "clusters");
-
-    std::ofstream(folder / kResultMarker)
-        << "The results in this folder were written by lisco and may be replaced by it.\n";
-    removeClusterClouds(folder / "clusters");
-    for (const char* name : kResults) {
-      if (!fs::is_directory(aside.path() / name)) {
-        if (fs::exists(aside.path() / name)) fs::rename(aside.path() / name, folder / name);
-        continue;
-      }
-      fs::create_directory(folder / name);  // it may be there, with things of somebody else
-      for (const auto& entry : fs::directory_iterator(aside.path() / name))
-        fs::rename(entry.path(), folder / name / entry.path().filename());
-    }
-    made.keep();
-  } catch (const fs::filesystem_error& error) {
-    const fs::path& path = error.path2().empty() ? error.path1() : error.path2();
-    throw std::runtime_error(path.string() + ": cannot be written: " + error.code().message());
-  } catch (const pcl::IOException&) {
-    throw std::runtime_error(folder.string() + ": cannot be written");
-  }
+  writeOwnFolder(
+      folder, kResults,
+      [&](const fs::path& aside) {
+        try {
+          writeLabels(scan, aside / "labels.pcd");
+          writeTable(scan, aside / "clusters.csv");
+          drawRangeImage(scan, aside / "range_image.png");
+          drawTopView(scan, aside / "top_view.png");
+          if (cloud_per_cluster) writeClusterClouds(scan, aside / "clusters");
+        } catch (const pcl::IOException&) {
+          throw std::runtime_error(folder.string() + ": cannot be written");
+        }
+      },
+      [&] { removeClusterClouds(folder / "clusters"); });
 }
 
 }  // namespace lisco_apps

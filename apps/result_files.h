@@ -15,7 +15,4 @@ namespace lisco_apps {
 /// std::runtime_error with one line that says what cannot be written, or what would be overwritten
 void writeResults(const ClusteredScan& scan, const std::filesystem::path& folder, bool cloud_per_cluster);
 
-/// Whether an earlier run has written its results into this folder.
-bool isResultFolder(const std::filesystem::path& folder);
-
 }  // namespace lisco_apps

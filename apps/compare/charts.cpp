@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "compare/charts.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <stdexcept>
+
+namespace lisco_apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// In single quotes, as both gnuplot and the shell read it.
+std::string quoted(const std::string& text, const char* quote_inside) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string(quote_inside) : std::string(1, c == '\n' ? ' ' : c);
+  return result + "'";
+}
+std::string forGnuplot(const std::string& text) {
+  return quoted(text, "''");
+}
+std::string forShell(const std::string& text) {
+  return quoted(text, "'\\''");
+}
+
+void writeScript(const Chart& chart, const fs::path& png, std::ostream& script) {
+  script << "set terminal pngcairo noenhanced font 'DejaVu Sans,11' size 900,560 background '#ffffff'\n"
+         << "set output " << forGnuplot(png.string()) << '\n'
+         << "set title " << forGnuplot(chart.title) << '\n'
+         << "set xlabel " << forGnuplot(chart.x_label) << '\n'
+         << "set ylabel " << forGnuplot(chart.y_label) << '\n'
+         << "set logscale y\nset grid ytics mytics xtics lc rgb '#dddddd'\nset key outside right center\n"
+         << "set offsets graph 0.02, graph 0.02\nset border 3\nset tics nomirror\nset bars small\n"
+         << "set format y '%g'\n"
+         << (chart.log_x ? "set logscale x\n" : "");
+  // Colours that colour-blind eyes tell apart too (Okabe and Ito), and a mark for each.
+  const char* const colors[] = {"#000000", "#0072b2", "#56b4e9", "#e69f00", "#cc79a7", "#d55e00", "#009e73"};
+  for (std::size_t i = 0; i < chart.lines.size(); ++i) {
+    script << "$line" << i << " << END\n";
+    for (const Chart::Point& point : chart.lines[i].points)
+      script << point.x << ' ' << point.y << ' ' << (std::isfinite(point.error) ? point.error : 0.0) << '\n';
+    script << "END\n";
+  }
+  for (std::size_t i = 0; i < chart.lines.size(); ++i)
+    script << (i == 0 ? "plot " : ", ") << "$line" << i << " using 1:2:3 with yerrorlines lw 2 pt " << 5 + i % 8
+           << " ps 0.8 lc rgb '" << colors[i % (sizeof colors / sizeof colors[0])] << "' title "
+           << forGnuplot(chart.lines[i].title);
+  script << '\n';
+}
+
+}  // namespace
+
+void checkCharts() {
+  if (std::system("gnuplot --version >/dev/null 2>&1") != 0)
+    throw std::runtime_error("charts need gnuplot (Debian's package gnuplot-nox)");
+}
+
+void drawChart(const Chart& chart, const fs::path& png) {
+  const fs::path script = png.string() + ".gnuplot";
+  std::ofstream stream(script);
+  stream.precision(10);
+  writeScript(chart, png, stream);
+  stream.close();
+  const bool drawn = stream && std::system(("gnuplot " + forShell(script.string()) + " >/dev/null 2>&1").c_str()) == 0;
+  std::error_code ignored;
+  fs::remove(script, ignored);
+  if (!drawn || !fs::exists(png)) throw std::runtime_error(png.string() + ": cannot be drawn");
+}
+
+}  // namespace lisco_apps

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "compare/difference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include <pcl/search/kdtree.h>
+
+#include "compare/text.h"
+#include "lisco/tolerance.h"
+
+namespace lisco_apps {
+namespace {
+
+using Labels = std::vector<std::uint32_t>;
+
+std::size_t place(pcl::index_t index) {
+  return static_cast<std::size_t>(index);
+}
+
+bool sameVector(const Clusters& a, const Clusters& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const pcl::PointIndices& x, const pcl::PointIndices& y) {
+    return x.indices == y.indices && x.header.frame_id == y.header.frame_id && x.header.seq == y.header.seq &&
+           x.header.stamp == y.header.stamp;
+  });
+}
+
+std::set<pcl::Indices> setsOf(const Clusters& clusters) {
+  std::set<pcl::Indices> sets;
+  for (const auto& cluster : clusters) sets.insert(cluster.indices);
+  return sets;
+}
+
+/// The best naming: which label of the rival stands for which of the reference (0 for 0).
+class Naming {
+ public:
+  Naming(const pcl::Indices& returns, const Labels& expected, const Labels& found) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> shared;
+    for (const auto index : returns) ++shared[{expected[place(index)], found[place(index)]}];
+    std::vector<std::pair<std::size_t, std::pair<std::uint32_t, std::uint32_t>>> by_size;
+    for (const auto& [labels, points] : shared) by_size.push_back({points, labels});
+    std::sort(by_size.rbegin(), by_size.rend());
+    std::set<std::uint32_t> named, taken;
+    for (const auto& [points, labels] : by_size) {
+      const auto& [a, b] = labels;
+      if ((a == 0) != (b == 0)) continue;
+      if (named.count(a) != 0 || taken.count(b) != 0) continue;
+      named.insert(a);
+      taken.insert(b);
+      pairs_.insert(labels);
+    }
+  }
+  bool agree(std::uint32_t expected, std::uint32_t found) const { return pairs_.count({expected, found}) != 0; }
+
+ private:
+  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs_;
+};
+
+/// Two points whose relation makes the difference.
+struct DecidingPair {
+  pcl::index_t a, b;
+  float d2;
+  bool kept_apart;  ///< neighbours that the rival keeps apart; otherwise strangers that it joins
+};
+
+/// Looks for the pair in the reference's component of `point`. The labels are those of clusters of any size.
+std::optional<DecidingPair> decidingPair(const Problem& problem, pcl::index_t point, const Labels& expected,
+                                         const Labels& found) {
+  pcl::IndicesPtr inside = std::make_shared<pcl::Indices>();
+  pcl::IndicesPtr joined = std::make_shared<pcl::Indices>();
+  for (const auto index : *problem.returns)
+    if (expected[place(index)] == expected[place(point)])
+      inside->push_back(index);
+    else if (found[place(index)] == found[place(point)])
+      joined->push_back(index);
+
+  pcl::search::KdTree<RivalPoint> tree;
+  pcl::Indices near;
+  std::vector<float> squared;
+  const double radius = std::fabs(static_cast<double>(static_cast<float>(problem.tolerance)));
+  tree.setInputCloud(problem.cloud, inside);
+  for (const auto index : *inside) {
+    tree.radiusSearch((*problem.cloud)[place(index)], radius, near, squared);
+    for (std::size_t i = 0; i < near.size(); ++i)
+      if (found[place(near[i])] != found[place(index)]) return DecidingPair{index, near[i], squared[i], true};
+  }
+  if (joined->empty()) return std::nullopt;
+  std::optional<DecidingPair> nearest;
+  tree.setInputCloud(problem.cloud, joined);
+  for (const auto index : *inside)
+    if (found[place(index)] == found[place(point)] &&
+        tree.nearestKSearch((*problem.cloud)[place(index)], 1, near, squared) == 1 &&
+        (!nearest || squared[0] < nearest->d2))
+      nearest = DecidingPair{index, near[0], squared[0], false};
+  return nearest;
+}
+
+std::string inWords(std::uint32_t label, const Clusters& clusters) {
+  if (label == 0) return "noise";
+  return formatted("cluster %u (%zu points)", label, clusters[label - 1].indices.size());
+}
+
+std::string whereIs(const Problem& problem, pcl::index_t index) {
+  const RivalCloud& cloud = *problem.cloud;
+  const RivalPoint& p = cloud[place(index)];
+  std::string text = formatted("point %d (%.6g, %.6g, %.6g)", index, static_cast<double>(p.x), static_cast<double>(p.y),
+                               static_cast<double>(p.z));
+  if (cloud.height > 1)
+    text += formatted(" row %zu column %zu", place(index) / cloud.width, place(index) % cloud.width);
+  return text;
+}
+
+/// The neighbours of a point, nearest first, and how the two label them.
+std::string neighboursOf(const Problem& problem, pcl::index_t point, const Labels& expected, const Labels& found) {
+  const RivalCloud& cloud = *problem.cloud;
+  const lisco::Tolerance tolerance(static_cast<float>(problem.tolerance));
+  const RivalPoint& p = cloud[place(point)];
+  std::vector<std::pair<float, pcl::index_t>> neighbours;
+  for (const auto index : *problem.returns) {
+    const RivalPoint& q = cloud[place(index)];
+    const float d2 = lisco::squaredDistance(p.x - q.x, p.y - q.y, p.z - q.z);
+    if (index != point && d2 < tolerance.squared()) neighbours.push_back({d2, index});
+  }
+  std::sort(neighbours.begin(), neighbours.end());
+  constexpr std::size_t kShown = 4;
+  std::string text = formatted("its %zu neighbours within %g m", neighbours.size(), problem.tolerance);
+  if (!neighbours.empty()) text += ", by distance and cluster there and here:";
+  for (std::size_t i = 0; i < std::min(neighbours.size(), kShown); ++i) {
+    const auto [d2, index] = neighbours[i];
+    text += formatted(" %d (%.4f m, %u, %u)", index, static_cast<double>(std::sqrt(d2)), expected[place(index)],
+                      found[place(index)]);
+  }
+  if (neighbours.size() > kShown) text += " ...";
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> labelsOf(const Clusters& clusters, std::size_t points) {
+  Labels labels(points, 0);
+  for (std::size_t number = 0; number < clusters.size(); ++number)
+    for (const auto index : clusters[number].indices) labels[place(index)] = static_cast<std::uint32_t>(number + 1);
+  return labels;
+}
+
+Difference differenceOf(const Problem& problem, const Rival& reference, const Clusters& expected, const Rival& rival,
+                        const Clusters& found) {
+  Difference difference;
+  if (sameVector(expected, found)) return difference;
+  difference.identical = false;
+  const std::set<pcl::Indices> expected_sets = setsOf(expected);
+  const std::set<pcl::Indices> found_sets = setsOf(found);
+  difference.same_sets = expected_sets == found_sets && expected.size() == found.size();
+  if (difference.same_sets) {
+    difference.details = "the same clusters in another order or with other headers\n";
+    return difference;
+  }
+  for (const pcl::Indices& cluster : expected_sets) difference.clusters += 1 - found_sets.count(cluster);
+
+  const std::size_t points = problem.cloud->size();
+  const Labels expected_label = labelsOf(expected, points);
+  const Labels found_label = labelsOf(found, points);
+  const Naming naming(*problem.returns, expected_label, found_label);
+  std::optional<pcl::index_t> first;
+  for (const auto index : *problem.returns) {
+    if (naming.agree(expected_label[place(index)], found_label[place(index)])) continue;
+    ++difference.mislabelled;
+    if (!first) first = index;
+  }
+  difference.details =
+      formatted("%zu clusters there, %zu here; %zu of those there are not here; %zu of %zu points differ\n",
+                expected.size(), found.size(), difference.clusters, difference.mislabelled, problem.returns->size());
+  if (!first) {
+    difference.details += "the rival lists points twice, or points that are no returns\n";
+    return difference;
+  }
+  difference.details += "first: " + whereIs(problem, *first) + ": there " +
+                        inWords(expected_label[place(*first)], expected) + ", here " +
+                        inWords(found_label[place(*first)], found) + "\n" +
+                        neighboursOf(problem, *first, expected_label, found_label) + "\n";
+
+  Problem any_size = problem;
+  any_size.min_size = 1;
+  any_size.max_size = Problem().max_size;
+  Clusters expected_components, found_components;
+  reference.extract(any_size, expected_components);
+  rival.extract(any_size, found_components);
+  const auto pair =
+      decidingPair(any_size, *first, labelsOf(expected_components, points), labelsOf(found_components, points));
+  if (pair) {
+    const double r2 = static_cast<double>(lisco::Tolerance(static_cast<float>(problem.tolerance)).squared());
+    difference.details += "the pair that decides: " + whereIs(problem, pair->a) + " and " + whereIs(problem, pair->b) +
+                          formatted(", d2 = %.9g, r2 = %.9g: ", static_cast<double>(pair->d2), r2) +
+                          (pair->kept_apart ? "neighbours, kept apart here" : "not connected there, joined here") +
+                          "\n";
+  }
+  return difference;
+}
+
+ObjectScore scoreObjects(const Problem& problem, const Clusters& clusters,
+                         const std::vector<std::uint32_t>& object_of) {
+  const Labels label = labelsOf(clusters, problem.cloud->size());
+  std::map<std::uint32_t, std::size_t> returns;                  // per object
+  std::map<std::uint32_t, std::set<std::uint32_t>> clusters_of;  // per object
+  std::map<std::uint32_t, std::set<std::uint32_t>> objects_in;   // per cluster
+  for (const auto index : *problem.returns) {
+    const std::uint32_t object = object_of[place(index)];
+    if (object == 0) continue;
+    ++returns[object];
+    if (label[place(index)] == 0) continue;
+    clusters_of[object].insert(label[place(index)]);
+    objects_in[label[place(index)]].insert(object);
+  }
+  ObjectScore score;
+  for (const auto& [object, count] : returns) {
+    if (count < problem.min_size) continue;
+    ++score.objects;
+    const std::set<std::uint32_t>& own = clusters_of[object];
+    const bool split = own.size() > 1;
+    const bool merged = std::any_of(own.begin(), own.end(), [&](auto c) { return objects_in[c].size() > 1; });
+    score.split += split ? 1 : 0;
+    score.merged += merged ? 1 : 0;
+    score.missed += own.empty() ? 1 : 0;
+    score.whole += own.size() == 1 && !merged ? 1 : 0;
+  }
+  return score;
+}
+
+}  // namespace lisco_apps

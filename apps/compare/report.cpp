@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "compare/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include "compare/charts.h"
+#include "compare/text.h"
+#include "lisco/version.h"
+
+namespace lisco_apps {
+namespace {
+
+constexpr const char* kCompiler =
+#ifdef __clang__
+    "Clang " __clang_version__;
+#else
+    "GCC " __VERSION__;
+#endif
+
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  std::string line;
+  while (std::getline(info, line))
+    if (line.rfind("model name", 0) == 0 && line.find(": ") != std::string::npos)
+      return line.substr(line.find(": ") + 2);
+  return "unknown processor";
+}
+
+/// What the table says of a rival's clusters.
+std::string verdictOn(const RivalResult& result) {
+  if (!result.failure.empty()) return "not possible: " + result.failure;
+  if (result.rival->key == kReferenceKey) return "reference";
+  if (result.difference.identical) return "identical";
+  if (result.difference.same_sets) return "DIFFERENT order";
+  return formatted("DIFFERENT: %zu points, %zu clusters", result.difference.mislabelled, result.clusters);
+}
+
+std::string indented(const std::string& lines, const char* by) {
+  std::istringstream stream(lines);
+  std::string result, line;
+  while (std::getline(stream, line)) result += by + line + "\n";
+  return result;
+}
+
+double orNan(const std::optional<double>& value) {
+  return value.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+/// NaN has no place in JSON.
+nlohmann::ordered_json finiteOrNull(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json jsonOf(const CaseResult& result, const RivalResult& entry, const CompareSettings& settings) {
+  nlohmann::ordered_json json{{"rival", entry.rival->key}, {"title", entry.rival->title}};
+  if (!entry.failure.empty()) {
+    json["failure"] = entry.failure;
+    return json;
+  }
+  json["must_agree"] = settings.mustAgree(*entry.rival);
+  json["clusters"] = entry.clusters;
+  json["identical"] = entry.difference.identical;
+  if (!entry.difference.identical)
+    json["difference"] = {{"same_sets", entry.difference.same_sets},
+                          {"clusters", entry.difference.clusters},
+                          {"mislabelled", entry.difference.mislabelled},
+                          {"details", entry.difference.details}};
+  if (!entry.times) return json;
+  json["runs"] = entry.times->runs.size();
+  json["mean_ms"] = entry.times->mean();
+  json["confidence99_ms"] = finiteOrNull(entry.times->confidence99());
+  json["median_ms"] = entry.times->median();
+  json["ratio"] = finiteOrNull(orNan(result.ratio(entry)));
+  json["times_ms"] = entry.times->runs;
+  return json;
+}
+
+Chart::Point pointOf(double x, const Times& times) {
+  return {x, times.mean(), times.confidence99()};
+}
+
+/// A line per rival that was timed; `point` adds the rival's points.
+template <typename AddPoints>
+std::vector<Chart::Line> linesOf(const CompareSettings& settings, AddPoints&& add_points) {
+  std::vector<Chart::Line> lines;
+  for (const Rival& rival : settings.rivals) {
+    Chart::Line line{rival.title, {}};
+    add_points(rival, line.points);
+    std::sort(line.points.begin(), line.points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+    if (!line.points.empty()) lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+constexpr const char* kTimeLabel = "milliseconds, mean with 99% confidence";
+
+std::string overPoints(double tolerance) {
+  return formatted("time_over_points_%g.png", tolerance);
+}
+std::string overTolerance(const std::string& input) {
+  return "time_over_tolerance_" + input + ".png";
+}
+constexpr const char* kMeanChart = "time_over_tolerance.png";
+
+}  // namespace
+
+std::string describeRun(const CompareSettings& settings) {
+  std::string text = formatted("lisco %s, %s, %s with %u threads, of which one is used\n", LISCO_VERSION, kCompiler,
+                               processor().c_str(), std::thread::hardware_concurrency());
+  if (settings.runs > 0)
+    text += formatted("%zu runs of each in turn (fewer, but 3, of what takes longer than %g s for all of them)\n",
+                      settings.runs, settings.max_seconds);
+  return text;
+}
+
+std::string headingOf(const InputResult& input, const CompareSettings& settings) {
+  std::string text = "\n" + input.file + ": ";
+  text += input.rows > 1 ? formatted("%zu rows x %zu columns, ", input.rows, input.columns) : "unorganized, ";
+  text += formatted("%zu returns", input.returns);
+  if (std::isfinite(input.ground_z)) text += formatted(" above %g m", static_cast<double>(input.ground_z));
+  return text + formatted(", clusters of at least %u\n", settings.min_size);
+}
+
+std::string tableOf(const CaseResult& result, const CompareSettings&) {
+  std::string text = formatted("\n  tolerance %g m: %zu clusters\n", result.tolerance, result.clusters);
+  if (result.objects)
+    text += formatted("  true objects: %zu; %zu whole, %zu split, %zu merged with others, %zu missed\n",
+                      result.objects->objects, result.objects->whole, result.objects->split, result.objects->merged,
+                      result.objects->missed);
+  text += formatted("  %-30s %5s %11s %9s %11s %8s  %s\n", "", "runs", "mean ms", "+-99%", "median ms", "ratio",
+                    "clusters");
+  for (const RivalResult& entry : result.rivals) {
+    text += formatted("  %-30s ", entry.rival->title.c_str());
+    if (entry.times) {
+      const double ratio = orNan(result.ratio(entry));
+      text += formatted("%5zu %11.3f %9.3f %11.3f ", entry.times->runs.size(), entry.times->mean(),
+                        entry.times->confidence99(), entry.times->median());
+      text += std::isfinite(ratio) ? formatted("%8.2f", ratio) : formatted("%8s", "-");
+    } else {
+      text += formatted("%5s %11s %9s %11s %8s", "-", "-", "-", "-", "-");
+    }
+    text += "  " + verdictOn(entry) + "\n";
+  }
+  for (const RivalResult& entry : result.rivals)
+    if (!entry.difference.details.empty())
+      text += "  " + entry.rival->title + ":\n" + indented(entry.difference.details, "    ");
+  return text;
+}
+
+std::string summaryOf(const std::vector<InputResult>& inputs, const CompareSettings& settings) {
+  std::string text = formatted("\n%-32s %9s  %s\n", "all scans and tolerances", "identical",
+                               "times as fast as PCL, KdTree (false): geometric mean, lowest, highest");
+  for (const Rival& rival : settings.rivals) {
+    std::size_t cases = 0;
+    std::size_t identical = 0;
+    std::vector<double> ratios;
+    for (const InputResult& input : inputs)
+      for (const CaseResult& result : input.cases) {
+        const RivalResult* const entry = result.find(rival.key);
+        if (entry == nullptr || !entry->failure.empty()) continue;
+        ++cases;
+        identical += entry->difference.identical ? 1 : 0;
+        const std::optional<double> ratio = result.ratio(*entry);
+        if (ratio) ratios.push_back(*ratio);
+      }
+    text += formatted("%-32s %9s  ", rival.title.c_str(), formatted("%zu/%zu", identical, cases).c_str());
+    text += ratios.empty() ? formatted("%8s %8s %8s\n", "-", "-", "-")
+                           : formatted("%8.2f %8.2f %8.2f\n", geometricMean(ratios),
+                                       *std::min_element(ratios.begin(), ratios.end()),
+                                       *std::max_element(ratios.begin(), ratios.end()));
+  }
+  return text;
+}
+
+std::string csvOf(const std::vector<InputResult>& inputs, const CompareSettings& settings) {
+  std::string text = std::string(kCsvSignature) +
+                     ",min_size,reference_clusters,rival,clusters,identical,mislabelled,runs,mean_ms,confidence99_ms,"
+                     "median_ms,min_ms,max_ms,ratio,objects,whole,split,merged,missed\n";
+  const auto number = [](double value) { return std::isfinite(value) ? formatted("%.6g", value) : std::string(); };
+  for (const InputResult& input : inputs)
+    for (const CaseResult& result : input.cases)
+      for (const RivalResult& entry : result.rivals) {
+        if (!entry.failure.empty()) continue;
+        // A name may hold a comma or a quote.
+        std::string name = "\"";
+        for (const char c : input.name) name += c == '"' ? "\"\"" : std::string(1, c);
+        text += name + "\"" +
+                formatted(",%zu,%zu,%zu,%s,%.10g,%u,%zu,%s,%zu,%s,%zu", input.rows, input.columns, input.returns,
+                          number(static_cast<double>(input.ground_z)).c_str(), result.tolerance, settings.min_size,
+                          result.clusters, entry.rival->key.c_str(), entry.clusters,
+                          entry.difference.identical ? "yes" : "no", entry.difference.mislabelled);
+        if (entry.times)
+          text += formatted(",%zu", entry.times->runs.size()) + "," + number(entry.times->mean()) + "," +
+                  number(entry.times->confidence99()) + "," + number(entry.times->median()) + "," +
+                  number(entry.times->least()) + "," + number(entry.times->most()) + "," +
+                  number(orNan(result.ratio(entry)));
+        else
+          text += ",0,,,,,,";
+        if (result.objects)
+          text += formatted(",%zu,%zu,%zu,%zu,%zu\n", result.objects->objects, result.objects->whole,
+                            result.objects->split, result.objects->merged, result.objects->missed);
+        else
+          text += ",,,,,\n";
+      }
+  return text;
+}
+
+std::string jsonOf(const std::vector<InputResult>& inputs, const CompareSettings& settings,
+                   const std::vector<std::string>& failures) {
+  nlohmann::ordered_json json{{"program", "lisco_compare"},
+                              {"version", LISCO_VERSION},
+                              {"compiler", kCompiler},
+                              {"processor", processor()},
+                              {"hardware_threads", std::thread::hardware_concurrency()},
+                              {"min_size", settings.min_size},
+                              {"runs", settings.runs},
+                              {"max_seconds", settings.max_seconds},
+                              {"unorganized", settings.unorganized},
+                              {"inputs", nlohmann::ordered_json::array()},
+                              {"failures", failures}};
+  for (const InputResult& input : inputs) {
+    nlohmann::ordered_json cases = nlohmann::ordered_json::array();
+    for (const CaseResult& result : input.cases) {
+      nlohmann::ordered_json one{{"tolerance", result.tolerance}, {"clusters", result.clusters}};
+      if (result.objects)
+        one["objects"] = {{"count", result.objects->objects},
+                          {"whole", result.objects->whole},
+                          {"split", result.objects->split},
+                          {"merged", result.objects->merged},
+                          {"missed", result.objects->missed}};
+      one["rivals"] = nlohmann::ordered_json::array();
+      for (const RivalResult& entry : result.rivals) one["rivals"].push_back(jsonOf(result, entry, settings));
+      cases.push_back(std::move(one));
+    }
+    json["inputs"].push_back({{"name", input.name},
+                              {"file", input.file},
+                              {"rows", input.rows},
+                              {"columns", input.columns},
+                              {"returns", input.returns},
+                              {"ground_z", finiteOrNull(static_cast<double>(input.ground_z))},
+                              {"cases", std::move(cases)}});
+  }
+  // A file name may be no UTF-8.
+  return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::vector<std::string> chartsOf(const std::vector<std::string>& input_names, const CompareSettings& settings) {
+  std::vector<std::string> charts;
+  for (const std::string& name : input_names) charts.push_back(overTolerance(name));
+  if (input_names.size() < 2) return charts;
+  charts.emplace_back(kMeanChart);
+  for (const double tolerance : settings.tolerances) charts.push_back(overPoints(tolerance));
+  return charts;
+}
+
+void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& settings,
+                const std::filesystem::path& folder) {
+  for (const InputResult& input : inputs) {
+    Chart chart{formatted("%s: %zu returns", input.name.c_str(), input.returns), "tolerance, metres", kTimeLabel};
+    chart.lines = linesOf(settings, [&](const Rival& rival, std::vector<Chart::Point>& points) {
+      for (const CaseResult& result : input.cases) {
+        const RivalResult* const entry = result.find(rival.key);
+        if (entry->times) points.push_back(pointOf(result.tolerance, *entry->times));
+      }
+    });
+    drawChart(chart, folder / overTolerance(input.name));
+  }
+  if (inputs.size() < 2) return;
+
+  Chart mean{formatted("mean of %zu scans", inputs.size()), "tolerance, metres", kTimeLabel};
+  mean.lines = linesOf(settings, [&](const Rival& rival, std::vector<Chart::Point>& points) {
+    for (std::size_t at = 0; at < settings.tolerances.size(); ++at) {
+      Chart::Point point{settings.tolerances[at], 0, 0};
+      std::size_t timed = 0;
+      for (const InputResult& input : inputs) {
+        const RivalResult* const entry = input.cases[at].find(rival.key);
+        if (!entry->times) continue;
+        ++timed;
+        point.y += entry->times->mean() / static_cast<double>(inputs.size());
+        const double error = entry->times->confidence99() / static_cast<double>(inputs.size());
+        point.error = std::hypot(point.error, error);
+      }
+      if (timed == inputs.size()) points.push_back(point);
+    }
+  });
+  drawChart(mean, folder / kMeanChart);
+
+  for (std::size_t at = 0; at < settings.tolerances.size(); ++at) {
+    Chart chart{formatted("%zu scans, tolerance %g m", inputs.size(), settings.tolerances[at]), "returns", kTimeLabel,
+                true};
+    chart.lines = linesOf(settings, [&](const Rival& rival, std::vector<Chart::Point>& points) {
+      for (const InputResult& input : inputs) {
+        const RivalResult* const entry = input.cases[at].find(rival.key);
+        if (entry->times) points.push_back(pointOf(static_cast<double>(input.returns), *entry->times));
+      }
+    });
+    drawChart(chart, folder / overPoints(settings.tolerances[at]));
+  }
+}
+
+}  // namespace lisco_apps

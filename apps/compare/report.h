@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "compare/comparison.h"
+
+namespace lisco_apps {
+
+/// Version, compiler, processor and settings: what a figure means nothing without.
+std::string describeRun(const CompareSettings& settings);
+
+/// The tables for people: one scan's heading, one tolerance's rivals, and what all of it comes to.
+std::string headingOf(const InputResult& input, const CompareSettings& settings);
+std::string tableOf(const CaseResult& result, const CompareSettings& settings);
+std::string summaryOf(const std::vector<InputResult>& inputs, const CompareSettings& settings);
+
+/// What the files for machines have near their beginning, by which they are known.
+inline constexpr const char* kCsvSignature = "input,rows,columns,returns,ground_z,tolerance";
+inline constexpr const char* kJsonSignature = "\"program\": \"lisco_compare\"";
+
+/// One row per scan, tolerance and rival.
+std::string csvOf(const std::vector<InputResult>& inputs, const CompareSettings& settings);
+/// All of it, times of every run included.
+/// \param failures inputs that could not be read, and why
+std::string jsonOf(const std::vector<InputResult>& inputs, const CompareSettings& settings,
+                   const std::vector<std::string>& failures);
+
+/// Names of the charts that drawCharts would draw.
+std::vector<std::string> chartsOf(const std::vector<std::string>& input_names, const CompareSettings& settings);
+/// Time over tolerance for each scan; of several scans also their mean, and time over the number of returns for each
+/// tolerance.
+void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& settings,
+                const std::filesystem::path& folder);
+
+}  // namespace lisco_apps

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "compare/rivals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+
+#include <pcl/search/kdtree.h>
+#include <pcl/search/octree.h>
+#include <pcl/segmentation/extract_clusters.h>
+#include <pcl/segmentation/lisco_cluster_extraction.h>
+
+#include "lisco/return.h"
+#include "reference/paper_lisco.h"
+#include "reference/voxel_grid.h"
+
+namespace lisco_apps {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+using Search = pcl::search::Search<RivalPoint>;
+
+/// PCL with a search method, made anew for each problem as its tutorial does; nullptr: PCL's own choice.
+template <typename MakeSearch>
+auto byPcl(MakeSearch make_search) {
+  return [make_search](const Problem& problem, Clusters& clusters) {
+    pcl::EuclideanClusterExtraction<RivalPoint> extraction;
+    const Search::Ptr search = make_search(problem);
+    if (search != nullptr) extraction.setSearchMethod(search);
+    extraction.setInputCloud(problem.cloud);
+    extraction.setIndices(problem.returns);
+    extraction.setClusterTolerance(problem.tolerance);
+    extraction.setMinClusterSize(problem.min_size);
+    extraction.setMaxClusterSize(problem.max_size);
+    extraction.extract(clusters);
+  };
+}
+
+/// Turns a component per return into PCL's vector: clusters by their first point, then sorted by PCL's call.
+class ComponentsToClusters {
+ public:
+  /// \param component_of the component of the i-th return
+  /// \param component_count more than any of its numbers
+  void append(const std::vector<std::uint32_t>& component_of, std::size_t component_count, const Problem& problem,
+              Clusters& clusters) {
+    size_.assign(component_count, 0);
+    for (const std::uint32_t component : component_of) ++size_[component];
+    cluster_.assign(component_count, kNone);
+    const pcl::Indices& returns = *problem.returns;
+    for (std::size_t i = 0; i < component_of.size(); ++i) {
+      const std::uint32_t component = component_of[i];
+      if (size_[component] < problem.min_size || size_[component] > problem.max_size) continue;
+      if (cluster_[component] == kNone) {
+        cluster_[component] = static_cast<std::uint32_t>(clusters.size());
+        clusters.emplace_back();
+        clusters.back().header = problem.cloud->header;
+        clusters.back().indices.reserve(size_[component]);
+      }
+      clusters[cluster_[component]].indices.push_back(returns[i]);
+    }
+    std::sort(clusters.rbegin(), clusters.rend(), pcl::comparePointClusters);
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  std::vector<std::uint32_t> size_, cluster_;
+};
+
+lisco::Return returnAt(const Problem& problem, pcl::index_t index) {
+  const RivalPoint& p = (*problem.cloud)[static_cast<std::size_t>(index)];
+  return {p.x, p.y, p.z, static_cast<std::uint32_t>(index)};
+}
+
+class ByVoxelGrid {
+ public:
+  void extract(const Problem& problem, Clusters& clusters) {
+    returns_.resize(problem.returns->size());
+    for (std::size_t i = 0; i < returns_.size(); ++i) returns_[i] = returnAt(problem, (*problem.returns)[i]);
+    const auto& component_of = grid_.cluster(returns_, static_cast<float>(problem.tolerance));
+    output_.append(component_of, returns_.size(), problem, clusters);
+  }
+
+ private:
+  std::vector<lisco::Return> returns_;
+  lisco_reference::VoxelGrid grid_;
+  ComponentsToClusters output_;
+};
+
+class ByThePaper {
+ public:
+  void extract(const Problem& problem, Clusters& clusters) {
+    const RivalCloud& cloud = *problem.cloud;
+    if (cloud_ != problem.cloud) {  // what a user of the paper's method knows beforehand
+      sensor_ = nominalSensor(cloud);
+      cloud_ = problem.cloud;
+    }
+    matrix_.resize(cloud.size());
+    for (std::size_t row = 0; row < cloud.height; ++row)
+      for (std::size_t column = 0; column < cloud.width; ++column)
+        matrix_[column * cloud.height + row] = returnAt(problem, static_cast<pcl::index_t>(row * cloud.width + column));
+    const auto& cluster_of_cell = paper_.cluster(matrix_, cloud.height, sensor_, static_cast<float>(problem.tolerance));
+    component_of_.clear();
+    for (const auto index : *problem.returns) {
+      const auto row = static_cast<std::size_t>(index) / cloud.width;
+      const auto column = static_cast<std::size_t>(index) % cloud.width;
+      component_of_.push_back(cluster_of_cell[column * cloud.height + row]);
+    }
+    output_.append(component_of_, cloud.size(), problem, clusters);
+  }
+
+ private:
+  RivalCloud::ConstPtr cloud_;
+  lisco_reference::NominalSensor sensor_{};
+  std::vector<lisco::Return> matrix_;
+  std::vector<std::uint32_t> component_of_;
+  lisco_reference::PaperLisco paper_;
+  ComponentsToClusters output_;
+};
+
+class ByLisco {
+ public:
+  void extract(const Problem& problem, Clusters& clusters) {
+    extraction_.setInputCloud(problem.cloud);
+    extraction_.setClusterTolerance(problem.tolerance);
+    extraction_.setMinClusterSize(problem.min_size);
+    extraction_.setMaxClusterSize(problem.max_size);
+    extraction_.extract(clusters);
+  }
+
+ private:
+  pcl::LiscoClusterExtraction<RivalPoint> extraction_;
+};
+
+template <typename Method>
+Rival withOwnMemory(const char* key, const char* title) {
+  const auto method = std::make_shared<Method>();
+  return {key, title, [method](const Problem& problem, Clusters& clusters) { method->extract(problem, clusters); }};
+}
+
+}  // namespace
+
+lisco_reference::NominalSensor nominalSensor(const RivalCloud& cloud) {
+  double least = kPi;
+  double before = std::nan("");
+  for (std::size_t row = 0; row < cloud.height; ++row) {
+    std::vector<double> elevations;
+    for (std::size_t column = 0; column < cloud.width; ++column) {
+      const RivalPoint& p = cloud.at(static_cast<int>(column), static_cast<int>(row));
+      if (lisco::isReturn(p.x, p.y, p.z))
+        elevations.push_back(
+            std::atan2(static_cast<double>(p.z), std::hypot(static_cast<double>(p.x), static_cast<double>(p.y))));
+    }
+    if (elevations.empty()) continue;
+    const auto middle = elevations.begin() + static_cast<std::ptrdiff_t>(elevations.size() / 2);
+    std::nth_element(elevations.begin(), middle, elevations.end());
+    if (std::isfinite(before)) least = std::min(least, std::fabs(*middle - before));
+    before = *middle;
+  }
+  return {2 * kPi / cloud.width, least};
+}
+
+Rival referenceRival() {
+  return {kReferenceKey, "PCL, KdTree (false)",
+          byPcl([](const Problem&) { return std::make_shared<pcl::search::KdTree<RivalPoint>>(false); })};
+}
+
+std::vector<Rival> allRivals() {
+  std::vector<Rival> rivals{referenceRival()};
+  rivals.push_back({"pcl-tutorial", "PCL, KdTree as in its tutorial",
+                    byPcl([](const Problem&) { return std::make_shared<pcl::search::KdTree<RivalPoint>>(); })});
+  rivals.push_back({"pcl-octree", "PCL, Octree", byPcl([](const Problem& problem) {
+                      return std::make_shared<pcl::search::Octree<RivalPoint>>(std::fabs(problem.tolerance));
+                    })});
+  rivals.push_back({"pcl-default", "PCL, no search method given", byPcl([](const Problem&) { return Search::Ptr(); })});
+  rivals.back().timed = false;
+  rivals.push_back(withOwnMemory<ByVoxelGrid>("grid", "voxel grid"));
+  rivals.push_back(withOwnMemory<ByThePaper>("paper", "Lisco as in the paper"));
+  rivals.back().needs_rows = true;
+  rivals.push_back(withOwnMemory<ByLisco>("lisco", "Lisco for PCL"));
+  return rivals;
+}
+
+}  // namespace lisco_apps

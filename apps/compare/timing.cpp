@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "compare/timing.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include <boost/math/distributions/students_t.hpp>
+
+namespace lisco_apps {
+
+double Times::mean() const {
+  return std::accumulate(runs.begin(), runs.end(), 0.0) / static_cast<double>(runs.size());
+}
+
+double Times::median() const {
+  std::vector<double> sorted = runs;
+  std::sort(sorted.begin(), sorted.end());
+  const std::size_t middle = sorted.size() / 2;
+  return sorted.size() % 2 == 1 ? sorted[middle] : (sorted[middle - 1] + sorted[middle]) / 2;
+}
+
+double Times::least() const {
+  return *std::min_element(runs.begin(), runs.end());
+}
+
+double Times::most() const {
+  return *std::max_element(runs.begin(), runs.end());
+}
+
+double Times::confidence99() const {
+  if (runs.size() < 2) return std::numeric_limits<double>::quiet_NaN();
+  const auto n = static_cast<double>(runs.size());
+  const double center = mean();
+  double squares = 0;
+  for (const double run : runs) squares += (run - center) * (run - center);
+  constexpr double kBothTails = 0.01;
+  const double t = boost::math::quantile(boost::math::students_t(n - 1), 1 - kBothTails / 2);
+  return t * std::sqrt(squares / (n - 1) / n);
+}
+
+double millisecondsOf(const std::function<void()>& run) {
+  const auto start = std::chrono::steady_clock::now();
+  run();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants,
+                              const std::function<void(std::size_t, std::size_t)>& between) {
+  constexpr double kShort = 50;  // milliseconds
+  std::size_t rounds = 0;
+  for (const Contestant& contestant : contestants) rounds = std::max(rounds, contestant.runs);
+  std::vector<Times> times(contestants.size());
+  for (std::size_t round = 0; round < rounds; ++round) {
+    between(round, rounds);
+    for (std::size_t i = 0; i < contestants.size(); ++i) {
+      const Contestant& contestant = contestants[i];
+      if (round * contestant.runs / rounds == (round + 1) * contestant.runs / rounds) continue;
+      if (contestant.tried_ms < kShort) contestant.run();
+      times[i].runs.push_back(millisecondsOf(contestant.run));
+    }
+  }
+  return times;
+}
+
+double geometricMean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += std::log(value);
+  return std::exp(sum / static_cast<double>(values.size()));
+}
+
+}  // namespace lisco_apps

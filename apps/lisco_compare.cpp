@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+//
+// Clusters scans by PCL and by Lisco, side by side: whether the clusters are the same, and how long it took.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <omp.h>
+
+#include <boost/program_options.hpp>
+
+#include "cloud_file.h"
+#include "compare/charts.h"
+#include "compare/comparison.h"
+#include "compare/report.h"
+#include "lisco/version.h"
+#include "options.h"
+#include "output_file.h"
+#include "progress_bar.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+namespace po = boost::program_options;
+using namespace lisco_apps;
+
+struct Options {
+  std::vector<std::string> inputs;
+  CompareSettings settings;
+  std::map<std::string, float> ground_of;  ///< by name of the input; "" for all others
+  fs::path json, csv, plot;
+};
+
+/// The rivals with these keys, in the order of allRivals ().
+std::vector<Rival> rivalsNamed(const std::string& keys, const char* option) {
+  std::vector<std::string> asked = itemsOf(keys);
+  std::vector<Rival> chosen;
+  std::string known;
+  for (Rival& rival : allRivals()) {
+    known += (known.empty() ? "" : ", ") + rival.key;
+    const auto found = std::find(asked.begin(), asked.end(), rival.key);
+    if (found == asked.end()) continue;
+    asked.erase(std::remove(asked.begin(), asked.end(), rival.key), asked.end());
+    chosen.push_back(std::move(rival));
+  }
+  if (!asked.empty())
+    throw std::runtime_error(std::string(option) + " knows no '" + asked.front() + "' (but " + known + ")");
+  return chosen;
+}
+
+/// \return false if there is nothing to do but to print help or version, which has been done
+bool parse(int argc, char** argv, Options& options) {
+  po::options_description shown(
+      "Usage: lisco_compare INPUT... --tolerance M[,M...] [options]\n\n"
+      "Clusters scans by PCL and by Lisco side by side, on the same returns: first whether the clusters are the same,\n"
+      "then how long each takes. An input is a scan (.pcd .ply .obj .ifs, KITTI .bin, the paper authors' .csv) or a\n"
+      "folder of scans. If a scan has a field 'label' (as lisco_simulate writes it), clusters are also scored against\n"
+      "these true objects.\n\n"
+      "Rivals: pcl (the reference: EuclideanClusterExtraction with KdTree (false)), pcl-tutorial (sorted KdTree),\n"
+      "pcl-octree, grid (a voxel grid), paper (Lisco exactly as published), lisco, and, only shown and not timed,\n"
+      "pcl-default (no search method given, which breaks on rotating scans).\n\n"
+      "Exit code: 0 if the clusters are identical everywhere, 1 if not, 2 on bad input or usage.\n\n"
+      "Options");
+  std::string tolerances;
+  std::string min_size = "10";
+  std::string runs = "20";
+  std::string max_seconds = "10";
+  std::string rivals = "pcl,pcl-tutorial,pcl-octree,grid,paper,lisco";
+  std::string must_agree = "lisco";
+  std::vector<std::string> ground;
+  std::string json, csv, plot;
+  bool check_only = false;
+  // clang-format off
+  shown.add_options()
+    ("tolerance,t", po::value<std::string>(&tolerances)->value_name("M[,M...]"),
+     "points nearer to each other than this many metres belong together")
+    ("min-size", po::value<std::string>(&min_size)->value_name("N"), "least returns of a cluster (default 10)")
+    ("ground-z", po::value<std::vector<std::string>>(&ground)->value_name("M"),
+     "leave out returns below this height in metres (default: none); NAME=M: of the input of this name (its file "
+     "name without ending) only; may be given several times")
+    ("runs", po::value<std::string>(&runs)->value_name("N"), "timed runs of each rival (default 20)")
+    ("max-seconds", po::value<std::string>(&max_seconds)->value_name("S"),
+     "fewer runs, but 3, for a rival that takes longer than this for all of them (default 10)")
+    ("check-only", po::bool_switch(&check_only), "compare the clusters and time nothing")
+    ("rivals", po::value<std::string>(&rivals)->value_name("A,B,..."),
+     "who takes part (default pcl,pcl-tutorial,pcl-octree,grid,paper,lisco)")
+    ("must-agree", po::value<std::string>(&must_agree)->value_name("A,B,..."),
+     "whose clusters have to be PCL's; exit code 1 if they are not (default lisco)")
+    ("unorganized", po::bool_switch(&options.settings.unorganized), "cluster the returns as an unorganized cloud")
+    ("json", po::value<std::string>(&json)->value_name("FILE"), "write everything, each run's time included")
+    ("csv", po::value<std::string>(&csv)->value_name("FILE"), "write a row per input, tolerance and rival")
+    ("plot", po::value<std::string>(&plot)->value_name("DIR"), "draw charts (PNG) into a folder; needs gnuplot")
+    ("help,h", "print this and exit")
+    ("version", "print the version and exit");
+  // clang-format on
+  po::options_description all;
+  all.add(shown).add_options()("input", po::value<std::vector<std::string>>(&options.inputs));
+  po::positional_options_description positional;
+  positional.add("input", -1);
+
+  po::variables_map given;
+  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), given);
+  if (given.count("help") != 0) {
+    std::cout << shown;
+    return false;
+  }
+  if (given.count("version") != 0) {
+    std::cout << "lisco_compare " << LISCO_VERSION << '\n';
+    return false;
+  }
+  po::notify(given);
+  if (options.inputs.empty()) throw std::runtime_error("no input; see --help");
+  if (given.count("tolerance") == 0) throw std::runtime_error("--tolerance is missing; see --help");
+  CompareSettings& settings = options.settings;
+  for (const std::string& item : itemsOf(tolerances)) {
+    const double tolerance = numberOf(item, "--tolerance");
+    if (!(tolerance > 0)) throw std::runtime_error("--tolerance must be positive, not '" + item + "'");
+    settings.tolerances.push_back(tolerance);
+  }
+  settings.min_size = countOf(min_size, "--min-size", 1);
+  settings.runs = countOf(runs, "--runs", 1);
+  if (check_only) settings.runs = 0;
+  settings.max_seconds = numberOf(max_seconds, "--max-seconds");
+  if (!(settings.max_seconds > 0)) throw std::runtime_error("--max-seconds must be positive");
+  for (const std::string& item : ground) {
+    const std::size_t equals = item.rfind('=');
+    const std::string name = equals == std::string::npos ? "" : item.substr(0, equals);
+    options.ground_of[name] =
+        static_cast<float>(numberOf(equals == std::string::npos ? item : item.substr(equals + 1), "--ground-z"));
+  }
+  settings.rivals = rivalsNamed(rivals, "--rivals");
+  for (const Rival& rival : rivalsNamed(must_agree, "--must-agree")) settings.must_agree.push_back(rival.key);
+  const auto empty = [&](const char* option, const std::string& value) {
+    if (given.count(option) != 0 && value.empty()) throw std::runtime_error(std::string("--") + option + " is empty");
+  };
+  empty("json", json);
+  empty("csv", csv);
+  empty("plot", plot);
+  options.json = json;
+  options.csv = csv;
+  options.plot = plot;
+  if (check_only && !plot.empty()) throw std::runtime_error("--plot needs times, --check-only takes none");
+  return true;
+}
+
+/// The height of the ground of the input of this name.
+float groundOf(const Options& options, const std::string& name) {
+  for (const std::string& key : {name, std::string()}) {
+    const auto found = options.ground_of.find(key);
+    if (found != options.ground_of.end()) return found->second;
+  }
+  return -std::numeric_limits<float>::infinity();
+}
+
+/// Everything for one scan, printed as it comes.
+InputResult compareFile(const fs::path& file, const std::string& name, const Options& options, std::size_t cases_before,
+                        ProgressBar& progress) {
+  const CompareSettings& settings = options.settings;
+  std::vector<std::uint32_t> object_of;
+  const Cloud::Ptr cloud = readCloudFile(file, &object_of);
+  InputResult input;
+  input.name = name;
+  input.file = file.string();
+  input.ground_z = groundOf(options, file.stem().string());
+  ComparedScan scan;
+  try {
+    scan = prepareScan(*cloud, std::move(object_of), input.ground_z, settings.unorganized);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(file.string() + ": " + error.what());
+  }
+  input.rows = scan.cloud->height;
+  input.columns = scan.cloud->width;
+  input.returns = scan.returns->size();
+  progress.clear();
+  std::fputs(headingOf(input, settings).c_str(), stdout);
+  for (const double tolerance : settings.tolerances) {
+    const double done = static_cast<double>(cases_before + input.cases.size());
+    input.cases.push_back(compareAt(scan, tolerance, settings, [&](const std::string& what, double share) {
+      constexpr double kSteps = 100;
+      progress.show(static_cast<std::size_t>((done + share) * kSteps),
+                    name + " at " + std::to_string(tolerance).substr(0, 5) + " m: " + what);
+    }));
+    progress.clear();
+    std::fputs(tableOf(input.cases.back(), settings).c_str(), stdout);
+    std::fflush(stdout);
+  }
+  return input;
+}
+
+bool allAgree(const std::vector<InputResult>& inputs, const CompareSettings& settings) {
+  for (const InputResult& input : inputs)
+    for (const CaseResult& result : input.cases)
+      for (const RivalResult& entry : result.rivals)
+        if (settings.mustAgree(*entry.rival) && (!entry.failure.empty() || !entry.difference.identical)) return false;
+  return true;
+}
+
+int compare(const Options& options) {
+  const CompareSettings& settings = options.settings;
+  const std::vector<fs::path> files = expandInputs(options.inputs);
+  const std::vector<std::string> names = namesOf(files);
+  // What cannot be written is found out before, not after, the time has been spent.
+  if (!options.json.empty()) checkMayWrite(options.json, kJsonSignature);
+  if (!options.csv.empty()) checkMayWrite(options.csv, kCsvSignature);
+  const std::vector<std::string> charts = chartsOf(names, settings);
+  if (!options.plot.empty()) {
+    checkCharts();
+    checkMayWriteInto(options.plot, charts);
+  }
+
+  std::fputs(describeRun(settings).c_str(), stdout);
+  std::vector<InputResult> results;
+  std::vector<std::string> failures;
+  ProgressBar progress(files.size() * settings.tolerances.size() * 100);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    try {
+      results.push_back(compareFile(files[i], names[i], options, i * settings.tolerances.size(), progress));
+    } catch (const std::exception& error) {
+      progress.clear();
+      std::fprintf(stderr, "lisco_compare: %s\n", error.what());
+      failures.emplace_back(error.what());
+    }
+  }
+  progress.clear();
+  if (!results.empty()) std::fputs(summaryOf(results, settings).c_str(), stdout);
+
+  if (!options.json.empty()) writeOwnFile(options.json, jsonOf(results, settings, failures), kJsonSignature);
+  if (!options.csv.empty()) writeOwnFile(options.csv, csvOf(results, settings), kCsvSignature);
+  if (!options.plot.empty() && !results.empty())
+    writeOwnFolder(options.plot, charts, [&](const fs::path& aside) { drawCharts(results, settings, aside); });
+  if (!allAgree(results, settings)) return 1;
+  return failures.empty() ? 0 : 2;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  omp_set_num_threads(1);  // PCL's kd-tree would wake threads that spin on while its rivals run
+  return runProgram("lisco_compare", [&] {
+    Options options;
+    return parse(argc, argv, options) ? compare(options) : 0;
+  });
+}
