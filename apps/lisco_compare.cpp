@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -34,7 +33,7 @@ using namespace lisco_apps;
 struct Options {
   std::vector<std::string> inputs;
   CompareSettings settings;
-  std::map<std::string, float> ground_of;  ///< by name of the input; "" for all others
+  GroundHeights ground;
   fs::path json, csv, plot;
 };
 
@@ -129,12 +128,7 @@ bool parse(int argc, char** argv, Options& options) {
   if (check_only) settings.runs = 0;
   settings.max_seconds = numberOf(max_seconds, "--max-seconds");
   if (!(settings.max_seconds > 0)) throw std::runtime_error("--max-seconds must be positive");
-  for (const std::string& item : ground) {
-    const std::size_t equals = item.rfind('=');
-    const std::string name = equals == std::string::npos ? "" : item.substr(0, equals);
-    options.ground_of[name] =
-        static_cast<float>(numberOf(equals == std::string::npos ? item : item.substr(equals + 1), "--ground-z"));
-  }
+  options.ground = GroundHeights(ground);
   settings.rivals = rivalsNamed(rivals, "--rivals");
   for (const Rival& rival : rivalsNamed(must_agree, "--must-agree")) settings.must_agree.push_back(rival.key);
   const auto empty = [&](const char* option, const std::string& value) {
@@ -150,15 +144,6 @@ bool parse(int argc, char** argv, Options& options) {
   return true;
 }
 
-/// The height of the ground of the input of this name.
-float groundOf(const Options& options, const std::string& name) {
-  for (const std::string& key : {name, std::string()}) {
-    const auto found = options.ground_of.find(key);
-    if (found != options.ground_of.end()) return found->second;
-  }
-  return -std::numeric_limits<float>::infinity();
-}
-
 /// Everything for one scan, printed as it comes.
 InputResult compareFile(const fs::path& file, const std::string& name, const Options& options, std::size_t cases_before,
                         ProgressBar& progress) {
@@ -168,7 +153,7 @@ InputResult compareFile(const fs::path& file, const std::string& name, const Opt
   InputResult input;
   input.name = name;
   input.file = file.string();
-  input.ground_z = groundOf(options, file.stem().string());
+  input.ground_z = options.ground.of(file.stem().string());
   ComparedScan scan;
   try {
     scan = prepareScan(*cloud, std::move(object_of), input.ground_z, settings.unorganized);

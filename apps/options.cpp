@@ -43,4 +43,21 @@ std::vector<std::string> itemsOf(const std::string& text) {
   return items;
 }
 
+GroundHeights::GroundHeights(const std::vector<std::string>& items) {
+  for (const std::string& item : items) {
+    const std::size_t equals = item.rfind('=');
+    const std::string name = equals == std::string::npos ? "" : item.substr(0, equals);
+    const std::string height = equals == std::string::npos ? item : item.substr(equals + 1);
+    of_name_[name] = static_cast<float>(numberOf(height, "--ground-z"));
+  }
+}
+
+float GroundHeights::of(const std::string& name) const {
+  for (const std::string& key : {name, std::string()}) {
+    const auto found = of_name_.find(key);
+    if (found != of_name_.end()) return found->second;
+  }
+  return -std::numeric_limits<float>::infinity();
+}
+
 }  // namespace lisco_apps

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,21 @@ double numberOf(const std::string& text, const char* option);
 
 /// Splits "a,b,c" at its commas.
 std::vector<std::string> itemsOf(const std::string& text);
+
+/// Heights below which the ground lies: of all inputs, or of each by its name.
+class GroundHeights {
+ public:
+  /// \param items "M" for all inputs, "NAME=M" for the input of this name, metres
+  /// \throws std::runtime_error with one line that says what is wrong
+  explicit GroundHeights(const std::vector<std::string>& items = {});
+
+  /// \param name file name without ending
+  /// \return minus infinity if nothing was said of this input
+  float of(const std::string& name) const;
+
+ private:
+  std::map<std::string, float> of_name_;  ///< "": of all others
+};
 
 /// The whole of a program: runs it, and turns an exception into one line on stderr and exit code 2.
 template <typename Run>

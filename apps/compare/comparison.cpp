@@ -36,9 +36,15 @@ const RivalResult* CaseResult::find(const std::string& key) const {
 }
 
 std::optional<double> CaseResult::ratio(const RivalResult& result) const {
-  const RivalResult* const pcl = find(kReferenceKey);
-  if (pcl == nullptr || !pcl->times || !result.times) return std::nullopt;
-  return pcl->times->median() / result.times->median();
+  const RivalResult* const reference = find(kReferenceKey);
+  if (reference == nullptr || !reference->times || !result.times) return std::nullopt;
+  return median(reference->times->runs) / median(result.times->runs);
+}
+
+std::optional<double> CaseResult::coldRatio(const RivalResult& result) const {
+  const RivalResult* const reference = find(kReferenceKey);
+  if (reference == nullptr || !reference->times || !result.times) return std::nullopt;
+  return median(reference->times->cold) / median(result.times->cold);
 }
 
 ComparedScan prepareScan(const Cloud& cloud, std::vector<std::uint32_t> object_of, float ground_z, bool unorganized) {

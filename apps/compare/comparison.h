@@ -46,8 +46,10 @@ struct CaseResult {
   std::vector<RivalResult> rivals;
 
   const RivalResult* find(const std::string& key) const;
-  /// How many times as fast as PCL's kd-tree a rival is (medians), if both were timed.
+  /// How many times as fast as the reference a rival is (medians), if both were timed.
   std::optional<double> ratio(const RivalResult& result) const;
+  /// The same of the cold runs.
+  std::optional<double> coldRatio(const RivalResult& result) const;
 };
 
 /// One scan.

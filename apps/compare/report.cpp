@@ -80,8 +80,9 @@ nlohmann::ordered_json jsonOf(const CaseResult& result, const RivalResult& entry
   json["runs"] = entry.times->runs.size();
   json["mean_ms"] = entry.times->mean();
   json["confidence99_ms"] = finiteOrNull(entry.times->confidence99());
-  json["median_ms"] = entry.times->median();
+  json["median_ms"] = median(entry.times->runs);
   json["ratio"] = finiteOrNull(orNan(result.ratio(entry)));
+  json["cold_median_ms"] = median(entry.times->cold);
   json["times_ms"] = entry.times->runs;
   return json;
 }
@@ -145,7 +146,7 @@ std::string tableOf(const CaseResult& result, const CompareSettings&) {
     if (entry.times) {
       const double ratio = orNan(result.ratio(entry));
       text += formatted("%5zu %11.3f %9.3f %11.3f ", entry.times->runs.size(), entry.times->mean(),
-                        entry.times->confidence99(), entry.times->median());
+                        entry.times->confidence99(), median(entry.times->runs));
       text += std::isfinite(ratio) ? formatted("%8.2f", ratio) : formatted("%8s", "-");
     } else {
       text += formatted("%5s %11s %9s %11s %8s", "-", "-", "-", "-", "-");
@@ -159,34 +160,38 @@ std::string tableOf(const CaseResult& result, const CompareSettings&) {
 }
 
 std::string summaryOf(const std::vector<InputResult>& inputs, const CompareSettings& settings) {
-  std::string text = formatted("\n%-32s %9s  %s\n", "all scans and tolerances", "identical",
-                               "times as fast as PCL, KdTree (false): geometric mean, lowest, highest");
+  std::string text =
+      formatted("\n%-32s %9s  %s\n%-32s %9s  %8s %8s %8s %10s\n", "all scans and tolerances", "identical",
+                "times as fast as PCL, KdTree (false)", "", "", "mean", "lowest", "highest", "mean, cold");
   for (const Rival& rival : settings.rivals) {
     std::size_t cases = 0;
     std::size_t identical = 0;
-    std::vector<double> ratios;
+    std::vector<double> ratios, cold;
     for (const InputResult& input : inputs)
       for (const CaseResult& result : input.cases) {
         const RivalResult* const entry = result.find(rival.key);
         if (entry == nullptr || !entry->failure.empty()) continue;
         ++cases;
         identical += entry->difference.identical ? 1 : 0;
-        const std::optional<double> ratio = result.ratio(*entry);
-        if (ratio) ratios.push_back(*ratio);
+        if (!result.ratio(*entry)) continue;
+        ratios.push_back(*result.ratio(*entry));
+        cold.push_back(*result.coldRatio(*entry));
       }
     text += formatted("%-32s %9s  ", rival.title.c_str(), formatted("%zu/%zu", identical, cases).c_str());
-    text += ratios.empty() ? formatted("%8s %8s %8s\n", "-", "-", "-")
-                           : formatted("%8.2f %8.2f %8.2f\n", geometricMean(ratios),
+    text += ratios.empty() ? formatted("%8s %8s %8s %10s\n", "-", "-", "-", "-")
+                           : formatted("%8.2f %8.2f %8.2f %10.2f\n", geometricMean(ratios),
                                        *std::min_element(ratios.begin(), ratios.end()),
-                                       *std::max_element(ratios.begin(), ratios.end()));
+                                       *std::max_element(ratios.begin(), ratios.end()), geometricMean(cold));
   }
+  if (settings.runs > 0)
+    text += "mean: geometric; cold: of first runs, whose memory another rival has displaced from the caches\n";
   return text;
 }
 
 std::string csvOf(const std::vector<InputResult>& inputs, const CompareSettings& settings) {
   std::string text = std::string(kCsvSignature) +
                      ",min_size,reference_clusters,rival,clusters,identical,mislabelled,runs,mean_ms,confidence99_ms,"
-                     "median_ms,min_ms,max_ms,ratio,objects,whole,split,merged,missed\n";
+                     "median_ms,cold_median_ms,min_ms,max_ms,ratio,objects,whole,split,merged,missed\n";
   const auto number = [](double value) { return std::isfinite(value) ? formatted("%.6g", value) : std::string(); };
   for (const InputResult& input : inputs)
     for (const CaseResult& result : input.cases)
@@ -202,11 +207,11 @@ std::string csvOf(const std::vector<InputResult>& inputs, const CompareSettings&
                           entry.difference.identical ? "yes" : "no", entry.difference.mislabelled);
         if (entry.times)
           text += formatted(",%zu", entry.times->runs.size()) + "," + number(entry.times->mean()) + "," +
-                  number(entry.times->confidence99()) + "," + number(entry.times->median()) + "," +
-                  number(entry.times->least()) + "," + number(entry.times->most()) + "," +
-                  number(orNan(result.ratio(entry)));
+                  number(entry.times->confidence99()) + "," + number(median(entry.times->runs)) + "," +
+                  number(median(entry.times->cold)) + "," + number(entry.times->least()) + "," +
+                  number(entry.times->most()) + "," + number(orNan(result.ratio(entry)));
         else
-          text += ",0,,,,,,";
+          text += ",0,,,,,,,";
         if (result.objects)
           text += formatted(",%zu,%zu,%zu,%zu,%zu\n", result.objects->objects, result.objects->whole,
                             result.objects->split, result.objects->merged, result.objects->missed);

@@ -12,15 +12,14 @@
 
 namespace lisco_apps {
 
-double Times::mean() const {
-  return std::accumulate(runs.begin(), runs.end(), 0.0) / static_cast<double>(runs.size());
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
 }
 
-double Times::median() const {
-  std::vector<double> sorted = runs;
-  std::sort(sorted.begin(), sorted.end());
-  const std::size_t middle = sorted.size() / 2;
-  return sorted.size() % 2 == 1 ? sorted[middle] : (sorted[middle - 1] + sorted[middle]) / 2;
+double Times::mean() const {
+  return std::accumulate(runs.begin(), runs.end(), 0.0) / static_cast<double>(runs.size());
 }
 
 double Times::least() const {
@@ -59,8 +58,8 @@ std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants,
     for (std::size_t i = 0; i < contestants.size(); ++i) {
       const Contestant& contestant = contestants[i];
       if (round * contestant.runs / rounds == (round + 1) * contestant.runs / rounds) continue;
-      if (contestant.tried_ms < kShort) contestant.run();
-      times[i].runs.push_back(millisecondsOf(contestant.run));
+      times[i].cold.push_back(millisecondsOf(contestant.run));
+      times[i].runs.push_back(contestant.tried_ms < kShort ? millisecondsOf(contestant.run) : times[i].cold.back());
     }
   }
   return times;

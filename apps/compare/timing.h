@@ -8,12 +8,14 @@
 
 namespace lisco_apps {
 
+double median(std::vector<double> values);
+
 /// Times of one rival, milliseconds.
 struct Times {
   std::vector<double> runs;
+  std::vector<double> cold;  ///< the run before each, which found its memory displaced; the same run if it was long
 
   double mean() const;
-  double median() const;
   double least() const;
   double most() const;
   /// Half the width of the mean's confidence interval of 99% (Student's t); NaN for fewer than two runs.
@@ -28,8 +30,8 @@ struct Contestant {
 };
 
 /// Times contestants in turn, round by round, so that what disturbs the machine disturbs all; those with fewer runs sit
-/// out some rounds, evenly spread. A short run is done twice in each round, of which the second counts: the first brings
-/// back the memory that the others have displaced from the caches.
+/// out some rounds, evenly spread. A short run is done twice in each round, of which the second counts: the first, the
+/// cold one, brings back the memory that the others have displaced from the caches.
 /// \param between called before each round with its number and that of all rounds
 std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants,
                               const std::function<void(std::size_t round, std::size_t rounds)>& between);
