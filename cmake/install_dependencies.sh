@@ -4,8 +4,8 @@
 # if all of it is there.
 set -euo pipefail
 
-packages=(g++ cmake ninja-build pkg-config libpcl-dev libboost-program-options-dev libcairo2-dev fonts-dejavu-core
-          libgtest-dev liblz4-dev)
+packages=(g++ cmake ninja-build pkg-config libpcl-dev libboost-program-options-dev nlohmann-json3-dev libcairo2-dev
+          fonts-dejavu-core gnuplot-nox libgtest-dev liblz4-dev)
 
 missing=()
 for package in "${packages[@]}"; do

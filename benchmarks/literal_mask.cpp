@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+//
+// How many neighbours the paper's mask (Algorithm 2, taken literally) misses on real scans, why, and how many points bear
+// another label for it. Prints a row per scan and tolerance.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include <pcl/search/kdtree.h>
+#include <boost/program_options.hpp>
+
+#include "cloud_file.h"
+#include "compare/comparison.h"
+#include "options.h"
+
+namespace {
+
+using namespace lisco_apps;
+
+/// Pairs of neighbours, and those that the mask does not show.
+struct Pairs {
+  std::size_t all = 0;
+  std::size_t lasers = 0;   ///< missed: more than lambda lasers apart
+  std::size_t horizon = 0;  ///< missed: more than sigma steps apart, but not if sigma came from the horizontal distance
+  std::size_t columns = 0;  ///< missed: more steps apart even so; columns are no azimuths
+};
+
+Pairs pairsOf(const ComparedScan& scan, double tolerance, const lisco_reference::NominalSensor& sensor) {
+  const RivalCloud& cloud = *scan.cloud;
+  const std::size_t steps = cloud.width;
+  pcl::search::KdTree<RivalPoint> tree(false);
+  tree.setInputCloud(scan.cloud, scan.returns);
+  Pairs pairs;
+  pcl::Indices near;
+  std::vector<float> squared;
+  for (const auto index : *scan.returns) {
+    const auto p = static_cast<std::size_t>(index);
+    const double horizontal = std::hypot(static_cast<double>(cloud[p].x), static_cast<double>(cloud[p].y));
+    const double distance = std::hypot(horizontal, static_cast<double>(cloud[p].z));
+    const auto mask = lisco_reference::getNeighborMask(distance, tolerance, sensor);
+    const auto wide_mask = lisco_reference::getNeighborMask(horizontal, tolerance, sensor);
+    tree.radiusSearch(cloud[p], tolerance, near, squared);
+    for (const auto other : near) {
+      const auto q = static_cast<std::size_t>(other);
+      const std::size_t p_step = p % steps;
+      const std::size_t q_step = q % steps;
+      // Each pair once, by its later point; within one step, by the upper one.
+      if (q_step > p_step || (q_step == p_step && q <= p)) continue;
+      ++pairs.all;
+      const std::size_t apart = std::min(p_step - q_step, steps - (p_step - q_step));
+      const std::size_t rows = std::max(p / steps, q / steps) - std::min(p / steps, q / steps);
+      if (rows > mask.lambda)
+        ++pairs.lasers;
+      else if (apart > mask.sigma)
+        ++(apart > wide_mask.sigma ? pairs.columns : pairs.horizon);
+    }
+  }
+  return pairs;
+}
+
+int run(const std::vector<std::string>& inputs, const GroundHeights& ground, const std::vector<double>& tolerances) {
+  CompareSettings settings;
+  settings.runs = 0;
+  for (Rival& rival : allRivals())
+    if (rival.key == "paper") settings.rivals.push_back(std::move(rival));
+  std::printf(
+      "scan,returns,tolerance,clusters,paper_clusters,mislabelled,pairs,missed_lasers,missed_horizon,missed_columns\n");
+  for (const auto& file : expandInputs(inputs)) {
+    const std::string name = file.stem().string();
+    const Cloud::Ptr cloud = readCloudFile(file);
+    const ComparedScan scan = prepareScan(*cloud, {}, ground.of(name), false);
+    for (const double tolerance : tolerances) {
+      const CaseResult result = compareAt(scan, tolerance, settings, [](const std::string&, double) {});
+      const RivalResult& paper = result.rivals.front();
+      const Pairs pairs = pairsOf(scan, tolerance, nominalSensor(*scan.cloud));
+      std::printf("%s,%zu,%g,%zu,%zu,%zu,%zu,%zu,%zu,%zu\n", name.c_str(), scan.returns->size(), tolerance,
+                  result.clusters, paper.clusters, paper.difference.mislabelled, pairs.all, pairs.lasers, pairs.horizon,
+                  pairs.columns);
+      std::fflush(stdout);
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  namespace po = boost::program_options;
+  return lisco_apps::runProgram("literal_mask", [&] {
+    po::options_description options("literal_mask SCAN-OR-FOLDER... [options]");
+    std::vector<std::string> inputs, ground;
+    std::string tolerances;
+    options.add_options()("help", "print this")("input", po::value(&inputs), "scans or folders")(
+        "ground-z", po::value(&ground), "M, or NAME=M for the scan of this name: leave out what is lower, metres")(
+        "tolerance", po::value(&tolerances)->default_value("0.1,0.3,0.4,0.7,1"), "metres");
+    po::positional_options_description positional;
+    positional.add("input", -1);
+    po::variables_map given;
+    po::store(po::command_line_parser(argc, argv).options(options).positional(positional).run(), given);
+    po::notify(given);
+    if (given.count("help") != 0 || inputs.empty()) {
+      std::cout << options;
+      return given.count("help") != 0 ? 0 : 2;
+    }
+    std::vector<double> values;
+    for (const std::string& item : itemsOf(tolerances)) values.push_back(numberOf(item, "--tolerance"));
+    return run(inputs, GroundHeights(ground), values);
+  });
+}

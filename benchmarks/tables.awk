@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Tables of the documents, from what `lisco_compare --csv` and literal_mask write. Which one: -v table=NAME.
+# Names of scans must hold no commas.
+BEGIN { FS = "," }
+FNR == 1 { for (i = 1; i <= NF; ++i) column[$i] = i; next }
+{ gsub(/"/, "", $1) }
+
+function field(name) { return $column[name] }
+function key(rival) { return $1 SUBSEP field("tolerance") SUBSEP rival }
+
+table != "mask" {
+  scan = $1; tolerance = field("tolerance"); rival = field("rival")
+  if (!(scan in returns)) { returns[scan] = field("returns"); scans[++scan_count] = scan }
+  if (!((scan, tolerance) in clusters)) { ++cases; case_scan[cases] = scan; case_tolerance[cases] = tolerance }
+  if (!(tolerance in seen)) { seen[tolerance] = 1; tolerances[++tolerance_count] = tolerance }
+  clusters[scan, tolerance] = field("reference_clusters")
+  mean[key(rival)] = field("mean_ms"); error[key(rival)] = field("confidence99_ms")
+  median[key(rival)] = field("median_ms"); cold[key(rival)] = field("cold_median_ms")
+  identical[key(rival)] = field("identical")
+  objects[scan, tolerance] = field("objects"); whole[scan, tolerance] = field("whole")
+  split_[scan, tolerance] = field("split"); merged[scan, tolerance] = field("merged"); missed[scan, tolerance] = field("missed")
+}
+
+# Three digits that matter.
+function short(value) { return value >= 100 ? sprintf("%.0f", value) : value >= 10 ? sprintf("%.1f", value) : sprintf("%.2f", value) }
+function ratio(values, scan, tolerance, slow, fast) { return values[scan, tolerance, slow] / values[scan, tolerance, fast] }
+
+# Geometric mean and lowest of slow's time over fast's, for the line below a table.
+function summary(slow, fast,   i, sum, cold_sum, r, lowest) {
+  lowest = 1e30
+  for (i = 1; i <= cases; ++i) {
+    r = ratio(median, case_scan[i], case_tolerance[i], slow, fast)
+    sum += log(r); if (r < lowest) lowest = r
+    cold_sum += log(ratio(cold, case_scan[i], case_tolerance[i], slow, fast))
+  }
+  return sprintf("geometric mean %s, lowest %s; of first runs, with cold memory, %s", short(exp(sum / cases)), short(lowest), short(exp(cold_sum / cases)))
+}
+
+function benchmarks(   i, s, t) {
+  printf "%-20s %8s %5s %8s %9s %9s %9s %10s %10s  %s\n", "scan", "returns", "eps", "clusters", "PCL ms", "grid ms", "Lisco ms", "PCL/Lisco", "grid/Lisco", "identical"
+  for (i = 1; i <= cases; ++i) {
+    s = case_scan[i]; t = case_tolerance[i]
+    printf "%-20s %8d %5.2f %8d %9.2f %9.3f %9.3f %10.1f %10.2f  %s\n", s, returns[s], t, clusters[s, t], median[s, t, "pcl"], median[s, t, "grid"], median[s, t, "lisco"], ratio(median, s, t, "pcl", "lisco"), ratio(median, s, t, "grid", "lisco"), identical[s, t, "lisco"]
+  }
+  printf "PCL / Lisco in %d cases: %s\n", cases, summary("pcl", "lisco")
+  printf "grid / Lisco in %d cases: %s\n", cases, summary("grid", "lisco")
+}
+
+# One row per scan, one column per tolerance: PCL's time, Lisco's time, and their ratio.
+function readme(   i, j, s, t) {
+  printf "| scan | returns |"
+  for (j = 1; j <= tolerance_count; ++j) if (wanted(tolerances[j])) printf " %g m |", tolerances[j]
+  printf "\n|---|---|"
+  for (j = 1; j <= tolerance_count; ++j) if (wanted(tolerances[j])) printf "---|"
+  print ""
+  for (i = 1; i <= scan_count; ++i) {
+    s = scans[i]
+    printf "| %s | %d |", s, returns[s]
+    for (j = 1; j <= tolerance_count; ++j) {
+      t = tolerances[j]
+      if (wanted(t)) printf " %s → %s (%s×) |", short(median[s, t, "pcl"]), short(median[s, t, "lisco"]), short(ratio(median, s, t, "pcl", "lisco"))
+    }
+    print ""
+  }
+  printf "\nOver %d cases (all tolerances): %s.\n", cases, summary("pcl", "lisco")
+}
+function wanted(tolerance) { return tolerance == 0.1 || tolerance == 0.4 || tolerance == 1 }
+
+# Mean time of each rival with its confidence, and how many times as fast as PCL it is.
+function times(   i, s, t) {
+  print "| scan | returns | eps | clusters | PCL ms | paper's Lisco ms | grid ms | Lisco ms | PCL/paper | PCL/grid | PCL/Lisco |"
+  print "|---|---|---|---|---|---|---|---|---|---|---|"
+  for (i = 1; i <= cases; ++i) {
+    s = case_scan[i]; t = case_tolerance[i]
+    printf "| %s | %d | %g | %d | %s | %s%s | %s | %s | %s | %s | %s |\n", s, returns[s], t, clusters[s, t], timed(s, t, "pcl"), timed(s, t, "paper"), identical[s, t, "paper"] == "yes" ? "" : " *", timed(s, t, "grid"), timed(s, t, "lisco"), short(ratio(mean, s, t, "pcl", "paper")), short(ratio(mean, s, t, "pcl", "grid")), short(ratio(mean, s, t, "pcl", "lisco"))
+  }
+}
+function timed(s, t, rival) { return short(mean[s, t, rival]) " ± " short(error[s, t, rival]) }
+
+# How clusters cover the true objects.
+function scored(   i, j, s, t) {
+  printf "| eps |"
+  for (i = 1; i <= scan_count; ++i) printf " %s |", scans[i]
+  printf "\n|---|"
+  for (i = 1; i <= scan_count; ++i) printf "---|"
+  printf "\n| objects |"
+  for (i = 1; i <= scan_count; ++i) printf " %d |", objects[scans[i], tolerances[1]]
+  print ""
+  for (j = 1; j <= tolerance_count; ++j) {
+    t = tolerances[j]
+    printf "| %g |", t
+    for (i = 1; i <= scan_count; ++i) {
+      s = scans[i]
+      printf " %d / %d / %d / %d |", whole[s, t], split_[s, t], merged[s, t], missed[s, t]
+    }
+    print ""
+  }
+}
+
+function counts(   i, s, paper, wanted_count) {
+  split("26891 16218 39028 18229 64518", paper, " ")
+  print "| scene | returns in the paper | returns here | difference |\n|---|---|---|---|"
+  for (i = 1; i <= scan_count; ++i) {
+    s = scans[i]
+    printf "| %s | %d | %d | %+.1f % |\n", s, paper[i], returns[s], 100 * (returns[s] / paper[i] - 1)
+  }
+}
+
+table == "mask" {
+  scan = $1; t = field("tolerance")
+  if (!(scan in returns)) { returns[scan] = field("returns"); scans[++scan_count] = scan }
+  if (!(t in seen)) { seen[t] = 1; tolerances[++tolerance_count] = t }
+  mislabelled[scan, t] = field("mislabelled")
+  pairs[scan, t] = field("pairs"); horizon[scan, t] = field("missed_horizon"); columns[scan, t] = field("missed_columns"); lasers[scan, t] = field("missed_lasers")
+}
+function mask(   i, j, s, t, at) {
+  at = 0.3
+  printf "| scan | returns |"
+  for (j = 1; j <= tolerance_count; ++j) printf " %g m |", tolerances[j]
+  printf " missed neighbours at %g m | for lack of lasers | off the horizon | columns are no azimuths |\n|---|---|", at
+  for (j = 1; j <= tolerance_count + 4; ++j) printf "---|"
+  print ""
+  for (i = 1; i <= scan_count; ++i) {
+    s = scans[i]
+    printf "| %s | %d |", s, returns[s]
+    for (j = 1; j <= tolerance_count; ++j) printf " %d |", mislabelled[s, tolerances[j]]
+    printf " %.2f %% |", 100 * (lasers[s, at] + horizon[s, at] + columns[s, at]) / pairs[s, at]
+    printf " %d | %d | %d |\n", lasers[s, at], horizon[s, at], columns[s, at]
+  }
+}
+
+END {
+  if (table == "benchmarks") benchmarks()
+  if (table == "readme") readme()
+  if (table == "times") times()
+  if (table == "scored") scored()
+  if (table == "counts") counts()
+  if (table == "mask") mask()
+}

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# What the scripts here share; sourced by them after `root` is set.
+. "$root/cmake/script_tools.sh"
+
+data=${LISCO_TEST_DATA:-$root/../shared/data}
+build=$root/build/benchmarks
+
+# Installs what is missing and builds the programs.
+build_benchmarks() {
+  "$root/cmake/install_dependencies.sh"
+  build_quietly "$root" "$build" -DCMAKE_BUILD_TYPE=Release -DLISCO_BUILD_BENCHMARKS=ON -DLISCO_BUILD_TESTS=OFF
+}
+
+# The rotating scans, and the heights below which the ground lies in each.
+find_real_scans() {
+  rotating=()
+  for scan in "$data"/scans/*.pcd; do
+    [[ $scan == */rgbd_* ]] || rotating+=("$scan")
+  done
+  if [ ! -f "${rotating[0]}" ]; then
+    echo "no real scans in $data/scans; set LISCO_TEST_DATA" >&2
+    return 1
+  fi
+  ground=()
+  for height in hdl32e_outdoor_0=-2.10 hdl32e_outdoor_1=-2.10 hdl64e_city_0=-1.60 hdl64e_city_1=-1.60 vlp16_close_0=-0.57 \
+                vlp16_street_0=-1.99 vls128_street_0=-1.74 os1_128_outdoor_0=-1.81 os1_64_sparse_0=-0.48; do
+    ground+=(--ground-z "$height")
+  done
+}
+
+# table NAME CSV: one of the tables of tables.awk.
+table() {
+  awk -v table="$1" -f "$root/benchmarks/tables.awk" "$2"
+}
+
+# replace_section FILE NAME: replaces what stands in FILE between the lines `<!-- NAME -->` and `<!-- end -->` by stdin.
+replace_section() {
+  local file=$1 name=$2 new
+  grep -q "^<!-- $name -->$" "$file" || { echo "$file has no section $name" >&2; return 1; }
+  new=$(mktemp)
+  cat >"$new"
+  awk -v begin="<!-- $name -->" -v new="$new" '
+    $0 == begin { print; print ""; while ((getline line < new) > 0) print line; print ""; inside = 1; next }
+    inside && $0 == "<!-- end -->" { inside = 0 }
+    !inside { print }' "$file" >"$file.partial"
+  mv "$file.partial" "$file"
+  rm "$new"
+}
+
+# code_block: stdin as a block of code.
+code_block() {
+  echo '```'
+  cat
+  echo '```'
+}
