@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "scenes.h"
+
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "objects.h"
+#include "random.h"
+
+namespace lisco_simulation {
+namespace {
+
+/// One of the four directions, in which a group of objects moves away from the sensor as one. Seen from the sensor, `away`
+/// counts from the nearest place that the group may take, and `across` to the left.
+class Group {
+ public:
+  Group(Scene& scene, double direction, double distance) : scene_(scene), direction_(direction), distance_(distance) {}
+
+  /// \param heading of the object's x axis, radians, 0: away from the sensor
+  void add(const Thing& thing, double away, double across, double heading) {
+    Object object{thing.object.kind, {}};
+    const Vector place = turned({distance_ + away, across, scene_.floor_z}, direction_);
+    for (const Solid& solid : thing.object.solids)
+      object.solids.push_back(solid.turned(heading + direction_).moved(place));
+    scene_.objects.push_back(std::move(object));
+  }
+
+ private:
+  Scene& scene_;
+  double direction_, distance_;
+};
+
+constexpr double kAhead = 0;
+constexpr double kLeft = kPi / 2;
+constexpr double kBehind = kPi;
+constexpr double kRight = -kPi / 2;
+
+/// Along the street, one way or the other; seen from a group beside it.
+double alongStreet(Random& random) {
+  return (random.chance(0.5) ? 1 : -1) * kPi / 2 + random.between(-0.02, 0.02);
+}
+
+/// Something across a lane that stays clear of what is put there next.
+class Lane {
+ public:
+  Lane(double first, double last) : next_(first), last_(last) {}
+
+  /// Whether there is room for something so wide, and then its middle.
+  bool take(double width, double gap, double& middle) {
+    if (next_ + width > last_) return false;
+    middle = next_ + width / 2;
+    next_ += width + gap;
+    return true;
+  }
+
+ private:
+  double next_, last_;
+};
+
+void addFewObjects(Scene& scene, Random& random, double distance) {
+  for (const double direction : {kLeft, kRight}) {
+    Group group(scene, direction, distance);
+    group.add(car(random), 3.2, random.between(-2.5, 2.5), alongStreet(random));
+    group.add(person(random), 5.4, random.between(-6, 6), random.between(-kPi, kPi));
+    group.add(tree(random), 7.8, random.between(-9, -3), 0);
+    group.add(lampPost(random), 5.8, random.between(7, 9), kPi);
+    group.add(house(random, random.between(14, 18)), 10.5, random.between(-2, 2), 0);
+  }
+  for (const double direction : {kAhead, kBehind}) {
+    Group group(scene, direction, distance);
+    group.add(car(random), 8, random.between(-1, 1), random.chance(0.5) ? 0 : kPi);
+    group.add(person(random), 13, random.between(-1.5, 1.5), kPi / 2);
+    group.add(house(random, random.between(9, 11)), 19, random.between(-1, 1), 0);
+  }
+}
+
+void addManyObjects(Scene& scene, Random& random, double distance) {
+  for (const double direction : {kLeft, kRight}) {
+    Group group(scene, direction, distance);
+    const double bend = random.chance(0.5) ? 1 : -1;  // all cars of a side face the same way
+    double middle = 0;
+    for (Lane row(random.between(-13, -12), 13.5);;) {
+      const Thing parked = car(random);
+      if (!row.take(parked.footprint.length, random.between(0.5, 0.85), middle)) break;
+      group.add(parked, 3.2, middle, bend * kPi / 2);
+    }
+    for (Lane pavement(random.between(-15, -13), 15); pavement.take(0.7, random.between(2.5, 6), middle);)
+      group.add(person(random), random.between(5.4, 5.7), middle, random.between(-kPi, kPi));
+    for (Lane trees(random.between(-17, -15), 16); trees.take(3, random.between(1.2, 4), middle);)
+      group.add(random.chance(0.65) ? tree(random) : lampPost(random), 8.2, middle, kPi);
+    for (Lane houses(random.between(-20, -18), 21); houses.take(9, random.between(1, 3), middle);)
+      group.add(house(random, random.between(7.5, 9)), 11, middle, 0);
+  }
+  for (const double direction : {kAhead, kBehind}) {
+    Group group(scene, direction, distance);
+    group.add(car(random), 8, random.between(0.6, 1), 0);
+    group.add(person(random), 7, -1.5, kPi / 2);
+    group.add(person(random), 12.2, random.between(-1.8, -0.5), kPi / 2);
+    group.add(person(random), 12.2, random.between(0.5, 1.8), -kPi / 2);
+    group.add(car(random), 15.5, random.between(-1, -0.6), kPi);
+    group.add(signPost(random), 19.5, random.between(2, 3), 0);
+    group.add(tree(random), 22, random.between(-5, -1), 0);
+    group.add(house(random, random.between(15, 18)), 26, random.between(-1, 1), 0);
+  }
+}
+
+void addRoom(Scene& scene, Random& random, double distance) {
+  constexpr double kHeight = 3;
+  constexpr double kDepth = 3.2;  // of the strip of things along each wall
+  const double half = distance + kDepth;
+  // Walls and ceiling belong together.
+  const double floor = scene.floor_z;
+  const double top = floor + kHeight;
+  Object shell{"walls and ceiling", {}};
+  constexpr double kThick = 0.3;
+  shell.solids.push_back(
+      Solid::box({-half - kThick, -half - kThick, top}, {half + kThick, half + kThick, top + kThick}));
+  for (const double direction : {kAhead, kLeft, kBehind, kRight})
+    shell.solids.push_back(
+        Solid::box({half, -half - kThick, floor}, {half + kThick, half + kThick, top}).turned(direction));
+  scene.objects.push_back(std::move(shell));
+
+  for (const double direction : {kAhead, kLeft, kBehind, kRight}) {
+    Group group(scene, direction, distance);
+    double middle = 0;
+    // People and boxes nearest, tables with chairs behind them, shelves along the wall.
+    for (Lane people(random.between(-1.4, -1), 1.4); people.take(0.85, random.between(0.5, 0.9), middle);)
+      group.add(random.chance(0.8) ? person(random) : boxes(random), 0, middle, random.between(-kPi, kPi));
+    group.add(table(random), 1.2, random.between(-0.2, 0.2), kPi / 2);
+    group.add(shelf(random, 2), kDepth - 0.01, random.between(-0.3, 0.3), 0);
+    group.add(column(random, kHeight), 2.4, random.between(-3, -2.2), 0);
+    group.add(chair(random), 2.2, random.between(-0.5, 0.5), kPi);
+  }
+}
+
+/// What the sensor stands on: what is left out of the returns because no ray of the paper's sensor meets it.
+void addMount(Scene& scene, int number) {
+  Thing mount = number < 5 ? sensorCar() : Thing{{"sensor column", {Solid::cylinder({}, {0, 0, 1.65}, 0.12)}}, {}};
+  Object object{mount.object.kind, {}};
+  for (const Solid& solid : mount.object.solids) object.solids.push_back(solid.moved({0, 0, scene.floor_z}));
+  scene.objects.push_back(std::move(object));
+}
+
+}  // namespace
+
+Scene layOutScene(int number, unsigned seed, double distance) {
+  if (number < 1 || number > kScenes)
+    throw std::invalid_argument("there are scenes 1 to 5, but no scene " + std::to_string(number));
+  // Scenes 1 and 2 draw the same numbers, and so do 3 and 4.
+  Random random(seed);
+  Scene scene;
+  addMount(scene, number);
+  if (number <= 2)
+    addFewObjects(scene, random, distance);
+  else if (number <= 4)
+    addManyObjects(scene, random, distance);
+  else
+    addRoom(scene, random, distance);
+  return scene;
+}
+
+Scene makeScene(int number, unsigned seed) {
+  const Sensor sensor = makeSensor(sensorNames().front());
+  Disturbance disturbance;
+  disturbance.seed = seed;
+  // The further away things are, the fewer rays they stop. That holds but for a few returns, so the best is kept.
+  Scene best;
+  std::size_t least_error = std::numeric_limits<std::size_t>::max();
+  double near = 0;
+  double far = 40;
+  for (int halving = 0; halving < 24 && least_error > 0; ++halving) {
+    const double distance = (near + far) / 2;
+    Scene scene = layOutScene(number, seed, distance);
+    const std::size_t wanted = kReturnsInPaper[number - 1];
+    const std::size_t returns = scan(scene, sensor, disturbance).returnsAbove(scene.ground_z);
+    (returns > wanted ? near : far) = distance;
+    const std::size_t error = returns > wanted ? returns - wanted : wanted - returns;
+    if (error >= least_error) continue;
+    least_error = error;
+    best = std::move(scene);
+  }
+  return best;
+}
+
+}  // namespace lisco_simulation
