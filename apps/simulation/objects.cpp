@@ -44,10 +44,10 @@ Thing sensorCar() {
   std::vector<Solid> solids;
   solids.push_back(Solid::block({-kHalf, kHalf, -kSide, kSide, 0.24}, {-kHalf, kHalf, -kSide, kSide, 0.6}));
   solids.push_back(Solid::block({-kHalf, kHalf, -kSide, kSide, 0.6},
-                                {-kHalf + 0.1, kHalf - 0.5, -kSide + 0.05, kSide - 0.05, 0.85}));
-  solids.push_back(Solid::block({-kHalf + 0.1, kHalf - 0.6, -kSide + 0.05, kSide - 0.05, 0.85},
-                                {-kHalf + 0.5, kHalf - 1.2, -kSide + 0.2, kSide - 0.2, 1.4}));
-  solids.push_back(Solid::cylinder({0, 0, 1.4}, {0, 0, 1.65}, 0.05));  // what holds the sensor
+                                {-kHalf + 0.1, kHalf - 0.4, -kSide + 0.05, kSide - 0.05, 0.85}));
+  solids.push_back(
+      Solid::block({-kHalf + 0.1, kHalf - 0.5, -kSide + 0.05, kSide - 0.05, 0.85}, {-0.7, 0.7, -0.55, 0.55, 1.35}));
+  solids.push_back(Solid::cylinder({0, 0, 1.35}, {0, 0, 1.65}, 0.05));  // what holds the sensor
   addWheels(solids, kHalf - 0.6, -kHalf + 0.6, kSide);
   return {{"sensor car", solids}, {2 * kHalf, 2 * kSide}};
 }
@@ -173,7 +173,7 @@ Thing chair(Random& random) {
     solids.push_back(Solid::cylinder({half - 0.03, y, 0}, {half - 0.03, y, 0.44}, 0.025));
     solids.push_back(Solid::cylinder({-half + 0.02, y, 0}, {-half + 0.02, y, 0.7}, 0.025));
   }
-  return {{"chair", solids}, {2 * half + 0.1, 2 * half}};
+  return {{"chair", solids}, {0.7, 0.7}};
 }
 
 Thing shelf(Random& random, double width) {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "scenes.h"
 
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -32,6 +33,11 @@ class Group {
   Scene& scene_;
   double direction_, distance_;
 };
+
+constexpr double kRoomHeight = 3;
+
+/// With less, things of two groups would touch each other in the room.
+constexpr double kLeastRoomDistance = 1.5;
 
 constexpr double kAhead = 0;
 constexpr double kLeft = kPi / 2;
@@ -66,14 +72,14 @@ void addFewObjects(Scene& scene, Random& random, double distance) {
     group.add(car(random), 3.2, random.between(-2.5, 2.5), alongStreet(random));
     group.add(person(random), 5.4, random.between(-6, 6), random.between(-kPi, kPi));
     group.add(tree(random), 7.8, random.between(-9, -3), 0);
-    group.add(lampPost(random), 5.8, random.between(7, 9), kPi);
-    group.add(house(random, random.between(14, 18)), 10.5, random.between(-2, 2), 0);
+    group.add(lampPost(random), 5.8, random.between(7, 9), kPi / 2);
+    group.add(house(random, random.between(19, 23)), 10.5, random.between(-2, 2), 0);
   }
   for (const double direction : {kAhead, kBehind}) {
     Group group(scene, direction, distance);
     group.add(car(random), 8, random.between(-1, 1), random.chance(0.5) ? 0 : kPi);
     group.add(person(random), 13, random.between(-1.5, 1.5), kPi / 2);
-    group.add(house(random, random.between(9, 11)), 19, random.between(-1, 1), 0);
+    group.add(house(random, random.between(14, 17)), 18, random.between(-1, 1), 0);
   }
 }
 
@@ -90,7 +96,7 @@ void addManyObjects(Scene& scene, Random& random, double distance) {
     for (Lane pavement(random.between(-15, -13), 15); pavement.take(0.7, random.between(2.5, 6), middle);)
       group.add(person(random), random.between(5.4, 5.7), middle, random.between(-kPi, kPi));
     for (Lane trees(random.between(-17, -15), 16); trees.take(3, random.between(1.2, 4), middle);)
-      group.add(random.chance(0.65) ? tree(random) : lampPost(random), 8.2, middle, kPi);
+      group.add(random.chance(0.65) ? tree(random) : lampPost(random), 8.2, middle, kPi / 2);
     for (Lane houses(random.between(-20, -18), 21); houses.take(9, random.between(1, 3), middle);)
       group.add(house(random, random.between(7.5, 9)), 11, middle, 0);
   }
@@ -107,13 +113,21 @@ void addManyObjects(Scene& scene, Random& random, double distance) {
   }
 }
 
+/// Something that a person would have to walk around.
+Thing standing(Random& random) {
+  const double choice = random.unit();
+  if (choice < 0.45) return person(random);
+  if (choice < 0.75) return boxes(random);
+  if (choice < 0.9) return chair(random);
+  return column(random, kRoomHeight);
+}
+
 void addRoom(Scene& scene, Random& random, double distance) {
-  constexpr double kHeight = 3;
-  constexpr double kDepth = 3.2;  // of the strip of things along each wall
+  constexpr double kDepth = 2.6;  // from the nearest things to the walls
   const double half = distance + kDepth;
   // Walls and ceiling belong together.
   const double floor = scene.floor_z;
-  const double top = floor + kHeight;
+  const double top = floor + kRoomHeight;
   Object shell{"walls and ceiling", {}};
   constexpr double kThick = 0.3;
   shell.solids.push_back(
@@ -126,13 +140,19 @@ void addRoom(Scene& scene, Random& random, double distance) {
   for (const double direction : {kAhead, kLeft, kBehind, kRight}) {
     Group group(scene, direction, distance);
     double middle = 0;
-    // People and boxes nearest, tables with chairs behind them, shelves along the wall.
-    for (Lane people(random.between(-1.4, -1), 1.4); people.take(0.85, random.between(0.5, 0.9), middle);)
-      group.add(random.chance(0.8) ? person(random) : boxes(random), 0, middle, random.between(-kPi, kPi));
-    group.add(table(random), 1.2, random.between(-0.2, 0.2), kPi / 2);
-    group.add(shelf(random, 2), kDepth - 0.01, random.between(-0.3, 0.3), 0);
-    group.add(column(random, kHeight), 2.4, random.between(-3, -2.2), 0);
-    group.add(chair(random), 2.2, random.between(-0.5, 0.5), kPi);
+    // From the sensor to the wall: people; tables, chairs and more people; shelves.
+    for (Lane people(-1.1, 1.1); people.take(0.75, random.between(0.5, 0.6), middle);)
+      group.add(person(random), 0, middle, random.between(-kPi, kPi));
+    for (Lane tables(-2.2, 2.2);;) {
+      const Thing thing = random.chance(0.7) ? table(random) : standing(random);
+      if (!tables.take(thing.footprint.length, random.between(0.5, 0.6), middle)) break;
+      group.add(thing, 1.25, middle, thing.object.kind == "table" ? kPi / 2 : random.between(-kPi, kPi));
+    }
+    for (Lane shelves(random.between(-3.4, -3.3), 3.4); shelves.take(1.6, random.between(0.5, 0.6), middle);)
+      group.add(shelf(random, 1.6), kDepth, middle, 0);
+    // Between this group and the next, moving with both.
+    Group corner(scene, direction + kPi / 4, std::sqrt(2.0) * distance);
+    corner.add(standing(random), std::sqrt(2.0) * 1.4, 0, random.between(-kPi, kPi));
   }
 }
 
@@ -169,7 +189,7 @@ Scene makeScene(int number, unsigned seed) {
   // The further away things are, the fewer rays they stop. That holds but for a few returns, so the best is kept.
   Scene best;
   std::size_t least_error = std::numeric_limits<std::size_t>::max();
-  double near = 0;
+  double near = number == 5 ? kLeastRoomDistance : 0;
   double far = 40;
   for (int halving = 0; halving < 24 && least_error > 0; ++halving) {
     const double distance = (near + far) / 2;
