@@ -191,7 +191,7 @@ Scene makeScene(int number, unsigned seed) {
   std::size_t least_error = std::numeric_limits<std::size_t>::max();
   double near = number == 5 ? kLeastRoomDistance : 0;
   double far = 40;
-  for (int halving = 0; halving < 24 && least_error > 0; ++halving) {
+  for (int halving = 0; halving < 24; ++halving) {
     const double distance = (near + far) / 2;
     Scene scene = layOutScene(number, seed, distance);
     const std::size_t wanted = kReturnsInPaper[number - 1];
@@ -201,6 +201,7 @@ Scene makeScene(int number, unsigned seed) {
     if (error >= least_error) continue;
     least_error = error;
     best = std::move(scene);
+    if (error <= wanted / 1000) break;
   }
   return best;
 }
