@@ -398,9 +398,13 @@ TEST(Scenes, AreNearAndFarWithTheSameObjects) {
 
 TEST(Scenes, DifferFromSeedToSeed) {
   for (const int number : {1, 3, 5}) {
-    const Vector one = layOutScene(number, 1, 2).objects.back().solids[0].bounds().centre;
-    const Vector two = layOutScene(number, 2, 2).objects.back().solids[0].bounds().centre;
-    EXPECT_GT(length(one - two), 1e-3) << "scene " << number;
+    SCOPED_TRACE(number);
+    const auto one = layOutScene(number, 1, 2).objects;
+    const auto two = layOutScene(number, 2, 2).objects;
+    std::size_t alike = 0;
+    for (std::size_t object = 0; object < std::min(one.size(), two.size()); ++object)
+      if (length(one[object].solids[0].bounds().centre - two[object].solids[0].bounds().centre) < 1e-3) ++alike;
+    EXPECT_LE(alike, one.size() / 4);
   }
 }
 

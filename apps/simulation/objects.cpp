@@ -35,7 +35,7 @@ Thing car(Random& random) {
   solids.push_back(Solid::block({cabin_back, half - 1.0, -side + 0.06, side - 0.06, waist},
                                 {cabin_back + (estate ? 0.25 : 0.6), half - 1.75, -side + 0.22, side - 0.22, top}));
   addWheels(solids, half - 0.8, -half + 0.8, side);
-  return {{"car", solids}, {2 * half, 2 * side + 0.04}};
+  return {{"car", solids}, 2 * half};
 }
 
 Thing sensorCar() {
@@ -49,7 +49,7 @@ Thing sensorCar() {
       Solid::block({-kHalf + 0.1, kHalf - 0.5, -kSide + 0.05, kSide - 0.05, 0.85}, {-0.7, 0.7, -0.55, 0.55, 1.35}));
   solids.push_back(Solid::cylinder({0, 0, 1.35}, {0, 0, 1.65}, 0.05));  // what holds the sensor
   addWheels(solids, kHalf - 0.6, -kHalf + 0.6, kSide);
-  return {{"sensor car", solids}, {2 * kHalf, 2 * kSide}};
+  return {{"sensor car", solids}, 2 * kHalf};
 }
 
 Thing person(Random& random) {
@@ -67,7 +67,7 @@ Thing person(Random& random) {
   limb({0, 0, 1.4}, {0, 0, 1.6}, 0.055);
   solids.push_back(Solid::ellipsoid(scale * Vector{0, 0, 1.2}, scale * Vector{0.13, 0.21, 0.38}));
   solids.push_back(Solid::ellipsoid(scale * Vector{0, 0, 1.68}, scale * Vector{0.1, 0.085, 0.12}));
-  return {{"person", solids}, {0.7, 0.7}};
+  return {{"person", solids}, 0.7};
 }
 
 Thing lampPost(Random& random) {
@@ -76,7 +76,7 @@ Thing lampPost(Random& random) {
            {Solid::cylinder({0, 0, 0}, {0, 0, 0.9}, 0.11), Solid::cylinder({0, 0, 0.9}, {0, 0, height}, 0.07),
             Solid::cylinder({0, 0, height}, {0, 1.3, height + 0.2}, 0.05),
             Solid::box({-0.12, 1.2, height + 0.1}, {0.12, 1.8, height + 0.25})}},
-          {0.3, 0.3}};
+          0.3};
 }
 
 Thing signPost(Random& random) {
@@ -84,7 +84,7 @@ Thing signPost(Random& random) {
   return {{"sign post",
            {Solid::cylinder({0, 0, 0}, {0, 0, height}, 0.045),
             Solid::cylinder({-0.07, 0, height - 0.3}, {-0.04, 0, height - 0.3}, 0.32)}},
-          {0.65, 0.65}};
+          0.65};
 }
 
 Thing tree(Random& random) {
@@ -106,7 +106,7 @@ Thing tree(Random& random) {
         Solid::ellipsoid({reach * std::cos(angle), reach * std::sin(angle), z}, {extent, extent, 1.2 * extent})
             .ofLeaves(kMeanDepth));
   }
-  return {{"tree", solids}, {2 * radius, 2 * radius}};
+  return {{"tree", solids}, 2 * radius};
 }
 
 Thing house(Random& random, double width) {
@@ -143,11 +143,11 @@ Thing house(Random& random, double width) {
     front(-half, door_right, base, sill);
     front(door_right + pane, half, base, sill);
   }
-  return {{"house", solids}, {depth + 0.4, width}};
+  return {{"house", solids}, depth + 0.4};
 }
 
 Thing table(Random& random) {
-  const double length = random.between(1.2, 1.8) / 2;
+  const double length = random.between(1.1, 1.35) / 2;
   const double width = random.between(0.7, 0.9) / 2;
   constexpr double kHeight = 0.74;
   std::vector<Solid> solids = {Solid::box({-length, -width, kHeight - 0.04}, {length, width, kHeight})};
@@ -160,7 +160,7 @@ Thing table(Random& random) {
     solids.push_back(random.chance(0.5) ? Solid::box({x - 0.25, 0, kHeight}, {x + 0.25, 0.05, kHeight + 0.42})
                                         : Solid::box({x - 0.15, -0.1, kHeight}, {x + 0.15, 0.1, kHeight + 0.25}));
   }
-  return {{"table", solids}, {2 * length, 2 * width}};
+  return {{"table", solids}, 2 * length};
 }
 
 Thing chair(Random& random) {
@@ -173,7 +173,7 @@ Thing chair(Random& random) {
     solids.push_back(Solid::cylinder({half - 0.03, y, 0}, {half - 0.03, y, 0.44}, 0.025));
     solids.push_back(Solid::cylinder({-half + 0.02, y, 0}, {-half + 0.02, y, 0.7}, 0.025));
   }
-  return {{"chair", solids}, {0.7, 0.7}};
+  return {{"chair", solids}, 0.7};
 }
 
 Thing shelf(Random& random, double width) {
@@ -194,7 +194,7 @@ Thing shelf(Random& random, double width) {
         solids.push_back(Solid::box({-random.between(0.18, 0.32), y, z + kBoard},
                                     {0, y + random.between(0.1, 0.25), z + random.between(0.15, 0.3)}));
   }
-  return {{"shelf", solids}, {kDepth, width}};
+  return {{"shelf", solids}, kDepth};
 }
 
 Thing boxes(Random& random) {
@@ -209,12 +209,12 @@ Thing boxes(Random& random) {
         Solid::box({-length, -width, 0}, {length, width, height}).turned(random.between(-0.3, 0.3)).moved({0, 0, z}));
     z += height;
   }
-  return {{"boxes", solids}, {0.85, 0.85}};
+  return {{"boxes", solids}, 0.85};
 }
 
 Thing column(Random& random, double height) {
   const double radius = random.between(0.15, 0.25);
-  return {{"column", {Solid::cylinder({0, 0, 0}, {0, 0, height}, radius)}}, {2 * radius, 2 * radius}};
+  return {{"column", {Solid::cylinder({0, 0, 0}, {0, 0, height}, radius)}}, 2 * radius};
 }
 
 }  // namespace lisco_simulation

@@ -10,14 +10,9 @@ namespace lisco_simulation {
 // The things that scenes are made of, each on a floor of height 0 around (0, 0), facing x. Sizes vary with the random
 // numbers, within what is usual; all lengths in metres.
 
-/// Length and width of what an object covers on the floor.
-struct Footprint {
-  double length, width;
-};
-
 struct Thing {
   Object object;
-  Footprint footprint;
+  double length;  ///< of what it covers on the floor, along x
 };
 
 /// A saloon or an estate car: body with bonnet and boot, a cabin with slanted windows, four wheels.

@@ -49,12 +49,13 @@ double alongStreet(Random& random) {
   return (random.chance(0.5) ? 1 : -1) * kPi / 2 + random.between(-0.02, 0.02);
 }
 
-/// Something across a lane that stays clear of what is put there next.
+/// A strip along which things are put side by side, as long as there is room.
 class Lane {
  public:
   Lane(double first, double last) : next_(first), last_(last) {}
 
-  /// Whether there is room for something so wide, and then its middle.
+  /// \param width of the next thing \param gap to the one after it \param middle where the thing is to stand
+  /// \return whether there is room for it
   bool take(double width, double gap, double& middle) {
     if (next_ + width > last_) return false;
     middle = next_ + width / 2;
@@ -90,7 +91,7 @@ void addManyObjects(Scene& scene, Random& random, double distance) {
     double middle = 0;
     for (Lane row(random.between(-13, -12), 13.5);;) {
       const Thing parked = car(random);
-      if (!row.take(parked.footprint.length, random.between(0.5, 0.85), middle)) break;
+      if (!row.take(parked.length, random.between(0.5, 0.85), middle)) break;
       group.add(parked, 3.2, middle, bend * kPi / 2);
     }
     for (Lane pavement(random.between(-15, -13), 15); pavement.take(0.7, random.between(2.5, 6), middle);)
@@ -113,15 +114,6 @@ void addManyObjects(Scene& scene, Random& random, double distance) {
   }
 }
 
-/// Something that a person would have to walk around.
-Thing standing(Random& random) {
-  const double choice = random.unit();
-  if (choice < 0.45) return person(random);
-  if (choice < 0.75) return boxes(random);
-  if (choice < 0.9) return chair(random);
-  return column(random, kRoomHeight);
-}
-
 void addRoom(Scene& scene, Random& random, double distance) {
   constexpr double kDepth = 2.6;  // from the nearest things to the walls
   const double half = distance + kDepth;
@@ -140,25 +132,28 @@ void addRoom(Scene& scene, Random& random, double distance) {
   for (const double direction : {kAhead, kLeft, kBehind, kRight}) {
     Group group(scene, direction, distance);
     double middle = 0;
-    // From the sensor to the wall: people; tables, chairs and more people; shelves.
+    // From the sensor to the wall: people; tables and chairs in turn; shelves.
     for (Lane people(-1.1, 1.1); people.take(0.75, random.between(0.5, 0.6), middle);)
       group.add(person(random), 0, middle, random.between(-kPi, kPi));
-    for (Lane tables(-2.2, 2.2);;) {
-      const Thing thing = random.chance(0.7) ? table(random) : standing(random);
-      if (!tables.take(thing.footprint.length, random.between(0.5, 0.6), middle)) break;
-      group.add(thing, 1.25, middle, thing.object.kind == "table" ? kPi / 2 : random.between(-kPi, kPi));
+    bool seat = random.chance(0.3);
+    for (Lane tables(-2.2, 2.2);; seat = !seat) {
+      const Thing thing = seat ? chair(random) : table(random);
+      if (!tables.take(thing.length, random.between(0.5, 0.6), middle)) break;
+      group.add(thing, 1.25, middle, seat ? random.between(-kPi, kPi) : kPi / 2);
     }
     for (Lane shelves(random.between(-3.4, -3.3), 3.4); shelves.take(1.6, random.between(0.5, 0.6), middle);)
       group.add(shelf(random, 1.6), kDepth, middle, 0);
     // Between this group and the next, moving with both.
     Group corner(scene, direction + kPi / 4, std::sqrt(2.0) * distance);
-    corner.add(standing(random), std::sqrt(2.0) * 1.4, 0, random.between(-kPi, kPi));
+    const bool sideways = direction == kLeft || direction == kRight;
+    corner.add(sideways ? column(random, kRoomHeight) : boxes(random), std::sqrt(2.0) * 1.4,
+               random.between(-0.15, 0.15), random.between(-kPi, kPi));
   }
 }
 
-/// What the sensor stands on: what is left out of the returns because no ray of the paper's sensor meets it.
+/// What the sensor stands on; no ray of the paper's sensor meets it.
 void addMount(Scene& scene, int number) {
-  Thing mount = number < 5 ? sensorCar() : Thing{{"sensor column", {Solid::cylinder({}, {0, 0, 1.65}, 0.12)}}, {}};
+  Thing mount = number < 5 ? sensorCar() : Thing{{"sensor column", {Solid::cylinder({}, {0, 0, 1.65}, 0.12)}}, 0.24};
   Object object{mount.object.kind, {}};
   for (const Solid& solid : mount.object.solids) object.solids.push_back(solid.moved({0, 0, scene.floor_z}));
   scene.objects.push_back(std::move(object));
