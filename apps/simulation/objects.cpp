@@ -189,10 +189,13 @@ Thing shelf(Random& random, double width) {
     const double z = 0.05 + (height - 0.05 - kBoard) * board / (kBoards - 1);
     solids.push_back(Solid::box({-kDepth, -half, z}, {0, half, z + kBoard}));
     if (board + 1 == kBoards) break;
-    for (double y = -half + kBoard; y < half - 0.3; y += random.between(0.25, 0.6))
-      if (random.chance(0.6))
-        solids.push_back(Solid::box({-random.between(0.18, 0.32), y, z + kBoard},
-                                    {0, y + random.between(0.1, 0.25), z + random.between(0.15, 0.3)}));
+    for (double y = -half + kBoard; y < half - 0.3; y += random.between(0.25, 0.6)) {
+      if (!random.chance(0.6)) continue;
+      const double depth = random.between(0.18, 0.32);
+      const double width_here = random.between(0.1, 0.25);
+      const double height_here = random.between(0.12, 0.27);
+      solids.push_back(Solid::box({-depth, y, z + kBoard}, {0, y + width_here, z + kBoard + height_here}));
+    }
   }
   return {{"shelf", solids}, kDepth};
 }

@@ -60,9 +60,9 @@ std::vector<double> denseAroundTheHorizon() {
   for (int i = 0; i <= kDenseGaps; ++i) elevations.push_back(kDenseTop - i * kGap);
   const auto extend = [&elevations](double from, double to, int gaps) {
     const double factor = growth(kGap, gaps, std::fabs(to - from));
-    for (double gap = kGap; gaps > 0; --gaps)
-      elevations.push_back(from += (to > from ? gap : -gap) * factor), gap *= factor;
-    elevations.back() = to;
+    double gap = to > from ? kGap : -kGap;
+    for (int i = 0; i < gaps; ++i) elevations.push_back(from += gap *= factor);
+    elevations.back() = to;  // but for rounding, it is
   };
   extend(kDenseTop, 15, kUpperGaps);
   extend(kDenseBottom, -25, kLowerGaps);
