@@ -12,5 +12,5 @@ programs=$root/build/demo/apps
 results=${1:-$root/demo}
 mkdir -p "$results"
 "$programs/lisco_simulate" --scene 3 -o "$results/scan.pcd"
-"$programs/lisco_cluster" "$results/scan.pcd" --tolerance 0.4 --ground-z GROUND -o "$results"
-"$programs/lisco_compare" "$results/scan.pcd" --tolerance 0.4 --ground-z GROUND --rivals pcl,grid,paper,lisco --runs 10
+"$programs/lisco_cluster" "$results/scan.pcd" --tolerance 0.4 --ground-z -1.6 -o "$results"
+"$programs/lisco_compare" "$results/scan.pcd" --tolerance 0.4 --ground-z -1.6 --rivals pcl,grid,paper,lisco --runs 10

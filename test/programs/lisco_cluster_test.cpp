@@ -290,11 +290,4 @@ TEST_F(LiscoCluster, TellTheirUseAndVersion) {
   EXPECT_EQ(run("--version").out.rfind("lisco_cluster 0.1.0", 0), 0U);
 }
 
-TEST_F(LiscoCluster, DemoFindsPclsClusters) {
-  const Outcome outcome = runLine(std::string(LISCO_DEMO) + " results");
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("the clusters are identical"), std::string::npos) << outcome.out;
-  EXPECT_TRUE(fs::exists(folder_ / "results/top_view.png"));
-}
-
 }  // namespace

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+//
+// Writes a simulated scan of one of the scenes on which Lisco's paper was evaluated.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <boost/program_options.hpp>
+
+#include "lisco/version.h"
+#include "options.h"
+#include "output_file.h"
+#include "simulation/scanner.h"
+#include "simulation/scenes.h"
+#include "simulation/sensor.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+namespace po = boost::program_options;
+using namespace lisco_apps;
+using namespace lisco_simulation;
+
+/// By what a file of this program is known.
+constexpr const char* kSignature = "# made by lisco_simulate ";
+
+struct Options {
+  int scene = 0;
+  std::string sensor = sensorNames().front();
+  std::size_t lasers = 0;  ///< 0: the sensor's own number
+  std::size_t steps = 0;
+  Disturbance disturbance;
+  unsigned seed = 1;
+  fs::path output;
+};
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+/// \return false if there is nothing to do but to print help or version, which has been done
+bool parse(int argc, char** argv, Options& options) {
+  po::options_description shown(
+      "Usage: lisco_simulate --scene N -o SCAN.pcd [options]\n\n"
+      "Simulates one rotation of a LiDAR in one of the five scenes on which Lisco's paper was evaluated:\n"
+      "  1  a few objects near the sensor: cars, people, trees, lamp posts, houses\n"
+      "  2  the same objects far away\n"
+      "  3  many objects near, among them a row of parked cars on each side\n"
+      "  4  the same objects far away\n"
+      "  5  a closed, crowded room\n"
+      "Writes an organized cloud, a row per laser and a column per step, with fields x y z label; the label\n"
+      "is the number of the object that was hit, 0 the ground. Cells without return are NaN.\n\n"
+      "Options");
+  std::string scene;
+  std::string seed = "1";
+  std::string lasers;
+  std::string steps;
+  std::string noise = "0.02";
+  std::string drop_outs = "0.005";
+  std::string output;
+  const std::string sensors = listed(sensorNames()) + " (default " + options.sensor + ")";
+  // clang-format off
+  shown.add_options()
+    ("scene", po::value<std::string>(&scene)->value_name("N"), "1 to 5")
+    ("output,o", po::value<std::string>(&output)->value_name("FILE"), "the scan to be written (PCD)")
+    ("seed", po::value<std::string>(&seed)->value_name("N"),
+     "what stands where, noise and drop-outs are drawn from it (default 1)")
+    ("sensor", po::value<std::string>(&options.sensor)->value_name("NAME"), sensors.c_str())
+    ("lasers", po::value<std::string>(&lasers)->value_name("N"),
+     "another number of lasers, between the sensor's highest and lowest")
+    ("steps", po::value<std::string>(&steps)->value_name("N"), "another number of steps of the rotation")
+    ("noise", po::value<std::string>(&noise)->value_name("M"),
+     "standard deviation of the ranges in metres (default 0.02)")
+    ("drop-outs", po::value<std::string>(&drop_outs)->value_name("P"),
+     "part of the returns that is lost (default 0.005)")
+    ("help,h", "print this and exit")
+    ("version", "print the version and exit");
+  // clang-format on
+
+  po::variables_map given;
+  po::store(po::command_line_parser(argc, argv).options(shown).positional({}).run(), given);
+  if (given.count("help") != 0) {
+    std::cout << shown;
+    return false;
+  }
+  if (given.count("version") != 0) {
+    std::cout << "lisco_simulate " << LISCO_VERSION << '\n';
+    return false;
+  }
+  po::notify(given);
+  if (given.count("scene") == 0) throw std::runtime_error("--scene is missing; see --help");
+  if (scene.size() != 1 || scene[0] < '1' || scene[0] > '0' + kScenes)
+    throw std::runtime_error("--scene must be 1, 2, 3, 4 or 5, not '" + scene + "'");
+  options.scene = scene[0] - '0';
+  if (output.empty()) throw std::runtime_error("--output is missing; see --help");
+  options.output = output;
+  options.seed = countOf(seed, "--seed", 0);
+  options.disturbance.seed = options.seed;
+  if (given.count("lasers") != 0) options.lasers = countOf(lasers, "--lasers", 1);
+  if (given.count("steps") != 0) options.steps = countOf(steps, "--steps", 1);
+  options.disturbance.range_noise = numberOf(noise, "--noise");
+  if (options.disturbance.range_noise < 0) throw std::runtime_error("--noise must not be negative");
+  options.disturbance.drop_outs = numberOf(drop_outs, "--drop-outs");
+  if (options.disturbance.drop_outs < 0 || options.disturbance.drop_outs >= 1)
+    throw std::runtime_error("--drop-outs must be at least 0 and less than 1");
+  return true;
+}
+
+/// The sensor that was asked for.
+Sensor sensorFor(const Options& options) {
+  constexpr std::size_t kMostCells = 20'000'000;  // about a gigabyte of memory
+  const std::vector<std::string> names = sensorNames();
+  if (std::find(names.begin(), names.end(), options.sensor) == names.end())
+    throw std::runtime_error("there is no sensor '" + options.sensor + "'; known are " + listed(names));
+  // Checked before so many lasers are made.
+  if (std::max<std::size_t>(options.lasers, 1) > kMostCells / std::max<std::size_t>(options.steps, 1))
+    throw std::runtime_error("more than " + std::to_string(kMostCells) + " cells: fewer --lasers or --steps");
+  Sensor sensor = makeSensor(options.sensor, options.lasers, options.steps);
+  if (sensor.lasers() > kMostCells / sensor.steps)
+    throw std::runtime_error("more than " + std::to_string(kMostCells) + " cells: fewer --lasers or --steps");
+  return sensor;
+}
+
+/// The whole file.
+std::string pcdOf(const Scan& scan, const std::string& comment) {
+  static_assert(sizeof(Cell) == 16, "cells are written as they are");
+  std::ostringstream header;
+  header << comment << "\n# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z label\nSIZE 4 4 4 4\n"
+         << "TYPE F F F U\nCOUNT 1 1 1 1\nWIDTH " << scan.steps << "\nHEIGHT " << scan.lasers
+         << "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << scan.cells.size() << "\nDATA binary\n";
+  std::string content = header.str();
+  content.append(reinterpret_cast<const char*>(scan.cells.data()), scan.cells.size() * sizeof(Cell));
+  return content;
+}
+
+/// The arguments that give the same scan again, but for the name of the file.
+std::string argumentsOf(const Options& options, const Sensor& sensor) {
+  std::ostringstream arguments;
+  arguments << "--scene " << options.scene << " --seed " << options.seed << " --sensor " << options.sensor
+            << " --lasers " << sensor.lasers() << " --steps " << sensor.steps << " --noise "
+            << options.disturbance.range_noise << " --drop-outs " << options.disturbance.drop_outs;
+  return arguments.str();
+}
+
+/// "3 cars, 2 trees"; in the order of their first appearance.
+std::string kindsOf(const Scene& scene) {
+  std::vector<std::string> kinds;
+  std::map<std::string, int> counts;
+  for (const Object& object : scene.objects)
+    if (counts[object.kind]++ == 0) kinds.push_back(object.kind);
+  std::string list;
+  for (const std::string& kind : kinds)
+    list += (list.empty() ? "" : ", ") + std::to_string(counts[kind]) + " x " + kind;
+  return list;
+}
+
+void printSummary(const Options& options, const Sensor& sensor, const Scene& scene, const Scan& scan) {
+  static constexpr const char* kDescriptions[kScenes] = {"a few objects near the sensor", "a few objects far away",
+                                                         "many objects near the sensor", "many objects far away",
+                                                         "a closed, crowded room"};
+  const auto ground_z = static_cast<double>(scene.ground_z);
+  std::printf("scene %d of the paper: %s (seed %u)\n", options.scene, kDescriptions[options.scene - 1], options.seed);
+  std::printf("  objects   %zu: %s\n", scene.objects.size(), kindsOf(scene).c_str());
+  std::printf("  sensor    %s, %zu lasers x %zu steps = %zu cells\n", options.sensor.c_str(), scan.lasers, scan.steps,
+              scan.cells.size());
+  std::printf("  returns   %zu, %zu above the ground (z >= %g m)", scan.returns(), scan.returnsAbove(scene.ground_z),
+              ground_z);
+  const Sensor paper = makeSensor(sensorNames().front());
+  if (sensor.name == paper.name && sensor.lasers() == paper.lasers() && sensor.steps == paper.steps)
+    std::printf("; the paper's scene gave %zu", kReturnsInPaper[options.scene - 1]);
+  std::printf("\n  written   %s; cluster it with --ground-z %g\n", options.output.c_str(), ground_z);
+}
+
+int simulate(const Options& options) {
+  checkMayWrite(options.output, kSignature);  // before the work
+  const Sensor sensor = sensorFor(options);
+  const Scene scene = makeScene(options.scene, options.seed);
+  const Scan rotation = scan(scene, sensor, options.disturbance);
+  std::ostringstream comment;
+  comment << kSignature << LISCO_VERSION << ": " << argumentsOf(options, sensor)
+          << "; remove the ground with --ground-z " << scene.ground_z;
+  writeOwnFile(options.output, pcdOf(rotation, comment.str()), kSignature);
+  printSummary(options, sensor, scene, rotation);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runProgram("lisco_simulate", [&] {
+    Options options;
+    if (!parse(argc, argv, options)) return 0;
+    return simulate(options);
+  });
+}

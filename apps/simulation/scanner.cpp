@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "scanner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "random.h"
+
+namespace lisco_simulation {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// What the random numbers of a cell are for; greater ones are for the leaves of one solid each.
+enum Purpose : std::uint64_t { kForNoise, kForDropOut, kForLeaves };
+
+struct Hit {
+  double range = kInfinity;
+  std::uint32_t object = 0;
+};
+
+/// Finds what a ray meets first. Solids are sorted into sectors of azimuth, in each by their nearest range, so that a
+/// ray is held against few of them.
+class Caster {
+ public:
+  explicit Caster(const Scene& scene) : floor_z_(scene.floor_z), sectors_(kSectors) {
+    std::uint32_t number = 0;
+    for (const Object& object : scene.objects) {
+      ++number;
+      for (const Solid& solid : object.solids) add(solid, number);
+    }
+    for (auto& sector : sectors_)
+      std::sort(sector.begin(), sector.end(), [](const Candidate& a, const Candidate& b) {
+        return a.nearest != b.nearest ? a.nearest < b.nearest : a.solid < b.solid;
+      });
+  }
+
+  /// \param seed, cell known by them is how deep the ray gets into leaves
+  Hit first(const Vector& direction, double azimuth, std::uint64_t seed, std::uint64_t cell) const {
+    Hit hit;
+    if (direction.z < 0) hit.range = floor_z_ / direction.z;
+    for (const Candidate& candidate : sectors_[sectorOf(azimuth)]) {
+      if (candidate.nearest >= hit.range) break;
+      if (direction.z < candidate.lowest || direction.z > candidate.highest) continue;
+      const Solid& solid = *solids_[candidate.solid].solid;
+      const Interval inside = solid.along(direction);
+      if (inside.enter > inside.leave || inside.enter <= 0) continue;
+      double range = inside.enter;
+      if (solid.meanDepth() > 0) {
+        // The way to the first leaf is distributed exponentially.
+        range -= solid.meanDepth() * std::log1p(-CellRandom(seed, cell, kForLeaves + candidate.solid).unit());
+        if (range > inside.leave) continue;
+      }
+      if (range < hit.range) hit = {range, solids_[candidate.solid].object};
+    }
+    return hit;
+  }
+
+ private:
+  static constexpr std::size_t kSectors = 2048;
+
+  struct Entry {
+    const Solid* solid;
+    std::uint32_t object;
+  };
+  /// What of a solid's bounds is needed to pass it by.
+  struct Candidate {
+    double nearest;          ///< range, metres
+    double lowest, highest;  ///< sine of the elevation
+    std::uint32_t solid;
+  };
+
+  static double sectorPosition(double azimuth) {
+    const double turns = azimuth / (2 * kPi);
+    return (turns - std::floor(turns)) * static_cast<double>(kSectors);
+  }
+  static std::size_t sectorOf(double azimuth) { return static_cast<std::size_t>(sectorPosition(azimuth)) % kSectors; }
+
+  void add(const Solid& solid, std::uint32_t object) {
+    constexpr double kMargin = 1e-6;  // metres; more than any rounding
+    const auto index = static_cast<std::uint32_t>(solids_.size());
+    solids_.push_back({&solid, object});
+    const Vector& centre = solid.bounds().centre;
+    const double radius = solid.bounds().radius + kMargin;
+    const double distance = length(centre);
+    const double rho = std::hypot(centre.x, centre.y);
+    Candidate candidate{std::max(0.0, distance - radius), -1, 1, index};
+    if (radius < distance) {
+      const double elevation = std::asin(centre.z / distance);
+      const double reach = std::asin(radius / distance);
+      if (elevation - reach > -kPi / 2) candidate.lowest = std::sin(elevation - reach) - kMargin;
+      if (elevation + reach < kPi / 2) candidate.highest = std::sin(elevation + reach) + kMargin;
+    }
+    if (radius >= rho) {
+      for (auto& sector : sectors_) sector.push_back(candidate);
+      return;
+    }
+    const double reach = std::asin(radius / rho) + kMargin;
+    const std::size_t first = sectorOf(std::atan2(centre.y, centre.x) - reach);
+    const std::size_t last = sectorOf(std::atan2(centre.y, centre.x) + reach);
+    for (std::size_t sector = first;; sector = (sector + 1) % kSectors) {
+      sectors_[sector].push_back(candidate);
+      if (sector == last) break;
+    }
+  }
+
+  double floor_z_;
+  std::vector<Entry> solids_;
+  std::vector<std::vector<Candidate>> sectors_;
+};
+
+}  // namespace
+
+std::size_t Scan::returns() const {
+  return static_cast<std::size_t>(
+      std::count_if(cells.begin(), cells.end(), [](const Cell& cell) { return !std::isnan(cell.x); }));
+}
+
+std::size_t Scan::returnsAbove(float ground_z) const {
+  return static_cast<std::size_t>(
+      std::count_if(cells.begin(), cells.end(), [ground_z](const Cell& cell) { return cell.z >= ground_z; }));
+}
+
+Scan scan(const Scene& scene, const Sensor& sensor, const Disturbance& disturbance) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr double kLeastRange = 0.01;  // metres: whatever the noise, a return has a direction
+  const Caster caster(scene);
+  Scan scan{sensor.lasers(), sensor.steps, {}};
+  scan.cells.assign(scan.lasers * scan.steps, {kNan, kNan, kNan, 0});
+  for (std::size_t index = 0; index < scan.cells.size(); ++index) {
+    const std::size_t laser = index / scan.steps;
+    const std::size_t step = index % scan.steps;
+    const Vector direction = sensor.direction(laser, step);
+    const Hit hit = caster.first(direction, sensor.azimuth(laser, step), disturbance.seed, index);
+    if (hit.range > sensor.max_range) continue;
+    if (CellRandom(disturbance.seed, index, kForDropOut).unit() < disturbance.drop_outs) continue;
+    const double noise = disturbance.range_noise * CellRandom(disturbance.seed, index, kForNoise).gaussian();
+    const Vector place = std::max(hit.range + noise, kLeastRange) * direction;
+    scan.cells[index] = {static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z),
+                         hit.object};
+  }
+  return scan;
+}
+
+}  // namespace lisco_simulation

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sensor.h"
+#include "solid.h"
+
+namespace lisco_simulation {
+
+/// Something that stands in a scene.
+struct Object {
+  std::string kind;  ///< what it stands for: "car", "tree", ...
+  std::vector<Solid> solids;
+};
+
+/// What is around the sensor, which is at (0, 0, 0) with x ahead, y to the left and z up.
+struct Scene {
+  std::vector<Object> objects;  ///< the object of index i has number i + 1
+  double floor_z = -1.8;        ///< height of the floor or ground, an endless plane, metres
+  float ground_z = -1.6F;       ///< below this height lies what is taken for ground and left out of clustering
+};
+
+/// What makes a scan less than perfect. The same numbers give the same scan.
+struct Disturbance {
+  std::uint64_t seed = 1;
+  double range_noise = 0.02;  ///< standard deviation of a range, metres, >= 0
+  double drop_outs = 0.005;   ///< part of the returns that is lost, 0 <= part < 1
+};
+
+/// One cell of a scan.
+struct Cell {
+  float x, y, z;         ///< metres; NaN: no return
+  std::uint32_t object;  ///< number of the object hit; 0: the ground, or no return
+};
+
+/// One rotation of a sensor.
+struct Scan {
+  std::size_t lasers = 0;
+  std::size_t steps = 0;
+  std::vector<Cell> cells;  ///< laser by laser from top to bottom, each step by step as the sensor turned
+
+  const Cell& at(std::size_t laser, std::size_t step) const { return cells[laser * steps + step]; }
+  std::size_t returns() const;
+  /// Returns with z >= ground_z.
+  std::size_t returnsAbove(float ground_z) const;
+};
+
+/// Casts one ray per cell and takes what it meets first.
+Scan scan(const Scene& scene, const Sensor& sensor, const Disturbance& disturbance);
+
+}  // namespace lisco_simulation

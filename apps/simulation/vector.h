@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cmath>
+
+namespace lisco_simulation {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// A place or a direction: x ahead, y to the left, z up; metres.
+struct Vector {
+  double x = 0, y = 0, z = 0;
+};
+
+inline Vector operator+(const Vector& a, const Vector& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vector operator-(const Vector& a, const Vector& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Vector operator*(double s, const Vector& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+inline double dot(const Vector& a, const Vector& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline double length(const Vector& a) {
+  return std::sqrt(dot(a, a));
+}
+inline Vector cross(const Vector& a, const Vector& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// Turned about the vertical axis, counterclockwise seen from above.
+inline Vector turned(const Vector& a, double angle) {
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  return {c * a.x - s * a.y, s * a.x + c * a.y, a.z};
+}
+
+}  // namespace lisco_simulation

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+//
+// lisco_simulate as a user runs it.
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/io/pcd_io.h>
+
+#include "cloud_file.h"
+#include "program_test.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class LiscoSimulate : public ProgramTest {
+ protected:
+  LiscoSimulate() : ProgramTest(LISCO_SIMULATE) {}
+
+  /// The number that stands before some words, or -1.
+  static long numberBefore(const std::string& text, const std::string& words) {
+    const std::size_t end = text.find(words);
+    if (end == std::string::npos) return -1;
+    const std::size_t begin = text.find_last_not_of("0123456789", end - 1) + 1;
+    return begin < end ? std::stol(text.substr(begin, end - begin)) : -1;
+  }
+};
+
+TEST_F(LiscoSimulate, WritesTheFiveScenesOfThePaper) {
+  const long paper[] = {26891, 16218, 39028, 18229, 64518};
+  for (int scene = 1; scene <= 5; ++scene) {
+    SCOPED_TRACE(scene);
+    const std::string file = "scene" + std::to_string(scene) + ".pcd";
+    const Outcome outcome = run("--scene " + std::to_string(scene) + " --seed 3 -o " + file);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_EQ(numberBefore(outcome.out, " cells"), 72000) << outcome.out;
+    EXPECT_NE(outcome.out.find("the paper's scene gave " + std::to_string(paper[scene - 1])), std::string::npos)
+        << outcome.out;
+    for (const char* kind : scene < 5
+                                ? std::vector<const char*>{"car", "person", "tree", "lamp post", "house"}
+                                : std::vector<const char*>{"person", "table", "chair", "shelf", "boxes", "column"})
+      EXPECT_NE(outcome.out.find(std::string(" x ") + kind), std::string::npos) << kind << ": " << outcome.out;
+    EXPECT_NE(outcome.out.find("cluster it with --ground-z -1.6\n"), std::string::npos) << outcome.out;
+
+    // What the summary says is what is in the file, as these programs read it.
+    const auto cloud = lisco_apps::readCloudFile(folder_ / file);
+    EXPECT_EQ(cloud->height, 64U);
+    EXPECT_EQ(cloud->width, 1125U);
+    long returns = 0;
+    for (const auto& point : *cloud) returns += std::isnan(point.x) ? 0 : 1;
+    const auto above = static_cast<long>(lisco_apps::returnsAbove(*cloud, -1.6F).size());
+    const std::string line =
+        "returns   " + std::to_string(returns) + ", " + std::to_string(above) + " above the ground (z >= -1.6 m)";
+    EXPECT_NE(outcome.out.find(line), std::string::npos) << outcome.out;
+    EXPECT_NEAR(static_cast<double>(above), static_cast<double>(paper[scene - 1]),
+                0.02 * static_cast<double>(paper[scene - 1]));
+  }
+}
+
+TEST_F(LiscoSimulate, WritesTheObjectOfEveryReturn) {
+  const Outcome outcome = run("--scene 1 -o scan.pcd");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  pcl::PCLPointCloud2 cloud;
+  ASSERT_EQ(pcl::PCDReader().read((folder_ / "scan.pcd").string(), cloud), 0);
+  EXPECT_EQ(cloud.height, 64U);
+  EXPECT_EQ(cloud.width, 1125U);
+  ASSERT_EQ(cloud.fields.size(), 4U);
+  EXPECT_EQ(cloud.fields[2].name, "z");
+  EXPECT_EQ(cloud.fields[3].name, "label");
+  EXPECT_EQ(cloud.fields[3].datatype, pcl::PCLPointField::UINT32);
+  std::set<std::uint32_t> labels;
+  for (std::size_t cell = 0; cell < std::size_t{64} * 1125; ++cell) {
+    float z;
+    std::uint32_t label;
+    std::memcpy(&z, &cloud.data[cell * cloud.point_step + cloud.fields[2].offset], 4);
+    std::memcpy(&label, &cloud.data[cell * cloud.point_step + cloud.fields[3].offset], 4);
+    ASSERT_TRUE(!std::isnan(z) || label == 0) << "cell " << cell;
+    ASSERT_TRUE(!(z > -1.6F) || label != 0) << "cell " << cell << ": only the ground has no object";
+    labels.insert(label);
+  }
+  const long objects = numberBefore(outcome.out, ": 1 x sensor car");
+  ASSERT_GT(objects, 10);
+  EXPECT_GE(static_cast<long>(labels.size()), objects * 3 / 4);
+  EXPECT_LE(*labels.rbegin(), static_cast<std::uint32_t>(objects));
+
+  // A first line from which the file can be made again.
+  const std::string text = textOf(folder_ / "scan.pcd");
+  const std::string line = text.substr(0, text.find('\n'));
+  EXPECT_EQ(line.rfind("# made by lisco_simulate ", 0), 0U) << line;
+  const std::size_t arguments = line.find("--scene");
+  ASSERT_NE(arguments, std::string::npos) << line;
+  EXPECT_NE(line.find("--ground-z -1.6"), std::string::npos) << line;
+  ASSERT_EQ(run(line.substr(arguments, line.find(';') - arguments) + " -o again.pcd").status, 0);
+  EXPECT_TRUE(text == textOf(folder_ / "again.pcd"));
+}
+
+TEST_F(LiscoSimulate, HasTheSameScanForTheSameSeedOnly) {
+  for (const char* arguments : {"-o one.pcd", "-o same.pcd --seed 1", "-o other.pcd --seed 2"})
+    ASSERT_EQ(run(std::string("--scene 2 --sensor vlp16 ") + arguments).status, 0);
+  EXPECT_TRUE(textOf(folder_ / "one.pcd") == textOf(folder_ / "same.pcd"));
+  EXPECT_FALSE(textOf(folder_ / "one.pcd") == textOf(folder_ / "other.pcd"));
+}
+
+TEST_F(LiscoSimulate, KnowsSensorsOfAnySize) {
+  struct Size {
+    std::uint32_t lasers, steps;
+  };
+  const std::map<std::string, Size> sensors = {{"hdl64e", {64, 1125}},
+                                               {"hdl32e", {32, 2170}},
+                                               {"vlp16", {16, 1808}},
+                                               {"vls128", {128, 1808}},
+                                               {"os1-128", {128, 1024}},
+                                               {"vlp16 --lasers 33", {33, 1808}},
+                                               {"vls128 --lasers 1 --steps 1", {1, 1}},
+                                               {"hdl64e --steps 4500", {64, 4500}}};
+  for (const auto& [arguments, size] : sensors) {
+    SCOPED_TRACE(arguments);
+    const Outcome outcome = run("--scene 5 --drop-outs 0 -o scan.pcd --sensor " + arguments);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(numberBefore(outcome.out, " cells"), static_cast<long>(size.lasers) * size.steps) << outcome.out;
+    EXPECT_EQ(outcome.out.find("the paper's scene gave") != std::string::npos, arguments == "hdl64e") << outcome.out;
+    const auto cloud = lisco_apps::readCloudFile(folder_ / "scan.pcd");
+    EXPECT_EQ(cloud->height, size.lasers);
+    EXPECT_EQ(cloud->width, size.steps);
+    for (const auto& point : *cloud) ASSERT_TRUE(std::isfinite(point.x)) << "the room is closed";
+  }
+}
+
+TEST_F(LiscoSimulate, DisturbsAsAsked) {
+  ASSERT_EQ(run("--scene 5 --noise 0 --drop-outs 0 -o exact.pcd").status, 0);
+  ASSERT_EQ(run("--scene 5 --noise 0.3 --drop-outs 0.5 -o poor.pcd").status, 0);
+  const auto exact = lisco_apps::readCloudFile(folder_ / "exact.pcd");
+  const auto poor = lisco_apps::readCloudFile(folder_ / "poor.pcd");
+  double returns = 0;
+  double squares = 0;
+  for (std::size_t i = 0; i < poor->size(); ++i) {
+    if (std::isnan((*poor)[i].x)) continue;
+    ++returns;
+    squares += static_cast<double>(((*poor)[i].getVector3fMap() - (*exact)[i].getVector3fMap()).squaredNorm());
+  }
+  EXPECT_NEAR(returns / 72000, 0.5, 0.01);
+  EXPECT_NEAR(std::sqrt(squares / returns), 0.3, 0.01);
+}
+
+TEST_F(LiscoSimulate, HelpsAndNamesItsVersion) {
+  const Outcome help = run("--help");
+  EXPECT_EQ(help.status, 0);
+  for (const char* word : {"Usage: lisco_simulate", "--scene", "--sensor", "os1-128", "--drop-outs"})
+    EXPECT_NE(help.out.find(word), std::string::npos) << word;
+  const Outcome version = run("--version");
+  EXPECT_EQ(version.status, 0);
+  EXPECT_EQ(version.out.rfind("lisco_simulate ", 0), 0U) << version.out;
+}
+
+TEST_F(LiscoSimulate, RefusesWhatItDoesNotUnderstand) {
+  expectRefusal("", {"--scene"});
+  expectRefusal("-o scan.pcd", {"--scene"});
+  for (const char* scene : {"0", "6", "abc", "1x", "-1", "''"})
+    expectRefusal(std::string("-o scan.pcd --scene=") + scene, {"--scene"});
+  expectRefusal("--scene 1", {"--output"});
+  expectRefusal("--scene 1 -o ''", {"--output"});
+  expectRefusal("--scene 1 -o scan.pcd --sensor hdl65", {"hdl65", "hdl64e", "os1-128"});
+  for (const char* seed : {"abc", "-1", "1.5", "99999999999"})
+    expectRefusal(std::string("--scene 1 -o scan.pcd --seed=") + seed, {"--seed"});
+  for (const char* option : {"--lasers", "--steps"})
+    for (const char* count : {"0", "-3", "many", "1e3", "4294967297"})
+      expectRefusal(std::string("--scene 1 -o scan.pcd ") + option + "=" + count, {option});
+  for (const char* noise : {"-0.1", "nan", "inf", "much", "0.1m"})
+    expectRefusal(std::string("--scene 1 -o scan.pcd --noise=") + noise, {"--noise"});
+  for (const char* part : {"-0.1", "1", "1.5", "nan", "half"})
+    expectRefusal(std::string("--scene 1 -o scan.pcd --drop-outs=") + part, {"--drop-outs"});
+  for (const char* size : {"--lasers 2147483647", "--steps 2147483647", "--lasers 4096 --steps 65536"})
+    expectRefusal(std::string("--scene 1 -o scan.pcd ") + size, {"cells", "--lasers"});
+  expectRefusal("--scene 1 -o scan.pcd --fast", {"--fast"});
+  expectRefusal("--scene 1 -o scan.pcd stray", {"too many"});
+}
+
+TEST_F(LiscoSimulate, OverwritesOnlyWhatItHasWritten) {
+  write("mine.pcd", "VERSION 0.7\nFIELDS x y z\n");
+  expectRefusal("--scene 1 -o mine.pcd", {"mine.pcd", "not written by this program"});
+  expectRefusal("--scene 1 -o nowhere/scan.pcd", {"nowhere/scan.pcd", "cannot be written"});
+  fs::create_directory(folder_ / "folder");
+  expectRefusal("--scene 1 -o folder", {"folder"});
+  EXPECT_EQ(textOf(folder_ / "mine.pcd"), "VERSION 0.7\nFIELDS x y z\n");
+
+  ASSERT_EQ(run("--scene 1 --sensor vlp16 -o scan.pcd").status, 0);
+  const std::string first = textOf(folder_ / "scan.pcd");
+  ASSERT_EQ(run("--scene 2 --sensor vlp16 -o scan.pcd").status, 0);
+  EXPECT_FALSE(first == textOf(folder_ / "scan.pcd"));
+}
+
+}  // namespace
