@@ -160,6 +160,7 @@ std::string tableOf(const CaseResult& result, const CompareSettings&) {
 }
 
 std::string summaryOf(const std::vector<InputResult>& inputs, const CompareSettings& settings) {
+  if (inputs.size() * settings.tolerances.size() < 2) return "";
   std::string text =
       formatted("\n%-32s %9s  %s\n%-32s %9s  %8s %8s %8s %10s\n", "all scans and tolerances", "identical",
                 "times as fast as PCL, KdTree (false)", "", "", "mean", "lowest", "highest", "mean, cold");

@@ -16,6 +16,7 @@ std::string describeRun(const CompareSettings& settings);
 /// The tables for people: one scan's heading, one tolerance's rivals, and what all of it comes to.
 std::string headingOf(const InputResult& input, const CompareSettings& settings);
 std::string tableOf(const CaseResult& result, const CompareSettings& settings);
+/// Empty if there is but one case.
 std::string summaryOf(const std::vector<InputResult>& inputs, const CompareSettings& settings);
 
 /// What the files for machines have near their beginning, by which they are known.
