@@ -102,7 +102,7 @@ function counts(   i, s, paper, wanted_count) {
   print "| scene | returns in the paper | returns here | difference |\n|---|---|---|---|"
   for (i = 1; i <= scan_count; ++i) {
     s = scans[i]
-    printf "| %s | %d | %d | %+.1f % |\n", s, paper[i], returns[s], 100 * (returns[s] / paper[i] - 1)
+    printf "| %s | %d | %d | %+.1f %% |\n", s, paper[i], returns[s], 100 * (returns[s] / paper[i] - 1)
   }
 }
 

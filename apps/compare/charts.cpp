@@ -2,9 +2,11 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "compare/charts.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <stdexcept>
 
 namespace lisco_apps {
@@ -26,14 +28,24 @@ std::string forShell(const std::string& text) {
 }
 
 void writeScript(const Chart& chart, const fs::path& png, std::ostream& script) {
+  // From the points alone: an error bar may reach below 0, which no logarithmic axis shows.
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0;
+  for (const Chart::Line& line : chart.lines)
+    for (const Chart::Point& point : line.points) {
+      least = std::min(least, point.y);
+      most = std::max(most, point.y);
+    }
   script << "set terminal pngcairo noenhanced font 'DejaVu Sans,11' size 900,560 background '#ffffff'\n"
          << "set output " << forGnuplot(png.string()) << '\n'
          << "set title " << forGnuplot(chart.title) << '\n'
          << "set xlabel " << forGnuplot(chart.x_label) << '\n'
          << "set ylabel " << forGnuplot(chart.y_label) << '\n'
-         << "set logscale y\nset grid ytics mytics xtics lc rgb '#dddddd'\nset key outside right center\n"
+         << "set logscale y\nset grid ytics xtics back linetype 1 linecolor rgb '#dcdcdc' linewidth 1\nset key outside "
+            "right center\n"
          << "set offsets graph 0.02, graph 0.02\nset border 3\nset tics nomirror\nset bars small\n"
          << "set format y '%g'\n"
+         << "set yrange [" << least / 2 << ':' << most * 2 << "]\n"
          << (chart.log_x ? "set logscale x\n" : "");
   // Colours that colour-blind eyes tell apart too (Okabe and Ito), and a mark for each.
   const char* const colors[] = {"#000000", "#0072b2", "#56b4e9", "#e69f00", "#cc79a7", "#d55e00", "#009e73"};

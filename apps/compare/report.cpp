@@ -270,6 +270,15 @@ std::vector<std::string> chartsOf(const std::vector<std::string>& input_names, c
   return charts;
 }
 
+namespace {
+
+/// A chart of what was timed; none if nothing was.
+void drawIfAny(const Chart& chart, const std::filesystem::path& png) {
+  if (!chart.lines.empty()) drawChart(chart, png);
+}
+
+}  // namespace
+
 void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& settings,
                 const std::filesystem::path& folder) {
   for (const InputResult& input : inputs) {
@@ -280,7 +289,7 @@ void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& s
         if (entry->times) points.push_back(pointOf(result.tolerance, *entry->times));
       }
     });
-    drawChart(chart, folder / overTolerance(input.name));
+    drawIfAny(chart, folder / overTolerance(input.name));
   }
   if (inputs.size() < 2) return;
 
@@ -300,7 +309,7 @@ void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& s
       if (timed == inputs.size()) points.push_back(point);
     }
   });
-  drawChart(mean, folder / kMeanChart);
+  drawIfAny(mean, folder / kMeanChart);
 
   for (std::size_t at = 0; at < settings.tolerances.size(); ++at) {
     Chart chart{formatted("%zu scans, tolerance %g m", inputs.size(), settings.tolerances[at]), "returns", kTimeLabel,
@@ -311,7 +320,7 @@ void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& s
         if (entry->times) points.push_back(pointOf(static_cast<double>(input.returns), *entry->times));
       }
     });
-    drawChart(chart, folder / overPoints(settings.tolerances[at]));
+    drawIfAny(chart, folder / overPoints(settings.tolerances[at]));
   }
 }
 
