@@ -26,10 +26,11 @@ const std::vector<Setting>& allSettings() {
       return &all.back().parameters;
     };
     for (const Mask mask : {Mask::kView, Mask::kGrid}) {
-      add("default", mask, 16, 16);
+      add("default", mask, 64, 16);
+      add("blocks of 16", mask, 16, 16);
       add("each column at once", mask, 1, 1);
       add("blocks of 3", mask, 3, 16);
-      add("open to the end", mask, 16, kForever);
+      add("open to the end", mask, 64, kForever);
       add("column by column, open to the end", mask, 1, kForever);
     }
     lisco::ViewHints& finest = add("finest tiles", Mask::kView, 3, 1)->view;
