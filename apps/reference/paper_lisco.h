@@ -35,7 +35,8 @@ NeighborMask getNeighborMask(double distance, double eps, const NominalSensor& s
 ///
 /// What the paper leaves open, or what cannot be meant as printed:
 /// - two returns are neighbours by PCL's comparison (d2 < r2 in float) instead of "distance <= eps", so that what
-///   differs from PCL is what the mask misses, and nothing else;
+///   differs from PCL is what the mask misses, and nothing else; for the same reason "|p_d - p'_d| <= eps", which goes
+///   before it, leaves room for rounding;
 /// - line 5 of Algorithm 4 compares heads with H1 != H2; two returns without a head are to pass it, or no subcluster
 ///   would ever start;
 /// - arcsin (eps / p_d) is not defined for p_d < eps: the mask is everything then (see getNeighborMask);

@@ -12,6 +12,13 @@ namespace {
 
 constexpr std::uint64_t kReach = 2;  // cells per axis between two neighbours, at most
 
+// A cell's number along an axis is computed in double. Up to so many bits its error is below a 20,000th of a cell, which
+// the factor 0.9999 of the cell's side makes up for.
+constexpr int kMostBitsPerAxis = 37;
+// Between these, squares in float neither vanish nor overflow, and the points of a cell are neighbours.
+constexpr double kLeastTolerance = 1e-18;
+constexpr double kMostTolerance = 1e18;
+
 }  // namespace
 
 const std::vector<std::uint32_t>& VoxelGrid::cluster(const std::vector<lisco::Return>& returns, float tolerance) {
@@ -21,7 +28,10 @@ const std::vector<std::uint32_t>& VoxelGrid::cluster(const std::vector<lisco::Re
     for (std::size_t i = 0; i < returns.size(); ++i) component_of_[i] = static_cast<std::uint32_t>(i);
     return component_of_;
   }
-  side_ = 0.9999 * std::fabs(static_cast<double>(tolerance)) / std::sqrt(3.0);
+  const double eps = std::fabs(static_cast<double>(tolerance));
+  if (eps < kLeastTolerance || eps > kMostTolerance)
+    throw std::runtime_error("the tolerance is too small or too large for a voxel grid");
+  side_ = 0.9999 * eps / std::sqrt(3.0);
   numberCells(returns);
   sortItems();
   gatherCells(returns);
@@ -44,6 +54,7 @@ void VoxelGrid::numberCells(const std::vector<lisco::Return>& returns) {
   }
   double origin[3];
   int all_bits = 0;
+  bool numbers_hold = true;
   for (int axis = 0; axis < 3; ++axis) {
     origin[axis] = static_cast<double>(box.lo[axis]);
     // A margin on both sides: what lies kReach before the first cell of a row is in no other row.
@@ -51,8 +62,9 @@ void VoxelGrid::numberCells(const std::vector<lisco::Return>& returns) {
         (static_cast<double>(box.hi[axis]) - origin[axis]) / side_ + 1 + 2 * static_cast<double>(kReach);
     bits_[axis] = static_cast<int>(std::ceil(std::log2(cells + 1)));
     all_bits += bits_[axis];
+    numbers_hold = numbers_hold && bits_[axis] <= kMostBitsPerAxis;
   }
-  if (!(all_bits <= 64)) throw std::runtime_error("the scan has too many cells for a voxel grid");
+  if (all_bits > 64 || !numbers_hold) throw std::runtime_error("the scan has too many cells for a voxel grid");
 
   const double per_metre = 1 / side_;
   const auto number = [&](float value, int axis) {
