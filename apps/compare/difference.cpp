@@ -68,15 +68,19 @@ struct DecidingPair {
   bool kept_apart;  ///< neighbours that the rival keeps apart; otherwise strangers that it joins
 };
 
-/// Looks for the pair in the reference's component of `point`. The labels are those of clusters of any size.
+/// Looks for the pair in the reference's component of `point`. The labels are those of clusters of any size; what the
+/// rival puts in none is with nobody.
 std::optional<DecidingPair> decidingPair(const Problem& problem, pcl::index_t point, const Labels& expected,
                                          const Labels& found) {
+  const auto joined_with = [&found](pcl::index_t a, pcl::index_t b) {
+    return found[place(a)] != 0 && found[place(a)] == found[place(b)];
+  };
   pcl::IndicesPtr inside = std::make_shared<pcl::Indices>();
   pcl::IndicesPtr joined = std::make_shared<pcl::Indices>();
   for (const auto index : *problem.returns)
     if (expected[place(index)] == expected[place(point)])
       inside->push_back(index);
-    else if (found[place(index)] == found[place(point)])
+    else if (joined_with(index, point))
       joined->push_back(index);
 
   pcl::search::KdTree<RivalPoint> tree;
@@ -87,14 +91,13 @@ std::optional<DecidingPair> decidingPair(const Problem& problem, pcl::index_t po
   for (const auto index : *inside) {
     tree.radiusSearch((*problem.cloud)[place(index)], radius, near, squared);
     for (std::size_t i = 0; i < near.size(); ++i)
-      if (found[place(near[i])] != found[place(index)]) return DecidingPair{index, near[i], squared[i], true};
+      if (near[i] != index && !joined_with(near[i], index)) return DecidingPair{index, near[i], squared[i], true};
   }
   if (joined->empty()) return std::nullopt;
   std::optional<DecidingPair> nearest;
   tree.setInputCloud(problem.cloud, joined);
   for (const auto index : *inside)
-    if (found[place(index)] == found[place(point)] &&
-        tree.nearestKSearch((*problem.cloud)[place(index)], 1, near, squared) == 1 &&
+    if (joined_with(index, point) && tree.nearestKSearch((*problem.cloud)[place(index)], 1, near, squared) == 1 &&
         (!nearest || squared[0] < nearest->d2))
       nearest = DecidingPair{index, near[0], squared[0], false};
   return nearest;

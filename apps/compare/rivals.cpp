@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
 
 #include <pcl/search/kdtree.h>
 #include <pcl/search/octree.h>
@@ -37,6 +38,20 @@ auto byPcl(MakeSearch make_search) {
     extraction.setMaxClusterSize(problem.max_size);
     extraction.extract(clusters);
   };
+}
+
+/// PCL's octree ends the program if it would have too many levels, or if its cells are not above the float it takes for
+/// nothing (1.2e-7).
+void checkOctreeHolds(const Problem& problem) {
+  constexpr float kLeast = 1e-5F;
+  constexpr float kMostCells = 1 << 28;  // from the origin to the farthest return
+  const auto cell = static_cast<float>(std::fabs(problem.tolerance));
+  if (!(cell >= kLeast)) throw std::runtime_error("the tolerance is too small for an octree");
+  for (const auto index : *problem.returns) {
+    const RivalPoint& p = (*problem.cloud)[static_cast<std::size_t>(index)];
+    if (std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) / cell > kMostCells)
+      throw std::runtime_error("the scan has too many cells for an octree");
+  }
 }
 
 /// Turns a component per return into PCL's vector: clusters by their first point, then sorted by PCL's call.
@@ -172,6 +187,7 @@ std::vector<Rival> allRivals() {
   rivals.push_back({"pcl-tutorial", "PCL, KdTree as in its tutorial",
                     byPcl([](const Problem&) { return std::make_shared<pcl::search::KdTree<RivalPoint>>(); })});
   rivals.push_back({"pcl-octree", "PCL, Octree", byPcl([](const Problem& problem) {
+                      checkOctreeHolds(problem);
                       return std::make_shared<pcl::search::Octree<RivalPoint>>(std::fabs(problem.tolerance));
                     })});
   rivals.push_back({"pcl-default", "PCL, no search method given", byPcl([](const Problem&) { return Search::Ptr(); })});
