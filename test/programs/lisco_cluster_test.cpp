@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// lisco_cluster and lisco_demo as a user runs them.
+// lisco_cluster as a user runs it.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -281,7 +281,7 @@ TEST_F(LiscoCluster, ScanWithoutAnyReturnHasNoClusters) {
   EXPECT_TRUE(fs::exists(folder_ / "results/labels.pcd"));
 }
 
-TEST_F(LiscoCluster, TellTheirUseAndVersion) {
+TEST_F(LiscoCluster, TellsItsUseAndVersion) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.status, 0);
   for (const char* option :
