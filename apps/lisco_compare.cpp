@@ -91,7 +91,7 @@ bool parse(int argc, char** argv, Options& options) {
     ("rivals", po::value<std::string>(&rivals)->value_name("A,B,..."),
      "who takes part (default pcl,pcl-tutorial,pcl-octree,grid,paper,lisco)")
     ("must-agree", po::value<std::string>(&must_agree)->value_name("A,B,..."),
-     "whose clusters have to be PCL's; exit code 1 if they are not (default lisco)")
+     "of these, whose clusters have to be PCL's; exit code 1 if they are not (default lisco)")
     ("unorganized", po::bool_switch(&options.settings.unorganized), "cluster the returns as an unorganized cloud")
     ("json", po::value<std::string>(&json)->value_name("FILE"), "write everything, each run's time included")
     ("csv", po::value<std::string>(&csv)->value_name("FILE"), "write a row per input, tolerance and rival")
@@ -130,7 +130,12 @@ bool parse(int argc, char** argv, Options& options) {
   if (!(settings.max_seconds > 0)) throw std::runtime_error("--max-seconds must be positive");
   options.ground = GroundHeights(ground);
   settings.rivals = rivalsNamed(rivals, "--rivals");
-  for (const Rival& rival : rivalsNamed(must_agree, "--must-agree")) settings.must_agree.push_back(rival.key);
+  for (const Rival& rival : rivalsNamed(must_agree, "--must-agree")) {
+    settings.must_agree.push_back(rival.key);
+    const auto is_it = [&rival](const Rival& other) { return other.key == rival.key; };
+    if (given.count("must-agree") != 0 && std::none_of(settings.rivals.begin(), settings.rivals.end(), is_it))
+      throw std::runtime_error("--must-agree names " + rival.key + ", which --rivals does not");
+  }
   const auto empty = [&](const char* option, const std::string& value) {
     if (given.count(option) != 0 && value.empty()) throw std::runtime_error(std::string("--") + option + " is empty");
   };
@@ -140,6 +145,8 @@ bool parse(int argc, char** argv, Options& options) {
   options.json = json;
   options.csv = csv;
   options.plot = plot;
+  if (!json.empty() && !csv.empty() && fs::absolute(json).lexically_normal() == fs::absolute(csv).lexically_normal())
+    throw std::runtime_error("--json and --csv are one file: " + json);
   if (check_only && !plot.empty()) throw std::runtime_error("--plot needs times, --check-only takes none");
   return true;
 }

@@ -56,7 +56,12 @@ class MadeFolder {
 
 void checkMayWrite(const fs::path& file, const std::string& signature) {
   std::error_code error;
-  if (!fs::exists(file, error)) return;
+  if (!fs::exists(file, error)) {
+    const fs::path folder = fs::absolute(file).parent_path();
+    if (!fs::is_directory(folder, error))
+      throw std::runtime_error(file.string() + ": cannot be written: there is no folder " + folder.string());
+    return;
+  }
   if (!fs::is_regular_file(file, error)) throw std::runtime_error(file.string() + ": is no file");
   std::string beginning(1024, '\0');
   std::ifstream stream(file, std::ios::binary);
@@ -82,6 +87,11 @@ void writeOwnFile(const fs::path& file, const std::string& content, const std::s
 }
 
 void checkMayWriteInto(const fs::path& folder, const std::vector<std::string>& names) {
+  std::error_code error;
+  fs::path there = fs::absolute(folder).lexically_normal();
+  while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
+  if (!fs::is_directory(there, error))
+    throw std::runtime_error(folder.string() + ": cannot be written: " + there.string() + " is no folder");
   if (fs::exists(folder / kResultMarker)) return;
   for (const std::string& name : names)
     if (fs::exists(folder / name))

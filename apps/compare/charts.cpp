@@ -70,6 +70,7 @@ void checkCharts() {
 }
 
 void drawChart(const Chart& chart, const fs::path& png) {
+  if (chart.lines.empty()) return;
   const fs::path script = png.string() + ".gnuplot";
   std::ofstream stream(script);
   stream.precision(10);
