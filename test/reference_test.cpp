@@ -239,6 +239,8 @@ TEST(VoxelGrid, RefusesMoreCellsThanItCanNumber) {
   VoxelGrid grid;
   const std::vector<Point> far{{-1e9F, -1e9F, -1e9F}, {1e9F, 1e9F, 1e9F}};
   EXPECT_THROW(grid.cluster(returnsOf(far), 0.001F), std::runtime_error);
+  // Few enough along each axis, but 31 bits for each of three.
+  EXPECT_THROW(grid.cluster(returnsOf({{0.1F, 0, 0}, {1e6F, 1e6F, 1e6F}}), 0.001F), std::runtime_error);
   // And works on afterwards.
   expectGridExact(grid, {{1, 1, 1}, {1.4F, 1, 1}, {2, 1, 1}}, 0.5F);
 }
