@@ -298,6 +298,7 @@ TEST_F(LiscoCompare, HasNothingToDrawIfNobodyIsTimed) {
   const Outcome outcome = run("walls.pcd -t 0.3 --runs 2 --rivals pcl-default --plot charts");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(filesLeft(), std::vector<std::string>({"charts", "charts/.lisco_results", "walls.pcd"}));
 }
 
 TEST_F(LiscoCompare, OnlyChecksIfTold) {
