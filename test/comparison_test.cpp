@@ -1026,6 +1026,13 @@ TEST(Report, TableNamesAllAndWhatIsWrong) {
   EXPECT_TRUE(std::regex_search(summary, std::regex("a wrong one +0/1 +- +- +- +-\n"))) << summary;
 }
 
+TEST(Report, SumsUpOnlyWhatIsMoreThanOneCase) {
+  Example example;
+  example.settings.tolerances.pop_back();
+  example.inputs[0].cases.pop_back();
+  EXPECT_EQ(summaryOf(example.inputs, example.settings), "");
+}
+
 TEST(Report, NamesItsCharts) {
   CompareSettings settings;
   settings.tolerances = {0.1, 1};

@@ -126,9 +126,7 @@ TEST_F(LiscoCompare, ShowsThatTheClustersAreIdentical) {
     EXPECT_TRUE(tableSays(outcome.out, kTitles[i], kTimed + "  identical")) << kTitles[i] << outcome.out;
   EXPECT_EQ(outcome.out.find("DIFFERENT"), std::string::npos);
   EXPECT_EQ(outcome.out.find("true objects"), std::string::npos);
-  for (const std::string& title : kTitles)
-    EXPECT_EQ(countOf(title + " ", outcome.out), 2U) << title;  // and the summary
-  EXPECT_TRUE(std::regex_search(outcome.out, std::regex("\nLisco for PCL +1/1( +[0-9.]+){4}\n"))) << outcome.out;
+  for (const std::string& title : kTitles) EXPECT_EQ(countOf(title + " ", outcome.out), 1U) << title;
   EXPECT_EQ(filesLeft(), std::vector<std::string>({"walls.pcd"}));
 }
 
@@ -141,7 +139,7 @@ TEST_F(LiscoCompare, ComparesAtEachTolerance) {
   expectSaid("tolerance 0.7 m: 2 clusters\n", outcome.out);
   expectSaid("clusters of at least 20\n", outcome.out);
   EXPECT_EQ(countOf("  identical\n", outcome.out), 15U);
-  EXPECT_TRUE(std::regex_search(outcome.out, std::regex("\nvoxel grid +3/3 ")));
+  EXPECT_TRUE(std::regex_search(outcome.out, std::regex("\nvoxel grid +3/3( +[0-9.]+){4}\n"))) << outcome.out;
 }
 
 TEST_F(LiscoCompare, ReadsFoldersAndManyInputs) {
