@@ -342,7 +342,10 @@ void ViewStrip::search(const Loose& loose, Merge merge, void* context) {
   const float rho = std::sqrt(x * x + y * y);
   const float u = x * start_cosine_ + y * start_sine_;
   const float v = direction_ * (y * start_cosine_ - x * start_sine_);
-  const auto middle = std::llround(static_cast<double>(std::atan2(v, u)) / static_cast<double>(radians_per_place_));
+  const auto turn = static_cast<std::int64_t>(steps_);
+  const auto measured =
+      std::llround(static_cast<double>(std::atan2(v, u)) / static_cast<double>(radians_per_place_)) % turn;
+  const std::int64_t middle = measured < 0 ? measured + turn : measured;
   const float angle = asinBound(reach_ / rho);
   const auto before = static_cast<std::int64_t>(angle / radians_per_place_ + (kDeviation + 1.0F));
   const float slope = std::atan((loose.z - origin_[2]) / rho);
@@ -351,8 +354,7 @@ void ViewStrip::search(const Loose& loose, Merge merge, void* context) {
   for (std::size_t laser = 0; laser < lasers_.size(); ++laser) {
     if (lowest_[laser] > elevation + angle + kAngleRounding || highest_[laser] < elevation - angle - kAngleRounding)
       continue;
-    for (int turn = -1; turn <= 1; ++turn) {
-      const std::int64_t center = middle + turn * static_cast<std::int64_t>(steps_);
+    for (const std::int64_t center : {middle - turn, middle, middle + turn}) {
       const std::int64_t from = std::max<std::int64_t>(0, center - before);
       const std::int64_t to = std::min(static_cast<std::int64_t>(end_) - 1, center + before);
       for (std::int64_t place = from; place <= to; ++place) {
