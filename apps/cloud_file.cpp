@@ -271,7 +271,7 @@ std::vector<fs::path> cloudFilesIn(const fs::path& folder) {
   return files;
 }
 
-std::vector<fs::path> expandInputs(const std::vector<std::string>& inputs) {
+std::vector<fs::path> expandInputs(const std::vector<std::string>& inputs, std::vector<std::string>& failures) {
   std::vector<fs::path> files;
   for (const fs::path input : inputs) {
     std::error_code error;
@@ -279,9 +279,13 @@ std::vector<fs::path> expandInputs(const std::vector<std::string>& inputs) {
       files.push_back(input);
       continue;
     }
-    const std::vector<fs::path> found = cloudFilesIn(input);
-    if (found.empty()) fail(input, "holds no scans");
-    files.insert(files.end(), found.begin(), found.end());
+    try {
+      const std::vector<fs::path> found = cloudFilesIn(input);
+      if (found.empty()) fail(input, "holds no scans");
+      files.insert(files.end(), found.begin(), found.end());
+    } catch (const std::runtime_error& unreadable) {
+      failures.emplace_back(unreadable.what());
+    }
   }
   return files;
 }

@@ -28,8 +28,9 @@ Cloud::Ptr readCloudFile(const std::filesystem::path& file, std::vector<std::uin
 std::vector<std::filesystem::path> cloudFilesIn(const std::filesystem::path& folder);
 
 /// Inputs as given on a command line, each folder replaced by the files in it.
-/// \throws std::runtime_error if a folder holds none
-std::vector<std::filesystem::path> expandInputs(const std::vector<std::string>& inputs);
+/// \param failures receives a line for each folder that holds none or cannot be read
+std::vector<std::filesystem::path> expandInputs(const std::vector<std::string>& inputs,
+                                                std::vector<std::string>& failures);
 
 /// A name for each file, for its results: without folder and ending, numbered where names repeat.
 std::vector<std::string> namesOf(const std::vector<std::filesystem::path>& files);

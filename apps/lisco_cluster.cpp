@@ -138,9 +138,12 @@ struct Job {
   fs::path file, folder;
 };
 
-/// One job per input file. Of several, each has a folder of its own, numbered where file names repeat.
-std::vector<Job> jobsOf(const Options& options) {
-  const std::vector<fs::path> files = expandInputs(options.inputs);
+/// One job per input file; all_well tells whether there are files in all folders. Of several, each has a folder of its own, numbered where file names repeat.
+std::vector<Job> jobsOf(const Options& options, bool& all_well) {
+  std::vector<std::string> failures;
+  const std::vector<fs::path> files = expandInputs(options.inputs, failures);
+  for (const std::string& failure : failures) std::cerr << "lisco_cluster: " << failure << '\n';
+  all_well = failures.empty();
   const std::vector<std::string> names = namesOf(files);
   std::vector<Job> jobs;
   for (std::size_t i = 0; i < files.size(); ++i)
@@ -153,7 +156,7 @@ std::vector<Job> jobsOf(const Options& options) {
 class Workers {
  public:
   Workers(const Options& options, std::vector<Job> jobs)
-      : options_(options), jobs_(std::move(jobs)), progress_(jobs_.size()) {}
+      : options_(options), jobs_(std::move(jobs)), progress_(jobs_.size() > 1) {}
 
   /// \return whether all went well
   bool run() {
@@ -174,7 +177,8 @@ class Workers {
     for (std::size_t job = next_++; job < jobs_.size(); job = next_++) {
       {
         const std::lock_guard<std::mutex> lock(terminal_);
-        progress_.show(done_, jobs_[job].file.filename().string());
+        progress_.show(static_cast<double>(done_) / static_cast<double>(jobs_.size()),
+                       jobs_[job].file.filename().string());
       }
       std::string failure;
       try {
@@ -231,6 +235,8 @@ int main(int argc, char** argv) {
   return runProgram("lisco_cluster", [&] {
     Options options;
     if (!parse(argc, argv, options)) return 0;
-    return Workers(options, jobsOf(options)).run() ? 0 : 2;
+    bool all_well = true;
+    const bool worked_off = Workers(options, jobsOf(options, all_well)).run();
+    return all_well && worked_off ? 0 : 2;
   });
 }

@@ -3,8 +3,8 @@
 //
 // Clusters scans by PCL and by Lisco, side by side: whether the clusters are the same, and how long it took.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <stdexcept>
 #include <string>
@@ -19,6 +19,7 @@
 #include "compare/charts.h"
 #include "compare/comparison.h"
 #include "compare/report.h"
+#include "compare/text.h"
 #include "lisco/version.h"
 #include "options.h"
 #include "output_file.h"
@@ -60,12 +61,14 @@ bool parse(int argc, char** argv, Options& options) {
       "Usage: lisco_compare INPUT... --tolerance M[,M...] [options]\n\n"
       "Clusters scans by PCL and by Lisco side by side, on the same returns: first whether the clusters are the same,\n"
       "then how long each takes. An input is a scan (.pcd .ply .obj .ifs, KITTI .bin, the paper authors' .csv) or a\n"
-      "folder of scans. If a scan has a field 'label' (as lisco_simulate writes it), clusters are also scored against\n"
-      "these true objects.\n\n"
+      "folder of scans. If a scan has a field 'label' (uint32, as lisco_simulate writes it), clusters are also scored\n"
+      "against these true objects.\n\n"
       "Rivals: pcl (the reference: EuclideanClusterExtraction with KdTree (false)), pcl-tutorial (sorted KdTree),\n"
-      "pcl-octree, grid (a voxel grid), paper (Lisco exactly as published), lisco, and, only shown and not timed,\n"
-      "pcl-default (no search method given, which breaks on rotating scans).\n\n"
-      "Exit code: 0 if the clusters are identical everywhere, 1 if not, 2 on bad input or usage.\n\n"
+      "pcl-octree (resolution = tolerance), grid (a voxel grid), paper (Lisco as published, but with PCL's "
+      "comparison),\n"
+      "lisco, and, only shown and not timed, pcl-default (no search method given, which breaks on rotating scans).\n\n"
+      "Exit code: 0 if the clusters of those that must agree are identical everywhere, 1 if not, 2 on bad input or\n"
+      "usage (1 goes before 2).\n\n"
       "Options");
   std::string tolerances;
   std::string min_size = "10";
@@ -89,9 +92,9 @@ bool parse(int argc, char** argv, Options& options) {
      "fewer runs, but 3, for a rival that takes longer than this for all of them (default 10)")
     ("check-only", po::bool_switch(&check_only), "compare the clusters and time nothing")
     ("rivals", po::value<std::string>(&rivals)->value_name("A,B,..."),
-     "who takes part (default pcl,pcl-tutorial,pcl-octree,grid,paper,lisco)")
+     "who takes part (default: all but pcl-default)")
     ("must-agree", po::value<std::string>(&must_agree)->value_name("A,B,..."),
-     "of these, whose clusters have to be PCL's; exit code 1 if they are not (default lisco)")
+     "of these, whose clusters have to be PCL's (default lisco)")
     ("unorganized", po::bool_switch(&options.settings.unorganized), "cluster the returns as an unorganized cloud")
     ("json", po::value<std::string>(&json)->value_name("FILE"), "write everything, each run's time included")
     ("csv", po::value<std::string>(&csv)->value_name("FILE"), "write a row per input, tolerance and rival")
@@ -152,8 +155,9 @@ bool parse(int argc, char** argv, Options& options) {
 }
 
 /// Everything for one scan, printed as it comes.
+/// \param cases_before, cases how many scans and tolerances have been compared, and are to be compared in all
 InputResult compareFile(const fs::path& file, const std::string& name, const Options& options, std::size_t cases_before,
-                        ProgressBar& progress) {
+                        double cases, ProgressBar& progress) {
   const CompareSettings& settings = options.settings;
   std::vector<std::uint32_t> object_of;
   const Cloud::Ptr cloud = readCloudFile(file, &object_of);
@@ -175,28 +179,33 @@ InputResult compareFile(const fs::path& file, const std::string& name, const Opt
   for (const double tolerance : settings.tolerances) {
     const double done = static_cast<double>(cases_before + input.cases.size());
     input.cases.push_back(compareAt(scan, tolerance, settings, [&](const std::string& what, double share) {
-      constexpr double kSteps = 100;
-      progress.show(static_cast<std::size_t>((done + share) * kSteps),
-                    name + " at " + std::to_string(tolerance).substr(0, 5) + " m: " + what);
+      progress.show((done + share) / cases, formatted("%s at %g m: %s", name.c_str(), tolerance, what.c_str()));
     }));
     progress.clear();
-    std::fputs(tableOf(input.cases.back(), settings).c_str(), stdout);
+    std::fputs(tableOf(input.cases.back()).c_str(), stdout);
     std::fflush(stdout);
   }
   return input;
 }
 
-bool allAgree(const std::vector<InputResult>& inputs, const CompareSettings& settings) {
+/// One line for each rival that must agree with PCL and does not.
+std::vector<std::string> disagreements(const std::vector<InputResult>& inputs, const CompareSettings& settings) {
+  std::vector<std::string> lines;
   for (const InputResult& input : inputs)
     for (const CaseResult& result : input.cases)
       for (const RivalResult& entry : result.rivals)
-        if (settings.mustAgree(*entry.rival) && (!entry.failure.empty() || !entry.difference.identical)) return false;
-  return true;
+        if (settings.mustAgree(*entry.rival) && (!entry.failure.empty() || !entry.difference.identical))
+          lines.push_back(formatted("%s at %g m: the clusters of %s are not PCL's", input.file.c_str(),
+                                    result.tolerance, entry.rival->title.c_str()));
+  return lines;
 }
 
 int compare(const Options& options) {
   const CompareSettings& settings = options.settings;
-  const std::vector<fs::path> files = expandInputs(options.inputs);
+  std::vector<std::string> failures;
+  const std::vector<fs::path> files = expandInputs(options.inputs, failures);
+  for (const std::string& failure : failures) std::fprintf(stderr, "lisco_compare: %s\n", failure.c_str());
+  if (files.empty()) return 2;
   const std::vector<std::string> names = namesOf(files);
   // What cannot be written is found out before, not after, the time has been spent.
   if (!options.json.empty()) checkMayWrite(options.json, kJsonSignature);
@@ -209,11 +218,11 @@ int compare(const Options& options) {
 
   std::fputs(describeRun(settings).c_str(), stdout);
   std::vector<InputResult> results;
-  std::vector<std::string> failures;
-  ProgressBar progress(files.size() * settings.tolerances.size() * 100);
+  const double cases = static_cast<double>(files.size() * settings.tolerances.size());
+  ProgressBar progress;
   for (std::size_t i = 0; i < files.size(); ++i) {
     try {
-      results.push_back(compareFile(files[i], names[i], options, i * settings.tolerances.size(), progress));
+      results.push_back(compareFile(files[i], names[i], options, i * settings.tolerances.size(), cases, progress));
     } catch (const std::exception& error) {
       progress.clear();
       std::fprintf(stderr, "lisco_compare: %s\n", error.what());
@@ -221,13 +230,17 @@ int compare(const Options& options) {
     }
   }
   progress.clear();
-  if (!results.empty()) std::fputs(summaryOf(results, settings).c_str(), stdout);
+  if (results.empty()) return 2;
+  std::fputs(summaryOf(results, settings).c_str(), stdout);
+  std::fflush(stdout);
+  const std::vector<std::string> disagreeing = disagreements(results, settings);
+  for (const std::string& line : disagreeing) std::fprintf(stderr, "lisco_compare: %s\n", line.c_str());
 
   if (!options.json.empty()) writeOwnFile(options.json, jsonOf(results, settings, failures), kJsonSignature);
   if (!options.csv.empty()) writeOwnFile(options.csv, csvOf(results, settings), kCsvSignature);
-  if (!options.plot.empty() && !results.empty())
+  if (!options.plot.empty())
     writeOwnFolder(options.plot, charts, [&](const fs::path& aside) { drawCharts(results, settings, aside); });
-  if (!allAgree(results, settings)) return 1;
+  if (!disagreeing.empty()) return 1;
   return failures.empty() ? 0 : 2;
 }
 

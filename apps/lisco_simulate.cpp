@@ -103,6 +103,8 @@ bool parse(int argc, char** argv, Options& options) {
   options.scene = scene[0] - '0';
   if (output.empty()) throw std::runtime_error("--output is missing; see --help");
   options.output = output;
+  if (options.output.extension() != ".pcd")
+    throw std::runtime_error("--output must end in .pcd, not be '" + output + "'");
   options.seed = countOf(seed, "--seed", 0);
   options.disturbance.seed = options.seed;
   if (given.count("lasers") != 0) options.lasers = countOf(lasers, "--lasers", 1);

@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "lisco/return.h"
+#include "stagger.h"
 
 namespace lisco_apps {
 namespace {
@@ -228,49 +229,6 @@ struct Cells {
   std::vector<std::uint32_t> colors;  ///< row by row
 };
 
-/// By how many columns each row of a rotating scan is drawn further right, so that what was seen in one
-/// direction stands in one column although the lasers of a column look in different ones (by up to 12
-/// degrees). All 0 for a camera.
-std::vector<int> staggerOf(const Cloud& cloud) {
-  const auto columns = static_cast<int>(cloud.width);
-  const auto rows = static_cast<int>(cloud.height);
-  std::vector<int> shifts(cloud.height, 0);
-  if (seenByCamera(cloud)) return shifts;
-  const auto azimuth = [](const pcl::PointXYZ& p) {
-    return std::atan2(static_cast<double>(p.y), static_cast<double>(p.x));
-  };
-  const auto valid = [](const pcl::PointXYZ& p) { return lisco::isReturn(p.x, p.y, p.z); };
-
-  std::vector<double> steps;
-  for (int row = 0; row < rows; ++row)
-    for (int column = 0; column + 1 < columns; ++column)
-      if (valid(cloud.at(column, row)) && valid(cloud.at(column + 1, row)))
-        steps.push_back(std::remainder(azimuth(cloud.at(column + 1, row)) - azimuth(cloud.at(column, row)), 2 * kPi));
-  if (steps.empty()) return shifts;
-  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
-  const double step = steps[steps.size() / 2];
-  constexpr double kLeastStep = 1e-6;
-  if (std::fabs(step) < kLeastStep) return shifts;
-
-  double first = std::numeric_limits<double>::quiet_NaN();
-  for (int row = 0; row < rows; ++row) {
-    double x = 0;
-    double y = 0;
-    for (int column = 0; column < columns; ++column)
-      if (valid(cloud.at(column, row))) {
-        const double offset = azimuth(cloud.at(column, row)) - step * column;
-        x += std::cos(offset);
-        y += std::sin(offset);
-      }
-    if (x == 0 && y == 0) continue;
-    const double offset = std::atan2(y, x);
-    if (std::isnan(first)) first = offset;
-    shifts[static_cast<std::size_t>(row)] =
-        static_cast<int>(std::lround(std::remainder(offset - first, 2 * kPi) / step));
-  }
-  return shifts;
-}
-
 /// Every n-th cell, so that a picture has at most 8000 columns and rows.
 Cells thinnedOut(const Cells& cells) {
   constexpr int kMost = 8000;
@@ -292,7 +250,7 @@ Cells cellsOf(const ClusteredScan& scan) {
   const std::vector<std::uint32_t> colors = pointColors(scan, true);
   if (cloud.height > 1) {
     Cells cells{static_cast<int>(cloud.width), static_cast<int>(cloud.height), colors};
-    const std::vector<int> shifts = staggerOf(cloud);
+    const std::vector<int> shifts = seenByCamera(cloud) ? std::vector<int>(cloud.height, 0) : staggerOf(cloud);
     for (std::size_t row = 0; row < cloud.height; ++row)
       for (int column = 0; column < cells.columns; ++column) {
         const int shifted = ((column + shifts[row]) % cells.columns + cells.columns) % cells.columns;

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,22 +12,26 @@
 
 namespace lisco_apps {
 
-/// A line on the terminal (stderr) that shows how many of several things are done. Silent in a pipe, and for one
-/// thing.
+/// A line on the terminal (stderr) that shows which part of the work is done. Silent in a pipe.
 class ProgressBar {
  public:
-  explicit ProgressBar(std::size_t total) : total_(total), shown_(total > 1 && isatty(STDERR_FILENO) != 0) {}
+  /// \param worthwhile false: silent on a terminal too
+  explicit ProgressBar(bool worthwhile = true) : shown_(worthwhile && isatty(STDERR_FILENO) != 0) {}
   ~ProgressBar() { clear(); }
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Shows that `done` things are done and what is being worked on.
-  void show(std::size_t done, const std::string& what) {
+  /// Shows which share of the work is done, 0 to 1, and what is being worked on; cut to the terminal's width.
+  void show(double share, const std::string& what) {
     if (!shown_) return;
-    constexpr std::size_t kWidth = 30;
-    const std::size_t filled = kWidth * done / std::max<std::size_t>(1, total_);
-    std::fprintf(stderr, "\r\033[K[%s%s] %zu/%zu %s", std::string(filled, '=').c_str(),
-                 std::string(kWidth - filled, ' ').c_str(), done, total_, what.c_str());
+    constexpr std::size_t kWidth = 20;
+    const auto filled = static_cast<std::size_t>(kWidth * std::clamp(share, 0.0, 1.0));
+    std::string line = "[" + std::string(filled, '=') + std::string(kWidth - filled, ' ') + "] " +
+                       std::to_string(static_cast<int>(100 * share)) + "% " + what;
+    winsize size{};
+    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
+      line.resize(std::min<std::size_t>(line.size(), size.ws_col - 1U));  // a longer one could not be cleared
+    std::fprintf(stderr, "\r\033[K%s", line.c_str());
     std::fflush(stderr);
   }
 
@@ -36,7 +41,6 @@ class ProgressBar {
   }
 
  private:
-  std::size_t total_;
   bool shown_;
 };
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,7 @@
 #include "cloud_file.h"
 #include "compare/comparison.h"
 #include "options.h"
+#include "stagger.h"
 
 namespace {
 
@@ -34,6 +37,11 @@ Pairs pairsOf(const ComparedScan& scan, double tolerance, const lisco_reference:
   const std::size_t steps = cloud.width;
   pcl::search::KdTree<RivalPoint> tree(false);
   tree.setInputCloud(scan.cloud, scan.returns);
+  const auto farther = [&cloud](std::size_t a, std::size_t b) {
+    const float range_a = cloud[a].getVector3fMap().squaredNorm();
+    const float range_b = cloud[b].getVector3fMap().squaredNorm();
+    return range_a != range_b ? range_a > range_b : a > b;
+  };
   Pairs pairs;
   pcl::Indices near;
   std::vector<float> squared;
@@ -48,8 +56,8 @@ Pairs pairsOf(const ComparedScan& scan, double tolerance, const lisco_reference:
       const auto q = static_cast<std::size_t>(other);
       const std::size_t p_step = p % steps;
       const std::size_t q_step = q % steps;
-      // Each pair once, by its later point; within one step, by the upper one.
-      if (q_step > p_step || (q_step == p_step && q <= p)) continue;
+      // Each pair once, by its later point. Within one step both look for each other: by the nearer one, which sees further.
+      if (q_step > p_step || (q_step == p_step && (farther(p, q) || p == q))) continue;
       ++pairs.all;
       const std::size_t apart = std::min(p_step - q_step, steps - (p_step - q_step));
       const std::size_t rows = std::max(p / steps, q / steps) - std::min(p / steps, q / steps);
@@ -62,28 +70,53 @@ Pairs pairsOf(const ComparedScan& scan, double tolerance, const lisco_reference:
   return pairs;
 }
 
+/// The scan with its rows moved so that a column is one direction, as its driver might do it.
+Cloud::Ptr destaggered(const Cloud& cloud) {
+  auto straight = std::make_shared<Cloud>(cloud);
+  const std::vector<int> shifts = staggerOf(cloud);
+  const auto columns = static_cast<int>(cloud.width);
+  for (int row = 0; row < static_cast<int>(cloud.height); ++row)
+    for (int column = 0; column < columns; ++column)
+      straight->at(((column + shifts[static_cast<std::size_t>(row)]) % columns + columns) % columns, row) =
+          cloud.at(column, row);
+  return straight;
+}
+
 int run(const std::vector<std::string>& inputs, const GroundHeights& ground, const std::vector<double>& tolerances) {
   CompareSettings settings;
   settings.runs = 0;
   for (Rival& rival : allRivals())
     if (rival.key == "paper") settings.rivals.push_back(std::move(rival));
+  std::vector<std::string> failures;
+  const auto files = expandInputs(inputs, failures);
   std::printf(
-      "scan,returns,tolerance,clusters,paper_clusters,mislabelled,pairs,missed_lasers,missed_horizon,missed_columns\n");
-  for (const auto& file : expandInputs(inputs)) {
+      "scan,returns,tolerance,clusters,mislabelled,mislabelled_destaggered,pairs,missed_lasers,missed_horizon,missed_"
+      "columns\n");
+  for (const auto& file : files) {
     const std::string name = file.stem().string();
-    const Cloud::Ptr cloud = readCloudFile(file);
-    const ComparedScan scan = prepareScan(*cloud, {}, ground.of(name), false);
-    for (const double tolerance : tolerances) {
-      const CaseResult result = compareAt(scan, tolerance, settings, [](const std::string&, double) {});
-      const RivalResult& paper = result.rivals.front();
-      const Pairs pairs = pairsOf(scan, tolerance, nominalSensor(*scan.cloud));
-      std::printf("%s,%zu,%g,%zu,%zu,%zu,%zu,%zu,%zu,%zu\n", name.c_str(), scan.returns->size(), tolerance,
-                  result.clusters, paper.clusters, paper.difference.mislabelled, pairs.all, pairs.lasers, pairs.horizon,
-                  pairs.columns);
-      std::fflush(stdout);
+    try {
+      const Cloud::Ptr cloud = readCloudFile(file);
+      if (cloud->height < 2) throw std::runtime_error(file.string() + ": is not organized");
+      const ComparedScan scan = prepareScan(*cloud, {}, ground.of(name), false);
+      const ComparedScan straight = prepareScan(*destaggered(*cloud), {}, ground.of(name), false);
+      for (const double tolerance : tolerances) {
+        const auto compared = [&](const ComparedScan& one) {
+          return compareAt(one, tolerance, settings, [](const std::string&, double) {});
+        };
+        const CaseResult as_read = compared(scan);
+        const Pairs pairs = pairsOf(scan, tolerance, nominalSensor(*scan.cloud));
+        std::printf("%s,%zu,%g,%zu,%zu,%zu,%zu,%zu,%zu,%zu\n", name.c_str(), scan.returns->size(), tolerance,
+                    as_read.clusters, as_read.rivals.front().difference.mislabelled,
+                    compared(straight).rivals.front().difference.mislabelled, pairs.all, pairs.lasers, pairs.horizon,
+                    pairs.columns);
+        std::fflush(stdout);
+      }
+    } catch (const std::exception& error) {
+      failures.emplace_back(error.what());
     }
   }
-  return 0;
+  for (const std::string& failure : failures) std::fprintf(stderr, "literal_mask: %s\n", failure.c_str());
+  return failures.empty() ? 0 : 2;
 }
 
 }  // namespace

@@ -28,6 +28,16 @@ find_real_scans() {
   done
 }
 
+# report LOG COMMAND...: runs a comparison with its tables going to LOG, and shows them if it fails.
+report() {
+  local log=$1
+  shift
+  "$@" >"$log" || {
+    cat "$log" >&2
+    return 1
+  }
+}
+
 # table NAME CSV: one of the tables of tables.awk.
 table() {
   awk -v table="$1" -f "$root/benchmarks/tables.awk" "$2"
@@ -36,9 +46,13 @@ table() {
 # replace_section FILE NAME: replaces what stands in FILE between the lines `<!-- NAME -->` and `<!-- end -->` by stdin.
 replace_section() {
   local file=$1 name=$2 new
-  grep -q "^<!-- $name -->$" "$file" || { echo "$file has no section $name" >&2; return 1; }
   new=$(mktemp)
   cat >"$new"
+  if ! awk -v begin="<!-- $name -->" '$0 == begin { begun = 1 } begun && $0 == "<!-- end -->" { ended = 1 } END { exit !ended }' \
+       "$file"; then
+    echo "$file has no section '$name' that ends" >&2
+    return 1
+  fi
   awk -v begin="<!-- $name -->" -v new="$new" '
     $0 == begin { print; print ""; while ((getline line < new) > 0) print line; print ""; inside = 1; next }
     inside && $0 == "<!-- end -->" { inside = 0 }

@@ -36,19 +36,17 @@ void writeScript(const Chart& chart, const fs::path& png, std::ostream& script) 
       least = std::min(least, point.y);
       most = std::max(most, point.y);
     }
-  script << "set terminal pngcairo noenhanced font 'DejaVu Sans,11' size 900,560 background '#ffffff'\n"
+  script << "set terminal pngcairo noenhanced font 'DejaVu Sans,11' size 900,620 background '#ffffff'\n"
          << "set output " << forGnuplot(png.string()) << '\n'
          << "set title " << forGnuplot(chart.title) << '\n'
          << "set xlabel " << forGnuplot(chart.x_label) << '\n'
          << "set ylabel " << forGnuplot(chart.y_label) << '\n'
          << "set logscale y\nset grid ytics xtics back linetype 1 linecolor rgb '#dcdcdc' linewidth 1\nset key outside "
-            "right center\n"
+            "bottom center horizontal\n"
          << "set offsets graph 0.02, graph 0.02\nset border 3\nset tics nomirror\nset bars small\n"
          << "set format y '%g'\n"
          << "set yrange [" << least / 2 << ':' << most * 2 << "]\n"
          << (chart.log_x ? "set logscale x\n" : "");
-  // Colours that colour-blind eyes tell apart too (Okabe and Ito), and a mark for each.
-  const char* const colors[] = {"#000000", "#0072b2", "#56b4e9", "#e69f00", "#cc79a7", "#d55e00", "#009e73"};
   for (std::size_t i = 0; i < chart.lines.size(); ++i) {
     script << "$line" << i << " << END\n";
     for (const Chart::Point& point : chart.lines[i].points)
@@ -57,8 +55,7 @@ void writeScript(const Chart& chart, const fs::path& png, std::ostream& script) 
   }
   for (std::size_t i = 0; i < chart.lines.size(); ++i)
     script << (i == 0 ? "plot " : ", ") << "$line" << i << " using 1:2:3 with yerrorlines lw 2 pt " << 5 + i % 8
-           << " ps 0.8 lc rgb '" << colors[i % (sizeof colors / sizeof colors[0])] << "' title "
-           << forGnuplot(chart.lines[i].title);
+           << " ps 0.8 lc rgb " << chart.lines[i].color << " title " << forGnuplot(chart.lines[i].title);
   script << '\n';
 }
 

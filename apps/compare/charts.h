@@ -15,6 +15,7 @@ struct Chart {
   };
   struct Line {
     std::string title;
+    unsigned color;  ///< 0xRRGGBB
     std::vector<Point> points;
   };
   std::string title, x_label, y_label;

@@ -132,7 +132,7 @@ std::string neighboursOf(const Problem& problem, pcl::index_t point, const Label
   std::sort(neighbours.begin(), neighbours.end());
   constexpr std::size_t kShown = 4;
   std::string text = formatted("its %zu neighbours within %g m", neighbours.size(), problem.tolerance);
-  if (!neighbours.empty()) text += ", by distance and cluster there and here:";
+  if (!neighbours.empty()) text += ", with their distances, clusters by PCL and clusters by the rival:";
   for (std::size_t i = 0; i < std::min(neighbours.size(), kShown); ++i) {
     const auto [d2, index] = neighbours[i];
     text += formatted(" %d (%.4f m, %u, %u)", index, static_cast<double>(std::sqrt(d2)), expected[place(index)],
@@ -176,14 +176,14 @@ Difference differenceOf(const Problem& problem, const Rival& reference, const Cl
     if (!first) first = index;
   }
   difference.details =
-      formatted("%zu clusters there, %zu here; %zu of those there are not here; %zu of %zu points differ\n",
+      formatted("PCL finds %zu clusters, the rival %zu; %zu of PCL's are not among them; %zu of %zu points differ\n",
                 expected.size(), found.size(), difference.clusters, difference.mislabelled, problem.returns->size());
   if (!first) {
     difference.details += "the rival lists points twice, or points that are no returns\n";
     return difference;
   }
-  difference.details += "first: " + whereIs(problem, *first) + ": there " +
-                        inWords(expected_label[place(*first)], expected) + ", here " +
+  difference.details += "first: " + whereIs(problem, *first) + ": by PCL in " +
+                        inWords(expected_label[place(*first)], expected) + ", by the rival in " +
                         inWords(found_label[place(*first)], found) + "\n" +
                         neighboursOf(problem, *first, expected_label, found_label) + "\n";
 
@@ -197,10 +197,10 @@ Difference differenceOf(const Problem& problem, const Rival& reference, const Cl
       decidingPair(any_size, *first, labelsOf(expected_components, points), labelsOf(found_components, points));
   if (pair) {
     const double r2 = static_cast<double>(lisco::Tolerance(static_cast<float>(problem.tolerance)).squared());
-    difference.details += "the pair that decides: " + whereIs(problem, pair->a) + " and " + whereIs(problem, pair->b) +
-                          formatted(", d2 = %.9g, r2 = %.9g: ", static_cast<double>(pair->d2), r2) +
-                          (pair->kept_apart ? "neighbours, kept apart here" : "not connected there, joined here") +
-                          "\n";
+    difference.details +=
+        "the pair that decides: " + whereIs(problem, pair->a) + " and " + whereIs(problem, pair->b) +
+        formatted(", d2 = %.9g, r2 = %.9g: ", static_cast<double>(pair->d2), r2) +
+        (pair->kept_apart ? "neighbours, which the rival keeps apart" : "not connected, which the rival joins") + "\n";
   }
   return difference;
 }

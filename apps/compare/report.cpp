@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <fstream>
 #include <limits>
-#include <map>
 #include <sstream>
 #include <thread>
 
 #include <nlohmann/json.hpp>
+
+#include <pcl/pcl_config.h>
 
 #include "compare/charts.h"
 #include "compare/text.h"
@@ -27,6 +26,8 @@ constexpr const char* kCompiler =
 #else
     "GCC " __VERSION__;
 #endif
+
+constexpr const char* kBuild = LISCO_BUILD;  // type and flags
 
 std::string processor() {
   std::ifstream info("/proc/cpuinfo");
@@ -63,12 +64,12 @@ nlohmann::ordered_json finiteOrNull(double value) {
 }
 
 nlohmann::ordered_json jsonOf(const CaseResult& result, const RivalResult& entry, const CompareSettings& settings) {
-  nlohmann::ordered_json json{{"rival", entry.rival->key}, {"title", entry.rival->title}};
+  nlohmann::ordered_json json{
+      {"rival", entry.rival->key}, {"title", entry.rival->title}, {"must_agree", settings.mustAgree(*entry.rival)}};
   if (!entry.failure.empty()) {
     json["failure"] = entry.failure;
     return json;
   }
-  json["must_agree"] = settings.mustAgree(*entry.rival);
   json["clusters"] = entry.clusters;
   json["identical"] = entry.difference.identical;
   if (!entry.difference.identical)
@@ -96,7 +97,7 @@ template <typename AddPoints>
 std::vector<Chart::Line> linesOf(const CompareSettings& settings, AddPoints&& add_points) {
   std::vector<Chart::Line> lines;
   for (const Rival& rival : settings.rivals) {
-    Chart::Line line{rival.title, {}};
+    Chart::Line line{rival.title, rival.color, {}};
     add_points(rival, line.points);
     std::sort(line.points.begin(), line.points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
     if (!line.points.empty()) lines.push_back(std::move(line));
@@ -117,11 +118,16 @@ constexpr const char* kMeanChart = "time_over_tolerance.png";
 }  // namespace
 
 std::string describeRun(const CompareSettings& settings) {
-  std::string text = formatted("lisco %s, %s, %s with %u threads, of which one is used\n", LISCO_VERSION, kCompiler,
+  std::string text = formatted("lisco %s, %s, %s with %u threads, of which 1 is used\n", LISCO_VERSION, kCompiler,
                                processor().c_str(), std::thread::hardware_concurrency());
-  if (settings.runs > 0)
-    text += formatted("%zu runs of each in turn (fewer, but 3, of what takes longer than %g s for all of them)\n",
-                      settings.runs, settings.max_seconds);
+  text += std::string("against PCL ") + PCL_VERSION_PRETTY + "; built as " + kBuild + "\n";
+#ifndef NDEBUG
+  text += "not a release build: its times say nothing\n";
+#endif
+  if (settings.runs > 0) text += formatted("%zu run%s of each in turn", settings.runs, settings.runs == 1 ? "" : "s");
+  if (settings.runs > 3)
+    text += formatted("; fewer, but 3, of what takes longer than %g s for all of them", settings.max_seconds);
+  if (settings.runs > 0) text += "\n";
   return text;
 }
 
@@ -133,7 +139,7 @@ std::string headingOf(const InputResult& input, const CompareSettings& settings)
   return text + formatted(", clusters of at least %u\n", settings.min_size);
 }
 
-std::string tableOf(const CaseResult& result, const CompareSettings&) {
+std::string tableOf(const CaseResult& result) {
   std::string text = formatted("\n  tolerance %g m: %zu clusters\n", result.tolerance, result.clusters);
   if (result.objects)
     text += formatted("  true objects: %zu; %zu whole, %zu split, %zu merged with others, %zu missed\n",
@@ -145,8 +151,10 @@ std::string tableOf(const CaseResult& result, const CompareSettings&) {
     text += formatted("  %-30s ", entry.rival->title.c_str());
     if (entry.times) {
       const double ratio = orNan(result.ratio(entry));
-      text += formatted("%5zu %11.3f %9.3f %11.3f ", entry.times->runs.size(), entry.times->mean(),
-                        entry.times->confidence99(), median(entry.times->runs));
+      const double confidence = entry.times->confidence99();
+      text +=
+          formatted("%5zu %11.3f %9s %11.3f ", entry.times->runs.size(), entry.times->mean(),
+                    std::isfinite(confidence) ? formatted("%.3f", confidence).c_str() : "-", median(entry.times->runs));
       text += std::isfinite(ratio) ? formatted("%8.2f", ratio) : formatted("%8s", "-");
     } else {
       text += formatted("%5s %11s %9s %11s %8s", "-", "-", "-", "-", "-");
@@ -192,20 +200,22 @@ std::string summaryOf(const std::vector<InputResult>& inputs, const CompareSetti
 std::string csvOf(const std::vector<InputResult>& inputs, const CompareSettings& settings) {
   std::string text = std::string(kCsvSignature) +
                      ",min_size,reference_clusters,rival,clusters,identical,mislabelled,runs,mean_ms,confidence99_ms,"
-                     "median_ms,cold_median_ms,min_ms,max_ms,ratio,objects,whole,split,merged,missed\n";
+                     "median_ms,cold_median_ms,min_ms,max_ms,ratio,objects,whole,split,merged,missed,failure\n";
   const auto number = [](double value) { return std::isfinite(value) ? formatted("%.6g", value) : std::string(); };
   for (const InputResult& input : inputs)
     for (const CaseResult& result : input.cases)
       for (const RivalResult& entry : result.rivals) {
-        if (!entry.failure.empty()) continue;
         // A name may hold a comma or a quote.
         std::string name = "\"";
         for (const char c : input.name) name += c == '"' ? "\"\"" : std::string(1, c);
         text += name + "\"" +
-                formatted(",%zu,%zu,%zu,%s,%.10g,%u,%zu,%s,%zu,%s,%zu", input.rows, input.columns, input.returns,
+                formatted(",%zu,%zu,%zu,%s,%.10g,%u,%zu,%s", input.rows, input.columns, input.returns,
                           number(static_cast<double>(input.ground_z)).c_str(), result.tolerance, settings.min_size,
-                          result.clusters, entry.rival->key.c_str(), entry.clusters,
-                          entry.difference.identical ? "yes" : "no", entry.difference.mislabelled);
+                          result.clusters, entry.rival->key.c_str());
+        text += entry.failure.empty()
+                    ? formatted(",%zu,%s,%zu", entry.clusters, entry.difference.identical ? "yes" : "no",
+                                entry.difference.mislabelled)
+                    : ",,,";
         if (entry.times)
           text += formatted(",%zu", entry.times->runs.size()) + "," + number(entry.times->mean()) + "," +
                   number(entry.times->confidence99()) + "," + number(median(entry.times->runs)) + "," +
@@ -214,10 +224,11 @@ std::string csvOf(const std::vector<InputResult>& inputs, const CompareSettings&
         else
           text += ",0,,,,,,,";
         if (result.objects)
-          text += formatted(",%zu,%zu,%zu,%zu,%zu\n", result.objects->objects, result.objects->whole,
+          text += formatted(",%zu,%zu,%zu,%zu,%zu", result.objects->objects, result.objects->whole,
                             result.objects->split, result.objects->merged, result.objects->missed);
         else
-          text += ",,,,,\n";
+          text += ",,,,,";
+        text += entry.failure.empty() ? ",\n" : ",\"" + entry.failure + "\"\n";
       }
   return text;
 }
@@ -226,7 +237,9 @@ std::string jsonOf(const std::vector<InputResult>& inputs, const CompareSettings
                    const std::vector<std::string>& failures) {
   nlohmann::ordered_json json{{"program", "lisco_compare"},
                               {"version", LISCO_VERSION},
+                              {"pcl_version", PCL_VERSION_PRETTY},
                               {"compiler", kCompiler},
+                              {"build", kBuild},
                               {"processor", processor()},
                               {"hardware_threads", std::thread::hardware_concurrency()},
                               {"min_size", settings.min_size},
@@ -270,15 +283,6 @@ std::vector<std::string> chartsOf(const std::vector<std::string>& input_names, c
   return charts;
 }
 
-namespace {
-
-/// A chart of what was timed; none if nothing was.
-void drawIfAny(const Chart& chart, const std::filesystem::path& png) {
-  if (!chart.lines.empty()) drawChart(chart, png);
-}
-
-}  // namespace
-
 void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& settings,
                 const std::filesystem::path& folder) {
   for (const InputResult& input : inputs) {
@@ -289,11 +293,11 @@ void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& s
         if (entry->times) points.push_back(pointOf(result.tolerance, *entry->times));
       }
     });
-    drawIfAny(chart, folder / overTolerance(input.name));
+    drawChart(chart, folder / overTolerance(input.name));
   }
   if (inputs.size() < 2) return;
 
-  Chart mean{formatted("mean of %zu scans", inputs.size()), "tolerance, metres", kTimeLabel};
+  Chart mean{formatted("arithmetic mean of %zu scans", inputs.size()), "tolerance, metres", kTimeLabel};
   mean.lines = linesOf(settings, [&](const Rival& rival, std::vector<Chart::Point>& points) {
     for (std::size_t at = 0; at < settings.tolerances.size(); ++at) {
       Chart::Point point{settings.tolerances[at], 0, 0};
@@ -309,7 +313,7 @@ void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& s
       if (timed == inputs.size()) points.push_back(point);
     }
   });
-  drawIfAny(mean, folder / kMeanChart);
+  drawChart(mean, folder / kMeanChart);
 
   for (std::size_t at = 0; at < settings.tolerances.size(); ++at) {
     Chart chart{formatted("%zu scans, tolerance %g m", inputs.size(), settings.tolerances[at]), "returns", kTimeLabel,
@@ -320,7 +324,7 @@ void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& s
         if (entry->times) points.push_back(pointOf(static_cast<double>(input.returns), *entry->times));
       }
     });
-    drawIfAny(chart, folder / overPoints(settings.tolerances[at]));
+    drawChart(chart, folder / overPoints(settings.tolerances[at]));
   }
 }
 

@@ -15,7 +15,7 @@ std::string describeRun(const CompareSettings& settings);
 
 /// The tables for people: one scan's heading, one tolerance's rivals, and what all of it comes to.
 std::string headingOf(const InputResult& input, const CompareSettings& settings);
-std::string tableOf(const CaseResult& result, const CompareSettings& settings);
+std::string tableOf(const CaseResult& result);
 /// Empty if there is but one case.
 std::string summaryOf(const std::vector<InputResult>& inputs, const CompareSettings& settings);
 

@@ -150,9 +150,10 @@ class ByLisco {
 };
 
 template <typename Method>
-Rival withOwnMemory(const char* key, const char* title) {
-  const auto method = std::make_shared<Method>();
-  return {key, title, [method](const Problem& problem, Clusters& clusters) { method->extract(problem, clusters); }};
+auto withOwnMemory() {
+  return [method = std::make_shared<Method>()](const Problem& problem, Clusters& clusters) {
+    method->extract(problem, clusters);
+  };
 }
 
 }  // namespace
@@ -179,23 +180,28 @@ lisco_reference::NominalSensor nominalSensor(const RivalCloud& cloud) {
 
 Rival referenceRival() {
   return {kReferenceKey, "PCL, KdTree (false)",
-          byPcl([](const Problem&) { return std::make_shared<pcl::search::KdTree<RivalPoint>>(false); })};
+          byPcl([](const Problem&) { return std::make_shared<pcl::search::KdTree<RivalPoint>>(false); }), 0x000000};
 }
 
 std::vector<Rival> allRivals() {
-  std::vector<Rival> rivals{referenceRival()};
-  rivals.push_back({"pcl-tutorial", "PCL, KdTree as in its tutorial",
-                    byPcl([](const Problem&) { return std::make_shared<pcl::search::KdTree<RivalPoint>>(); })});
-  rivals.push_back({"pcl-octree", "PCL, Octree", byPcl([](const Problem& problem) {
-                      checkOctreeHolds(problem);
-                      return std::make_shared<pcl::search::Octree<RivalPoint>>(std::fabs(problem.tolerance));
-                    })});
-  rivals.push_back({"pcl-default", "PCL, no search method given", byPcl([](const Problem&) { return Search::Ptr(); })});
-  rivals.back().timed = false;
-  rivals.push_back(withOwnMemory<ByVoxelGrid>("grid", "voxel grid"));
-  rivals.push_back(withOwnMemory<ByThePaper>("paper", "Lisco as in the paper"));
-  rivals.back().needs_rows = true;
-  rivals.push_back(withOwnMemory<ByLisco>("lisco", "Lisco for PCL"));
+  const auto sorted_tree = [](const Problem&) { return std::make_shared<pcl::search::KdTree<RivalPoint>>(); };
+  const auto octree = [](const Problem& problem) {
+    checkOctreeHolds(problem);
+    return std::make_shared<pcl::search::Octree<RivalPoint>>(std::fabs(problem.tolerance));
+  };
+  // Colours that colour-blind eyes tell apart too (Okabe and Ito).
+  std::vector<Rival> rivals{
+      referenceRival(),
+      {"pcl-tutorial", "PCL, KdTree as in its tutorial", byPcl(sorted_tree), 0x999999},
+      {"pcl-octree", "PCL, Octree", byPcl(octree), 0x56B4E9},
+      {"pcl-default", "PCL, no search method given", byPcl([](const Problem&) { return Search::Ptr(); }), 0xF0E442},
+      {"grid", "voxel grid", withOwnMemory<ByVoxelGrid>(), 0x0072B2},
+      {"paper", "Lisco as in the paper", withOwnMemory<ByThePaper>(), 0xE69F00},
+      {"lisco", "Lisco for PCL", withOwnMemory<ByLisco>(), 0xD55E00}};
+  for (Rival& rival : rivals) {
+    rival.timed = rival.key != "pcl-default";
+    rival.needs_rows = rival.key == "paper";
+  }
   return rivals;
 }
 

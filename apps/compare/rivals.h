@@ -36,6 +36,7 @@ struct Rival {
   std::string title;  ///< for people
   /// Appends the clusters of a problem. Keeps its memory from call to call, as its user would.
   std::function<void(const Problem&, Clusters&)> extract;
+  unsigned color = 0;       ///< in charts, 0xRRGGBB
   bool timed = true;        ///< false: only shown
   bool needs_rows = false;  ///< works on organized clouds only
 };

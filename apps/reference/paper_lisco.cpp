@@ -24,7 +24,7 @@ NeighborMask getNeighborMask(double distance, double eps, const NominalSensor& s
 
 const std::vector<std::uint32_t>& PaperLisco::cluster(const std::vector<lisco::Return>& matrix, std::size_t lasers,
                                                       const NominalSensor& sensor, float tolerance) {
-  matrix_ = matrix;
+  matrix_ = matrix.data();
   lasers_ = lasers;
   steps_ = matrix.size() / lasers;
   sensor_ = sensor;
@@ -36,7 +36,7 @@ const std::vector<std::uint32_t>& PaperLisco::cluster(const std::vector<lisco::R
 
   for (std::size_t step = 0; step < steps_; ++step) receiveStep(step);
 
-  for (Point p = 0; p < matrix_.size(); ++p)
+  for (Point p = 0; p < matrix.size(); ++p)
     if (distance_[p] > 0 && getH(p) == kNoCluster) head_[p] = p;
   return head_;
 }

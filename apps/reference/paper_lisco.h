@@ -71,7 +71,7 @@ class PaperLisco {
   Head createH(Point p, Point other);
   void merge(Head a, Head b);
 
-  std::vector<lisco::Return> matrix_;
+  const lisco::Return* matrix_ = nullptr;
   std::size_t lasers_ = 0;
   std::size_t steps_ = 0;
   NominalSensor sensor_{};

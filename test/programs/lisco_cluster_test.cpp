@@ -208,10 +208,12 @@ TEST_F(LiscoCluster, GoesOnAfterABadFileAmongMany) {
   write("c.pcd", twoWalls());
   fs::create_directory(folder_ / "sub");
   write("sub/a.pcd", twoWalls());
-  const Outcome outcome = run("a.pcd b.bin c.pcd sub --tolerance 0.3 -o results");
+  fs::create_directory(folder_ / "hollow");
+  const Outcome outcome = run("a.pcd hollow c.pcd sub b.bin --tolerance 0.3 -o results");
   EXPECT_EQ(outcome.status, 2);
   EXPECT_NE(outcome.err.find("b.bin"), std::string::npos);
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_NE(outcome.err.find("hollow: holds no scans"), std::string::npos);
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 2) << outcome.err;
   for (const char* made : {"a", "c", "a-2"}) EXPECT_TRUE(fs::exists(folder_ / "results" / made / "labels.pcd")) << made;
   EXPECT_FALSE(fs::exists(folder_ / "results/b"));
 }
