@@ -47,10 +47,10 @@ struct Parameters {
 /// update() makes the subclusters exact for all columns added so far; more columns may follow it.
 ///
 /// From the smallest unit to the largest: a *run* is a chain of neighbours that one laser returned within one
-/// block of columns and one tile of the mask; a *patch* is a connected group of runs within one tile; a
-/// *subcluster* is a set of patches. A patch stays open to new runs for a while; then it is closed and compared
-/// once with all patches before it that its mask shows (the half mask of the paper). So a pair is compared when
-/// its later patch closes, and the seam needs no care: the mask of the last columns reaches the first.
+/// block of columns; a *subcluster* is a set of runs. Far returns are compared one by one (ViewStrip). Near ones are
+/// compared by patches: a *patch* is a connected group of *pieces* of runs within one tile of the mask. It stays open
+/// to new pieces for a while; then it is closed and compared once with all patches before it that its mask shows
+/// (the half mask of the paper).
 ///
 /// Nothing is allocated once the buffers have grown to the largest rotation seen. Not thread safe; any number
 /// of instances may work side by side.
