@@ -119,9 +119,11 @@ Parameters ScanSurvey::judge(const std::array<float, 3>& sensor, bool organized)
     for (const Pair& pair : along_row_)
       distances.push_back(std::hypot(static_cast<double>(pair.a.x) - static_cast<double>(parameters.view.origin[0]),
                                      static_cast<double>(pair.a.y) - static_cast<double>(parameters.view.origin[1])));
-    const auto few = distances.end() - 1 - static_cast<std::ptrdiff_t>(kFew * static_cast<double>(distances.size()));
-    std::nth_element(distances.begin(), few, distances.end());
-    parameters.view.far_distance = static_cast<float>(*few);
+    if (!distances.empty()) {
+      const auto few = distances.end() - 1 - static_cast<std::ptrdiff_t>(kFew * static_cast<double>(distances.size()));
+      std::nth_element(distances.begin(), few, distances.end());
+      parameters.view.far_distance = static_cast<float>(*few);
+    }
   }
   return parameters;
 }

@@ -102,6 +102,7 @@ void ViewStrip::addLasers(std::size_t lasers) {
   lasers_.resize(lasers, {kInfinity, -kInfinity, kNowhere, 0});
   above_.assign(lasers, 0);
   below_.assign(lasers, 0);
+  elevations_changed_ = true;  // there are more of them
   const std::size_t size = lasers * stride_ + kLanes;
   if (rho_.size() < size) {
     rho_.resize(size, kNan);
