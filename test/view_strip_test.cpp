@@ -417,6 +417,134 @@ TEST(ViewStrip, LasersThatAppearLateAndNear) {
   }
 }
 
+/// Two returns that are only just neighbours, the tolerance that makes them so, and where the strip has them.
+struct CriticalPair {
+  lisco::ViewHints hints;
+  float tolerance = 0;
+  std::array<double, 2> place{}, rho{}, slope{};  ///< places with fractions, as Probe::pointAt() takes them
+};
+
+/// Of any size, at any distance, seen under any angle that a strip may have to do with; one beside, above or behind
+/// the other.
+CriticalPair criticalPair(Random& random) {
+  const std::array<int, 6> steps_choices{512, 513, 1000, 2047, 4096, 16384};
+  CriticalPair pair;
+  const int steps = random.oneOf(steps_choices);
+  const double step = 2.0 * kPi / steps;
+  const double spacing = random.magnitude(2e-5, std::min(0.45, 40.0 * step));
+  pair.hints = hintsFor(steps, static_cast<float>(spacing * spacing / (12.0 * step)), random.chance(0.5));
+  const double near_end = random.chance(0.3) ? random.magnitude(1e-17, 1e11) : random.magnitude(1.0, 100.0);
+  if (random.chance(0.3))
+    for (float& axis : pair.hints.origin) axis = static_cast<float>(near_end * random.between(-0.5, 0.5));
+  const double reach = near_end * spacing;
+
+  // One of them stands ahead; the other is reached from there.
+  const double rho = near_end * (random.chance(0.7) ? random.between(1.0, 1.5) : random.magnitude(1.0, 100.0));
+  const std::array<double, 5> slopes{0.0, 0.0, 0.3, -0.3, 3.0};
+  const double slope = random.oneOf(slopes) * random.unit();
+  const double sine = reach / rho;
+  const double cosine = std::sqrt(1.0 - sine * sine);
+  const double range = rho * std::sqrt(1.0 + slope * slope);
+  std::array<double, 3> way{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};  // ahead, aside, up
+  switch (random.below(5)) {
+    case 0:  // as far aside as can be
+      way = {-sine, random.chance(0.5) ? cosine : -cosine, 0.0};
+      break;
+    case 1: {  // as far above or below as can be
+      const double angle =
+          std::atan(slope) + (random.chance(0.5) ? 1.0 : -1.0) * (0.5 * kPi + std::asin(std::min(1.0, reach / range)));
+      way = {std::cos(angle), 0.0, std::sin(angle)};
+      break;
+    }
+    case 2:
+      way = {random.chance(0.5) ? 1.0 : -1.0, 0.0, 0.0};
+      break;
+    default:
+      break;
+  }
+  const double length = std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+  for (double& axis : way) axis *= reach / length;
+  const double ahead = rho + way[0];
+  const double where = random.between(kFirstPlace + 60.0, kFirstPlace + 120.0);
+  pair.place = {where, where + std::atan2(way[1], ahead) / step};
+  pair.rho = {rho, std::hypot(ahead, way[1])};
+  pair.slope = {slope, (slope * rho + way[2]) / pair.rho[1]};
+  if (random.chance(0.5)) {
+    std::swap(pair.place[0], pair.place[1]);
+    std::swap(pair.rho[0], pair.rho[1]);
+    std::swap(pair.slope[0], pair.slope[1]);
+  }
+  pair.tolerance = static_cast<float>(reach);
+  return pair;
+}
+
+// In the places where they belong or next to them, before and after the seam, late and loose.
+TEST(ViewStrip, CriticalPairs) {
+  Probe probe(kTolerance, kHints);
+  std::size_t pairs = 0;
+  for (std::uint64_t seed = 1; seed < 1 + timesEffort(20000); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    CriticalPair pair = criticalPair(random);
+    const bool seam = random.chance(0.3);
+    if (seam) pair.place[1] += pair.hints.steps_per_turn;
+    const bool late = random.chance(0.3);
+    const bool first_later = !late && random.chance(0.5);
+    if (first_later) std::swap(pair.place[0], pair.place[1]);
+    if (first_later) std::swap(pair.rho[0], pair.rho[1]);
+    if (first_later) std::swap(pair.slope[0], pair.slope[1]);
+
+    // The least tolerance with which they are neighbours.
+    probe.begin(pair.tolerance, pair.hints);
+    const std::array<Point, 2> points{probe.pointAt(pair.place[0], pair.rho[0], pair.slope[0]),
+                                      probe.pointAt(pair.place[1], pair.rho[1], pair.slope[1])};
+    const double apart = std::hypot(static_cast<double>(points[0].x) - static_cast<double>(points[1].x),
+                                    static_cast<double>(points[0].y) - static_cast<double>(points[1].y),
+                                    static_cast<double>(points[0].z) - static_cast<double>(points[1].z));
+    pair.tolerance = static_cast<float>(apart * (1.0 - 3e-7));
+    for (int ulp = 0; ulp < 20 && !areNeighbours(points[0], points[1], pair.tolerance); ++ulp)
+      pair.tolerance = std::nextafter(pair.tolerance, 1e30F);
+    if (!areNeighbours(points[0], points[1], pair.tolerance)) continue;  // they all but coincide
+    const double near_end = nearEnd(static_cast<double>(pair.tolerance), pair.hints);
+    if (std::min(pair.rho[0], pair.rho[1]) < near_end * (1.0 + 1e-6)) continue;
+    probe.begin(pair.tolerance, pair.hints);
+    if (!probe.strip().inUse()) continue;
+
+    // All others are far behind them.
+    const double behind = 1000.0 * near_end;
+    probe.put(0, kFirstPlace, behind, 0.0);
+    probe.put(3, kFirstPlace, behind, 0.0);
+    std::array<std::uint32_t, 2> number{};
+    int loose = 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (i == 1 && late) {
+        for (const std::size_t laser : {0, 1, 3}) probe.put(laser, pair.place[1] + 200.0, behind, 0.0);
+        probe.link();
+      }
+      // Its laser is where the next place is up to three quarters of one off.
+      double place = std::round(pair.place[i]);
+      if (random.chance(0.5)) place += pair.place[i] > place ? 1.0 : -1.0;
+      const auto column = static_cast<std::uint32_t>(place);
+      if (random.chance(0.8)) probe.put(i + 1, place - 1.0, behind, pair.slope[i]);
+      const bool full = random.chance(0.2);
+      if (full) probe.put(i + 1, column, probe.pointAt(pair.place[i], behind, 0.0));
+      number[i] = static_cast<std::uint32_t>(probe.size());
+      loose += probe.put(i + 1, full ? column + 1 : column, points[i]) ? 1 : 0;
+      if (random.chance(0.1)) probe.linkAll();
+    }
+    if (loose == 2) continue;  // these are for others to find
+    ++pairs;
+    if (random.chance(0.5)) probe.put(random.below(4), pair.place[1] + 100.0, behind, 0.0);
+    if (random.chance(0.3)) probe.link();
+    probe.linkAll();
+    ASSERT_TRUE(probe.joined(number[0], number[1]))
+        << pair.hints.steps_per_turn << " steps, tolerance " << pair.tolerance << " at " << pair.rho[0] << " and "
+        << pair.rho[1] << ", places " << pair.place[0] << " and " << pair.place[1] << ", slopes " << pair.slope[0]
+        << " and " << pair.slope[1] << (late ? ", late" : "") << (loose > 0 ? ", loose" : "");
+  }
+  EXPECT_GT(pairs, timesEffort(10000));
+}
+
 /// What a sensor and its surroundings may be like.
 struct Rotation {
   Scan scan{0, 0};
@@ -574,24 +702,28 @@ TEST_P(StripScans, EqualTheOracle) {
 }
 
 TEST(StripScans, NoPatchIsNeededForWhatIsFar) {
-  Random random(5);
-  Scan scan(1024, 16);
-  for (std::size_t laser = 0; laser < 16; ++laser)
-    for (std::size_t column = 0; column < 1024; ++column) {
-      const double azimuth = 2.0 * kPi * static_cast<double>(column) / 1024.0;
-      const double rho = 40.0 + random.unit();
-      scan.set(laser, column,
-               {static_cast<float>(rho * std::cos(azimuth)), static_cast<float>(rho * std::sin(azimuth)),
-                static_cast<float>(rho * (0.1 - 0.02 * static_cast<double>(laser)))});
-    }
   lisco::ColumnClusterer clusterer;
-  Setting setting{"strip", {}};
-  setting.parameters.view = kHints;
-  const Clustering with = cluster(clusterer, scan, kTolerance, setting);
-  EXPECT_EQ(clusterer.comparisons(), 0U);
-  setting.parameters.view.steps_per_turn = 0;
-  EXPECT_EQ(difference(cluster(clusterer, scan, kTolerance, setting), with), "");
-  EXPECT_GT(clusterer.comparisons(), 0U);
+  for (const bool clockwise : {false, true}) {
+    SCOPED_TRACE(clockwise ? "clockwise" : "counter-clockwise");
+    Random random(5);
+    Scan scan(1024, 16);
+    for (std::size_t laser = 0; laser < 16; ++laser)
+      for (std::size_t column = 0; column < 1024; ++column) {
+        const double azimuth = (clockwise ? -2.0 : 2.0) * kPi * static_cast<double>(column) / 1024.0;
+        const double rho = 40.0 + random.unit();
+        scan.set(laser, column,
+                 {static_cast<float>(rho * std::cos(azimuth)), static_cast<float>(rho * std::sin(azimuth)),
+                  static_cast<float>(rho * (0.1 - 0.02 * static_cast<double>(laser)))});
+      }
+    Setting setting{"strip", {}};
+    setting.parameters.view = kHints;
+    setting.parameters.view.clockwise = clockwise;
+    const Clustering with = cluster(clusterer, scan, kTolerance, setting);
+    EXPECT_EQ(clusterer.comparisons(), 0U);
+    setting.parameters.view.steps_per_turn = 0;
+    EXPECT_EQ(difference(cluster(clusterer, scan, kTolerance, setting), with), "");
+    EXPECT_GT(clusterer.comparisons(), 0U);
+  }
 }
 
 /// Pairs whose returns lie on both sides of a distance, or a tolerance from it, by a few ulps.
