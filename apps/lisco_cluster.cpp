@@ -21,7 +21,6 @@
 
 #include "cloud_file.h"
 #include "clustering.h"
-#include "lisco/version.h"
 #include "options.h"
 #include "progress_bar.h"
 #include "result_files.h"
@@ -70,26 +69,10 @@ bool parse(int argc, char** argv, Options& options) {
      "work on N files side by side (default 1; 0: as many as there are processors)")
     ("output,o", po::value<std::string>(&output)->value_name("DIR"),
      "folder for labels.pcd, clusters.csv, range_image.png and top_view.png; of several inputs, each has a folder in it")
-    ("clouds", po::bool_switch(&options.cloud_per_cluster), "also write one cloud per cluster (needs --output)")
-    ("help,h", "print this and exit")
-    ("version", "print the version and exit");
+    ("clouds", po::bool_switch(&options.cloud_per_cluster), "also write one cloud per cluster (needs --output)");
   // clang-format on
-  po::options_description all;
-  all.add(shown).add_options()("input", po::value<std::vector<std::string>>(&options.inputs));
-  po::positional_options_description positional;
-  positional.add("input", -1);
-
   po::variables_map given;
-  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), given);
-  if (given.count("help") != 0) {
-    std::cout << shown;
-    return false;
-  }
-  if (given.count("version") != 0) {
-    std::cout << "lisco_cluster " << LISCO_VERSION << '\n';
-    return false;
-  }
-  po::notify(given);
+  if (!readCommandLine(argc, argv, "lisco_cluster", shown, &options.inputs, given)) return false;
   if (options.inputs.empty()) throw std::runtime_error("no input; see --help");
   if (given.count("tolerance") == 0) throw std::runtime_error("--tolerance is missing; see --help");
   options.tolerance = given["tolerance"].as<double>();

@@ -20,7 +20,6 @@
 #include "compare/comparison.h"
 #include "compare/report.h"
 #include "compare/text.h"
-#include "lisco/version.h"
 #include "options.h"
 #include "output_file.h"
 #include "progress_bar.h"
@@ -42,16 +41,16 @@ struct Options {
 std::vector<Rival> rivalsNamed(const std::string& keys, const char* option) {
   std::vector<std::string> asked = itemsOf(keys);
   std::vector<Rival> chosen;
-  std::string known;
+  std::vector<std::string> known;
   for (Rival& rival : allRivals()) {
-    known += (known.empty() ? "" : ", ") + rival.key;
+    known.push_back(rival.key);
     const auto found = std::find(asked.begin(), asked.end(), rival.key);
     if (found == asked.end()) continue;
     asked.erase(std::remove(asked.begin(), asked.end(), rival.key), asked.end());
     chosen.push_back(std::move(rival));
   }
   if (!asked.empty())
-    throw std::runtime_error(std::string(option) + " knows no '" + asked.front() + "' (but " + known + ")");
+    throw std::runtime_error(std::string(option) + " knows no '" + asked.front() + "' (but " + listOf(known) + ")");
   return chosen;
 }
 
@@ -98,26 +97,10 @@ bool parse(int argc, char** argv, Options& options) {
     ("unorganized", po::bool_switch(&options.settings.unorganized), "cluster the returns as an unorganized cloud")
     ("json", po::value<std::string>(&json)->value_name("FILE"), "write everything, each run's time included")
     ("csv", po::value<std::string>(&csv)->value_name("FILE"), "write a row per input, tolerance and rival")
-    ("plot", po::value<std::string>(&plot)->value_name("DIR"), "draw charts (PNG) into a folder; needs gnuplot")
-    ("help,h", "print this and exit")
-    ("version", "print the version and exit");
+    ("plot", po::value<std::string>(&plot)->value_name("DIR"), "draw charts (PNG) into a folder; needs gnuplot");
   // clang-format on
-  po::options_description all;
-  all.add(shown).add_options()("input", po::value<std::vector<std::string>>(&options.inputs));
-  po::positional_options_description positional;
-  positional.add("input", -1);
-
   po::variables_map given;
-  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), given);
-  if (given.count("help") != 0) {
-    std::cout << shown;
-    return false;
-  }
-  if (given.count("version") != 0) {
-    std::cout << "lisco_compare " << LISCO_VERSION << '\n';
-    return false;
-  }
-  po::notify(given);
+  if (!readCommandLine(argc, argv, "lisco_compare", shown, &options.inputs, given)) return false;
   if (options.inputs.empty()) throw std::runtime_error("no input; see --help");
   if (given.count("tolerance") == 0) throw std::runtime_error("--tolerance is missing; see --help");
   CompareSettings& settings = options.settings;

@@ -41,12 +41,6 @@ struct Options {
   fs::path output;
 };
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
-}
-
 /// \return false if there is nothing to do but to print help or version, which has been done
 bool parse(int argc, char** argv, Options& options) {
   po::options_description shown(
@@ -67,7 +61,7 @@ bool parse(int argc, char** argv, Options& options) {
   std::string noise = "0.02";
   std::string drop_outs = "0.005";
   std::string output;
-  const std::string sensors = listed(sensorNames()) + " (default " + options.sensor + ")";
+  const std::string sensors = listOf(sensorNames()) + " (default " + options.sensor + ")";
   // clang-format off
   shown.add_options()
     ("scene", po::value<std::string>(&scene)->value_name("N"), "1 to 5")
@@ -81,22 +75,10 @@ bool parse(int argc, char** argv, Options& options) {
     ("noise", po::value<std::string>(&noise)->value_name("M"),
      "standard deviation of the ranges in metres (default 0.02)")
     ("drop-outs", po::value<std::string>(&drop_outs)->value_name("P"),
-     "part of the returns that is lost (default 0.005)")
-    ("help,h", "print this and exit")
-    ("version", "print the version and exit");
+     "part of the returns that is lost (default 0.005)");
   // clang-format on
-
   po::variables_map given;
-  po::store(po::command_line_parser(argc, argv).options(shown).positional({}).run(), given);
-  if (given.count("help") != 0) {
-    std::cout << shown;
-    return false;
-  }
-  if (given.count("version") != 0) {
-    std::cout << "lisco_simulate " << LISCO_VERSION << '\n';
-    return false;
-  }
-  po::notify(given);
+  if (!readCommandLine(argc, argv, "lisco_simulate", shown, nullptr, given)) return false;
   if (given.count("scene") == 0) throw std::runtime_error("--scene is missing; see --help");
   if (scene.size() != 1 || scene[0] < '1' || scene[0] > '0' + kScenes)
     throw std::runtime_error("--scene must be 1, 2, 3, 4 or 5, not '" + scene + "'");
@@ -122,7 +104,7 @@ Sensor sensorFor(const Options& options) {
   constexpr std::size_t kMostCells = 20'000'000;  // about a gigabyte of memory
   const std::vector<std::string> names = sensorNames();
   if (std::find(names.begin(), names.end(), options.sensor) == names.end())
-    throw std::runtime_error("there is no sensor '" + options.sensor + "'; known are " + listed(names));
+    throw std::runtime_error("there is no sensor '" + options.sensor + "'; known are " + listOf(names));
   // Checked before so many lasers are made.
   if (std::max<std::size_t>(options.lasers, 1) > kMostCells / std::max<std::size_t>(options.steps, 1))
     throw std::runtime_error("more than " + std::to_string(kMostCells) + " cells: fewer --lasers or --steps");

@@ -3,10 +3,15 @@
 #include "options.h"
 
 #include <cmath>
+#include <iostream>
 #include <limits>
 #include <stdexcept>
 
+#include "lisco/version.h"
+
 namespace lisco_apps {
+
+namespace po = boost::program_options;
 
 unsigned countOf(const std::string& text, const char* option, int least) {
   std::size_t end = 0;
@@ -41,6 +46,35 @@ std::vector<std::string> itemsOf(const std::string& text) {
     else
       items.back() += c;
   return items;
+}
+
+std::string listOf(const std::vector<std::string>& items) {
+  std::string list;
+  for (const std::string& item : items) list += (list.empty() ? "" : ", ") + item;
+  return list;
+}
+
+bool readCommandLine(int argc, char** argv, const char* program, po::options_description& shown,
+                     std::vector<std::string>* inputs, po::variables_map& given) {
+  shown.add_options()("help,h", "print this and exit")("version", "print the version and exit");
+  po::options_description all;
+  all.add(shown);
+  po::positional_options_description positional;
+  if (inputs != nullptr) {
+    all.add_options()("input", po::value<std::vector<std::string>>(inputs));
+    positional.add("input", -1);
+  }
+  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), given);
+  if (given.count("help") != 0) {
+    std::cout << shown;
+    return false;
+  }
+  if (given.count("version") != 0) {
+    std::cout << program << ' ' << LISCO_VERSION << '\n';
+    return false;
+  }
+  po::notify(given);
+  return true;
 }
 
 GroundHeights::GroundHeights(const std::vector<std::string>& items) {

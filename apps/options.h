@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <boost/program_options.hpp>
+
 namespace lisco_apps {
 
 /// Reads a whole number from `least` to 2147483647; boost would also accept "-1" (as a huge one).
@@ -20,6 +22,16 @@ double numberOf(const std::string& text, const char* option);
 
 /// Splits "a,b,c" at its commas.
 std::vector<std::string> itemsOf(const std::string& text);
+/// "a, b, c", for people.
+std::string listOf(const std::vector<std::string>& items);
+
+/// Reads a command line, and does what --help and --version ask for, which every program has.
+/// \param shown the options that --help shows, --help and --version excepted
+/// \param inputs receives what is no option; nullptr: there must be nothing else
+/// \return false if there is nothing left to do
+/// \throws boost::program_options::error
+bool readCommandLine(int argc, char** argv, const char* program, boost::program_options::options_description& shown,
+                     std::vector<std::string>* inputs, boost::program_options::variables_map& given);
 
 /// Heights below which the ground lies: of all inputs, or of each by its name.
 class GroundHeights {

@@ -6,14 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <pcl/search/kdtree.h>
-#include <boost/program_options.hpp>
 
 #include "cloud_file.h"
 #include "compare/comparison.h"
@@ -124,21 +122,15 @@ int run(const std::vector<std::string>& inputs, const GroundHeights& ground, con
 int main(int argc, char** argv) {
   namespace po = boost::program_options;
   return lisco_apps::runProgram("literal_mask", [&] {
-    po::options_description options("literal_mask SCAN-OR-FOLDER... [options]");
+    po::options_description options("Usage: literal_mask SCAN-OR-FOLDER... [options]");
     std::vector<std::string> inputs, ground;
     std::string tolerances;
-    options.add_options()("help", "print this")("input", po::value(&inputs), "scans or folders")(
-        "ground-z", po::value(&ground), "M, or NAME=M for the scan of this name: leave out what is lower, metres")(
+    options.add_options()("ground-z", po::value(&ground),
+                          "M, or NAME=M for the scan of this name: leave out what is lower, metres")(
         "tolerance", po::value(&tolerances)->default_value("0.1,0.3,0.4,0.7,1"), "metres");
-    po::positional_options_description positional;
-    positional.add("input", -1);
     po::variables_map given;
-    po::store(po::command_line_parser(argc, argv).options(options).positional(positional).run(), given);
-    po::notify(given);
-    if (given.count("help") != 0 || inputs.empty()) {
-      std::cout << options;
-      return given.count("help") != 0 ? 0 : 2;
-    }
+    if (!readCommandLine(argc, argv, "literal_mask", options, &inputs, given)) return 0;
+    if (inputs.empty()) throw std::runtime_error("no input; see --help");
     std::vector<double> values;
     for (const std::string& item : itemsOf(tolerances)) values.push_back(numberOf(item, "--tolerance"));
     return run(inputs, GroundHeights(ground), values);
