@@ -505,7 +505,7 @@ TEST(ViewStrip, CriticalPairs) {
     for (int ulp = 0; ulp < 20 && !areNeighbours(points[0], points[1], pair.tolerance); ++ulp)
       pair.tolerance = std::nextafter(pair.tolerance, 1e30F);
     if (!areNeighbours(points[0], points[1], pair.tolerance)) continue;  // they all but coincide
-    const double near_end = nearEnd(static_cast<double>(pair.tolerance), pair.hints);
+    const double near_end = nearEnd(lisco::Tolerance(pair.tolerance).reach(), pair.hints);
     if (std::min(pair.rho[0], pair.rho[1]) < near_end * (1.0 + 1e-6)) continue;
     probe.begin(pair.tolerance, pair.hints);
     if (!probe.strip().inUse()) continue;
