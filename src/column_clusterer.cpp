@@ -86,8 +86,8 @@ void ColumnClusterer::clusterBlock() {
   staged_columns_ = 0;
 }
 
-/// Chains the returns of one laser into runs: each a neighbour of the one before. Far ones go to their places in the strip,
-/// all others, and some far ones that others must find, into patches.
+/// Chains the returns of one laser into runs: each a neighbour of the one before. Far ones go to their places in the
+/// strip, all others, and some far ones that others must find, into patches.
 template <typename Mask>
 void ColumnClusterer::readRow(const Mask& mask, const StagedRow& row, std::size_t laser) {
   const auto first_return = static_cast<std::uint32_t>(returnCount());

@@ -15,8 +15,11 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 // A return stands at most this many places from where its azimuth is; half a place is the least possible.
 constexpr float kDeviation = 0.75F;
-constexpr float kAngleRounding = 1e-4F;    // radians, on elevations; far more than their rounding
-constexpr float kFarEnd = 1e15F;           // what is further away is not far but elsewhere: its squares may overflow
+constexpr float kAngleRounding = 1e-4F;  // radians, on elevations; far more than their rounding
+constexpr float kFarEnd = 1e15F;         // what is further away is not far but elsewhere: its squares may overflow
+// With more loose returns than this, no more are placed: each loose one is searched for again whenever somebody asks.
+constexpr std::size_t kFewLoose = 64;
+constexpr std::size_t kPlacedPerLoose = 32;
 constexpr std::size_t kFewestSteps = 512;  // so that all places are less than two turns, and the seam is one
 constexpr std::size_t kMostSteps = 16384;
 
@@ -57,6 +60,8 @@ void ViewStrip::prepare(const Tolerance& tolerance, const ViewHints& hints) {
   started_ = false;
   linked_ = 0;
   end_ = 0;
+  placed_ = 0;
+  full_ = false;
   loose_.clear();
   late_.clear();
   const auto steps = static_cast<std::size_t>(hints.steps_per_turn);
@@ -132,6 +137,12 @@ std::uint64_t ViewStrip::place(const Row& row, const float* rho) {
   const float deviation = std::sin(kDeviation * radians_per_place_);
   for (std::size_t i = 0; i < row.count; ++i) {
     if (!isFar(rho[i])) continue;
+    const Loose one{row.x[i], row.y[i], row.z[i], row.element[i]};
+    if (full_) {
+      loose |= std::uint64_t{1} << i;
+      loose_.push_back(one);
+      continue;
+    }
     const float x = row.x[i] - origin_[0];
     const float y = row.y[i] - origin_[1];
     if (!started_) {
@@ -166,11 +177,11 @@ std::uint64_t ViewStrip::place(const Row& row, const float* rho) {
       laser.highest = std::max(laser.highest, slope + kWidening * (1 + std::fabs(slope)));
       elevations_changed_ = true;
     }
-    const Loose one{row.x[i], row.y[i], row.z[i], row.element[i]};
     if (place < 0 || place >= places ||
         rho_[at(row.laser, static_cast<std::size_t>(place))] == rho_[at(row.laser, static_cast<std::size_t>(place))]) {
       loose |= std::uint64_t{1} << i;
       loose_.push_back(one);
+      full_ = loose_.size() > kFewLoose + placed_ / kPlacedPerLoose;
       continue;
     }
     const auto here = static_cast<std::size_t>(place);
@@ -180,6 +191,7 @@ std::uint64_t ViewStrip::place(const Row& row, const float* rho) {
     y_[cell] = row.y[i];
     z_[cell] = row.z[i];
     element_[cell] = row.element[i];
+    ++placed_;
     end_ = std::max(end_, here + 1);
     if (here < linked_) late_.push_back(one);
   }
@@ -246,6 +258,7 @@ void ViewStrip::linkAll(Merge merge, void* context) {
   for (const Loose& late : late_) search(late, merge, context);
   late_.clear();
   for (const Loose& loose : loose_) search(loose, merge, context);
+  if (full_) loose_.clear();  // nothing comes after them
 }
 
 void ViewStrip::linkPlaces(std::size_t begin, std::size_t end, Merge merge, void* context) {
@@ -254,8 +267,8 @@ void ViewStrip::linkPlaces(std::size_t begin, std::size_t end, Merge merge, void
       if (lasers_[laser].next_place != kNowhere) linkGroup(laser, place, merge, context);
 }
 
-/// Compares sixteen neighbouring places of a laser with the places before them, of lasers above and below too, and with the
-/// same places of the lasers below. Near the end of the turn also with the places around its beginning.
+/// Compares sixteen neighbouring places of a laser with the places before them, of lasers above and below too, and with
+/// the same places of the lasers below. Near the end of the turn also with the places around its beginning.
 void ViewStrip::linkGroup(std::size_t laser, std::size_t place, Merge merge, void* context) {
   const std::size_t own = at(laser, place);
   Floats rho[kRegisters];

@@ -401,13 +401,30 @@ TEST(ViewStrip, NothingOfTheLastRotationIsLeft) {
   }
 }
 
+// What comes after too many loose returns is loose too, wherever it is, and is still compared with all that was placed.
+TEST(ViewStrip, TooManyLooseReturnsEndThePlacing) {
+  Probe probe(kTolerance, kHints);
+  EXPECT_FALSE(probe.put(0, kFirstPlace, 60.0, 0.0));
+  EXPECT_FALSE(probe.put(0, kFirstPlace + 20, 60.0, 0.0));
+  while (!probe.put(0, kFirstPlace + 40, 60.0, 0.0))
+    ;
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(probe.put(0, kFirstPlace + 40, 60.0, 0.0));
+  for (int time = 0; time < 3; ++time) {
+    EXPECT_TRUE(probe.put(0, kFirstPlace + 20.4, 60.0, 0.0));  // its place is free
+    const auto element = static_cast<std::uint32_t>(probe.size() - 1);
+    probe.linkAll();
+    EXPECT_TRUE(probe.joined(1, element));
+    EXPECT_FALSE(probe.joined(0, element));
+  }
+}
+
 // A laser whose returns are all near is known, but not where it is.
 TEST(ViewStrip, LasersThatAppearLateAndNear) {
   Probe probe(kTolerance, kHints);
   EXPECT_FALSE(probe.put(0, kFirstPlace, 60.0, 0.0));
   EXPECT_FALSE(probe.put(0, kFirstPlace + 1, 60.0, 0.0));
   probe.link();
-  for (std::size_t laser = 1; laser < 200; ++laser) {
+  for (std::size_t laser = 1; laser < 60; ++laser) {  // few enough loose ones
     EXPECT_FALSE(probe.put(laser, kFirstPlace + 2, 1.0, 0.0));
     EXPECT_FALSE(probe.put(0, kFirstPlace + 1.0 + static_cast<double>(laser), 60.0, 0.0));
     EXPECT_TRUE(probe.put(0, kFirstPlace, 60.0, 0.0));

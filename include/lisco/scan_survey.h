@@ -68,6 +68,9 @@ Parameters surveyScan(std::size_t columns, std::size_t lasers, const std::array<
   }
   Parameters parameters = survey.judge(sensor, lasers > 1);
   parameters.expected_returns = columns * lasers;
+  constexpr std::size_t kLeastShare = 4;  // of a turn; a strip for all of it would be mostly empty
+  if (static_cast<std::size_t>(parameters.view.steps_per_turn) > kLeastShare * columns)
+    parameters.view.steps_per_turn = 0;
   return parameters;
 }
 

@@ -13,14 +13,16 @@
 
 namespace lisco {
 
-/// Far returns, each in a place of its own: the sensor's view unrolled, a row per laser and a place per step of the turn.
+/// Far returns, each in a place of its own: the sensor's view unrolled, a row per laser and a place per step of the
+/// turn.
 ///
 /// Where the tolerance is seen under few steps and lasers, the paper's mask is a few places, and what lies there is
 /// compared place by place, sixteen neighbouring places of a laser at a time. The mask is measured: a return stands at
 /// the place of its *azimuth*, whatever its column, and lasers are reached by the elevations *measured* on them.
 ///
-/// A return is far if its horizontal distance is at least a certain multiple of the tolerance. Neighbours that are both far are found here, but
-/// for those with a loose one: a far return that found its place taken. Loose returns must be kept elsewhere as well.
+/// A return is far if its horizontal distance is at least a certain multiple of the tolerance. Neighbours that are both
+/// far are found here, but for those with a loose one: a far return that found its place taken. Loose returns must be
+/// kept elsewhere as well.
 class ViewStrip {
  public:
   static constexpr std::size_t kMostInRow = 64;  ///< returns per call of place ()
@@ -106,6 +108,8 @@ class ViewStrip {
   std::vector<int> above_, below_;                   ///< lasers reached by the last group
   std::size_t linked_ = 0;                           ///< places before this are compared
   std::size_t end_ = 0;                              ///< after the last place taken
+  std::size_t placed_ = 0;
+  bool full_ = false;  ///< too many were loose: all that follow are, too
   std::vector<Loose> loose_;
   std::vector<Loose> late_;  ///< placed where all had been compared
 };
