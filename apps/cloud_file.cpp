@@ -86,8 +86,8 @@ std::vector<std::uint32_t> labelsIn(const pcl::PCLPointCloud2& blob) {
   return labels;
 }
 
-/// Looks at a PCD file's header before PCL does: PCL 1.13's reader crashes without one, and asks for all the memory that
-/// a wrong one promises.
+/// Looks at a PCD file's header before PCL does: PCL 1.13's reader crashes without one, and asks for all the memory
+/// that a wrong one promises.
 void checkPcdHeader(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   constexpr int kMostLines = 1000;

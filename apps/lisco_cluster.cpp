@@ -121,7 +121,8 @@ struct Job {
   fs::path file, folder;
 };
 
-/// One job per input file; all_well tells whether there are files in all folders. Of several, each has a folder of its own, numbered where file names repeat.
+/// One job per input file; all_well tells whether there are files in all folders. Of several, each has a folder of its
+/// own, numbered where file names repeat.
 std::vector<Job> jobsOf(const Options& options, bool& all_well) {
   std::vector<std::string> failures;
   const std::vector<fs::path> files = expandInputs(options.inputs, failures);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// How many neighbours the paper's mask (Algorithm 2, taken literally) misses on real scans, why, and how many points bear
-// another label for it. Prints a row per scan and tolerance.
+// How many neighbours the paper's mask (Algorithm 2, taken literally) misses on real scans, why, and how many points
+// bear another label for it. Prints a row per scan and tolerance.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -54,7 +54,8 @@ Pairs pairsOf(const ComparedScan& scan, double tolerance, const lisco_reference:
       const auto q = static_cast<std::size_t>(other);
       const std::size_t p_step = p % steps;
       const std::size_t q_step = q % steps;
-      // Each pair once, by its later point. Within one step both look for each other: by the nearer one, which sees further.
+      // Each pair once, by its later point. Within one step both look for each other: by the nearer one, which sees
+      // further.
       if (q_step > p_step || (q_step == p_step && (farther(p, q) || p == q))) continue;
       ++pairs.all;
       const std::size_t apart = std::min(p_step - q_step, steps - (p_step - q_step));

@@ -100,6 +100,31 @@ Parameters ScanSurvey::judge(const std::array<float, 3>& sensor, bool organized)
   const bool fine = azimuth_step * ViewMask::kColumnsPerTile < kPi / ViewMask::kMostSectors ||
                     elevation_step * ViewMask::kLasersPerTile < 0.5 * kPi / ViewMask::kMostRows;
   if (!coarse && !fine) parameters.mask = Parameters::Mask::kView;
+
+  // Over many columns, steps are measured more finely, and so is the direction of the turn.
+  std::vector<double> turns;
+  for (const FurtherPair& pair : further_)
+    turns.push_back(std::remainder(directionOf(pair.b, parameters.view.origin).azimuth -
+                                       directionOf(pair.a, parameters.view.origin).azimuth,
+                                   2.0 * kPi) /
+                    static_cast<double>(pair.columns));
+  if (turns.size() >= kFewest) {
+    const auto step = static_cast<double>(median(turns, 0.0F));
+    constexpr double kLeastStep = 1e-4;
+    if (std::fabs(step) > kLeastStep)
+      parameters.view.steps_per_turn = static_cast<int>(std::lround(2.0 * kPi / std::fabs(step)));
+    parameters.view.clockwise = step < 0;
+    constexpr double kFew = 0.2;
+    std::vector<double> distances;
+    for (const Pair& pair : along_row_)
+      distances.push_back(std::hypot(static_cast<double>(pair.a.x) - static_cast<double>(parameters.view.origin[0]),
+                                     static_cast<double>(pair.a.y) - static_cast<double>(parameters.view.origin[1])));
+    if (!distances.empty()) {
+      const auto few = distances.end() - 1 - static_cast<std::ptrdiff_t>(kFew * static_cast<double>(distances.size()));
+      std::nth_element(distances.begin(), few, distances.end());
+      parameters.view.far_distance = static_cast<float>(*few);
+    }
+  }
   return parameters;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// What lisco_compare says of rivals: that it notices every way of being wrong and names the points that prove it, that it
-// times fairly, and that its files hold what it has found.
+// What lisco_compare says of rivals: that it notices every way of being wrong and names the points that prove it, that
+// it times fairly, and that its files hold what it has found.
 #include <gtest/gtest.h>
 
 #include <algorithm>

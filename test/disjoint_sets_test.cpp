@@ -27,8 +27,7 @@ TEST(DisjointSets, TheLargerSetKeepsItsHead) {
   sets.create(1);
   sets.create(2);
   EXPECT_EQ(sets.merge(0, 1), 1U);
-  sets.create(2);
-  sets.grow(2, 2);
+  sets.create(4);
   EXPECT_EQ(sets.merge(1, 2), 2U);
   for (std::uint32_t element = 0; element < 3; ++element) EXPECT_EQ(sets.head(element), 2U);
   EXPECT_EQ(sets.weight(2), 7U);

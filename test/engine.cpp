@@ -39,6 +39,20 @@ const std::vector<Setting>& allSettings() {
     lisco::ViewHints& coarsest = add("coarsest tiles", Mask::kView, 16, 16)->view;
     coarsest.azimuth_step = 10.0F;
     coarsest.elevation_step = 10.0F;
+    const auto strip = [&add](const std::string& name, int steps, float elevation_step, bool clockwise,
+                              std::size_t block) {
+      lisco::ViewHints& view = add(name, Mask::kView, block, 16)->view;
+      view.steps_per_turn = steps;
+      view.elevation_step = elevation_step;
+      view.clockwise = clockwise;
+    };
+    strip("strip of few places", 512, 0.5F, false, 64);
+    strip("strip of few places, clockwise", 600, 0.1F, true, 16);
+    strip("strip column by column", 512, 0.3F, false, 1);
+    strip("strip of many places", 2000, 0.02F, true, 64);
+    strip("strip of very many places", 16384, 0.01F, false, 5);
+    strip("strip, sensor elsewhere", 360, 0.05F, false, 64);
+    all.back().parameters.view.origin = {-3.0F, 2.0F, -1.0F};
     add("sensor elsewhere", Mask::kView, 16, 16)->view.origin = {3.0F, -20.0F, 1.5F};
     add("few slots", Mask::kGrid, 16, 16)->expected_returns = 0;
     return all;

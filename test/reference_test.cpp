@@ -58,8 +58,8 @@ std::vector<lisco::Return> returnsOf(const std::vector<Point>& points) {
 
 // --- The voxel grid ------------------------------------------------------------------------------------------------
 
-/// Whether the grid is free to refuse a scan: its cells cannot be numbered, or its tolerance squared is at the end of the
-/// floats.
+/// Whether the grid is free to refuse a scan: its cells cannot be numbered, or its tolerance squared is at the end of
+/// the floats.
 bool mayRefuse(const std::vector<Point>& points, float tolerance) {
   const double eps = std::fabs(static_cast<double>(tolerance));
   if (!(eps > 1e-18 && eps < 1e18)) return true;
@@ -322,8 +322,8 @@ std::size_t apart(std::size_t a, std::size_t b) {
 }
 
 /// What the paper's method compares, by its definitions and nothing else: when p arrives, or at once with others of its
-/// column, it is compared with what its mask holds of the steps before, and, around the end of the rotation, of the first
-/// ones.
+/// column, it is compared with what its mask holds of the steps before, and, around the end of the rotation, of the
+/// first ones.
 class LiteralMask {
  public:
   LiteralMask(std::size_t lasers, std::size_t steps, const NominalSensor& sensor, float tolerance)

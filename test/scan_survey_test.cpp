@@ -79,6 +79,20 @@ TEST(ScanSurvey, ASensorThatIsNoNumberIsNotUsed) {
     EXPECT_EQ(survey(rotation({10000.0F, 0.0F, 0.0F}), sensor).mask, Mask::kGrid);
 }
 
+// As a sensor leaves them that measures at every other step: no return has another right beside it.
+TEST(ScanSurvey, EveryOtherColumnIsEmpty) {
+  const Scan full = rotation();
+  Scan scan(1024, kLasers);  // all columns that are looked at are even ones
+  for (std::size_t laser = 0; laser < kLasers; ++laser)
+    for (std::size_t column = 0; column < kColumns; column += 2) {
+      const lisco::Return& cell = full.at(laser, column);
+      scan.set(laser, column, {cell.x, cell.y, cell.z});
+    }
+  const lisco::Parameters parameters = survey(scan);
+  EXPECT_EQ(parameters.view.origin, kHere);
+  EXPECT_GT(parameters.view.far_distance, 0.0F);
+}
+
 TEST(ScanSurvey, NothingToLookAt) {
   EXPECT_EQ(survey(Scan(0, 4)).mask, Mask::kGrid);
   EXPECT_EQ(survey(Scan(1, 1)).mask, Mask::kGrid);

@@ -26,7 +26,8 @@ struct Chart {
 /// Looks whether gnuplot, which draws the charts, is there. \throws std::runtime_error with one line if not
 void checkCharts();
 
-/// Draws a chart as a PNG; one without lines is not drawn. \throws std::runtime_error with one line that says what went wrong
+/// Draws a chart as a PNG; one without lines is not drawn. \throws std::runtime_error with one line that says what went
+/// wrong
 void drawChart(const Chart& chart, const std::filesystem::path& png);
 
 }  // namespace lisco_apps

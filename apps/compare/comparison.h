@@ -72,8 +72,8 @@ struct ComparedScan {
 /// \throws std::runtime_error if there are no returns
 ComparedScan prepareScan(const Cloud& cloud, std::vector<std::uint32_t> object_of, float ground_z, bool unorganized);
 
-/// Runs all rivals on one scan at one tolerance: first compares their clusters with those of PCL with KdTree (false), then
-/// times them in turn, but for those that must agree and do not.
+/// Runs all rivals on one scan at one tolerance: first compares their clusters with those of PCL with KdTree (false),
+/// then times them in turn, but for those that must agree and do not.
 /// \param progress called with what is being done and the share of it that is done
 CaseResult compareAt(const ComparedScan& scan, double tolerance, const CompareSettings& settings,
                      const std::function<void(const std::string& what, double share)>& progress);

@@ -25,7 +25,8 @@ struct Difference {
 /// Clusters of the two are paired one to one, those that share most points first, and noise with noise; a point is
 /// mislabelled if its clusters are not paired. The details name the first such point with its coordinates, its
 /// neighbours within the tolerance, and the pair that decides: neighbours that the rival keeps apart, or the nearest
-/// two points that it joins although they are not connected. For these both are run once more with clusters of any size.
+/// two points that it joins although they are not connected. For these both are run once more with clusters of any
+/// size.
 Difference differenceOf(const Problem& problem, const Rival& reference, const Clusters& expected, const Rival& rival,
                         const Clusters& found);
 

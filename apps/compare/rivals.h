@@ -48,8 +48,9 @@ Rival referenceRival();
 /// All of them, the reference first, each with memory of its own.
 std::vector<Rival> allRivals();
 
-/// The smallest angles of the paper's Algorithm 2, as a data sheet would give them: a turn divided by the steps, and the
-/// smallest difference of the elevations of two rows that follow each other, a row's being the median of its returns'.
+/// The smallest angles of the paper's Algorithm 2, as a data sheet would give them: a turn divided by the steps, and
+/// the smallest difference of the elevations of two rows that follow each other, a row's being the median of its
+/// returns'.
 lisco_reference::NominalSensor nominalSensor(const RivalCloud& cloud);
 
 }  // namespace lisco_apps

@@ -29,8 +29,8 @@ struct NeighborMask {
 ///         defined
 NeighborMask getNeighborMask(double distance, double eps, const NominalSensor& sensor);
 
-/// The paper's Lisco as it is printed: Algorithms 2 to 4 and section V's data structures. A reference implementation, to
-/// show what the paper's own method costs and where its mask misses neighbours; it is not part of the library.
+/// The paper's Lisco as it is printed: Algorithms 2 to 4 and section V's data structures. A reference implementation,
+/// to show what the paper's own method costs and where its mask misses neighbours; it is not part of the library.
 /// (Algorithm 1 is PCL's EuclideanClusterExtraction, which is at hand.)
 ///
 /// What the paper leaves open, or what cannot be meant as printed:

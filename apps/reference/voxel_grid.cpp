@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::uint64_t kReach = 2;  // cells per axis between two neighbours, at most
 
-// A cell's number along an axis is computed in double. Up to so many bits its error is below a 20,000th of a cell, which
-// the factor 0.9999 of the cell's side makes up for.
+// A cell's number along an axis is computed in double. Up to so many bits its error is below a 20,000th of a cell,
+// which the factor 0.9999 of the cell's side makes up for.
 constexpr int kMostBitsPerAxis = 37;
 // Between these, squares in float neither vanish nor overflow, and the points of a cell are neighbours.
 constexpr double kLeastTolerance = 1e-18;

@@ -28,7 +28,8 @@ class VoxelGrid {
   /// \param returns all valid (lisco::isReturn)
   /// \return a number per return, the same for two of them if and only if they are in one component; valid until the
   ///         next call
-  /// \throws std::runtime_error if the scan has more than 2^37 cells along an axis, or more than 64 bits can number, or if
+  /// \throws std::runtime_error if the scan has more than 2^37 cells along an axis, or more than 64 bits can number, or
+  /// if
   ///         the tolerance is not 0 and below 1e-18 m or above 1e18 m
   const std::vector<std::uint32_t>& cluster(const std::vector<lisco::Return>& returns, float tolerance);
 

@@ -14,8 +14,8 @@
 namespace lisco_simulation {
 namespace {
 
-/// A thing and where in its group it stands. Braces around all of it draw its random numbers from left to right, which a
-/// function's arguments would leave to the compiler.
+/// A thing and where in its group it stands. Braces around all of it draw its random numbers from left to right, which
+/// a function's arguments would leave to the compiler.
 struct Placed {
   Thing thing;
   double away;     ///< from the sensor, counted from where the group begins, metres

@@ -33,7 +33,8 @@ std::vector<std::string> sensorNames();
 /// A sensor as its maker describes it:
 /// - hdl64e: Velodyne HDL-64E, 64 lasers x 1125 steps (the paper's): 32 upper lasers 1/3 degree apart from +2 degrees
 ///   down, 32 lower ones 1/2 degree apart to -24.33. Its columns are straight, as in the paper.
-/// - hdl32e: Velodyne HDL-32E, 32 x 2170, +10.67 to -30.67 degrees. The lasers of a column fire one after the other, one
+/// - hdl32e: Velodyne HDL-32E, 32 x 2170, +10.67 to -30.67 degrees. The lasers of a column fire one after the other,
+/// one
 ///   of the lower and one of the upper half in turn, while the sensor turns on.
 /// - vlp16: Velodyne VLP-16, 16 x 1808, +-15 degrees, firing likewise.
 /// - vls128: Velodyne VLS-128, 128 x 1808, +15 to -25 degrees, 0.11 degrees apart around the horizon and ever further

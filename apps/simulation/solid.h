@@ -29,10 +29,10 @@ struct Rectangle {
 /// or an endless cylinder, scaled and turned as one likes; or none) and behind any number of planes. The interval of a
 /// ray is the intersection of its intervals behind each of them.
 ///
-/// Analytic shapes rather than triangles and a ray-casting library: balls and cylinders stay round from near and far, no
-/// dependency is added, and a tree of triangles would have little to win. A scene has 200 to 500 solids, of which a ray
-/// is held against few; `lisco_simulate --scene 3 -o scan.pcd` casts ten scans or so of 72,000 rays to fit its scene, and
-/// takes 0.12 to 0.2 s for all of it on one core, less than 20 ms a scan.
+/// Analytic shapes rather than triangles and a ray-casting library: balls and cylinders stay round from near and far,
+/// no dependency is added, and a tree of triangles would have little to win. A scene has 200 to 500 solids, of which a
+/// ray is held against few; `lisco_simulate --scene 3 -o scan.pcd` casts ten scans or so of 72,000 rays to fit its
+/// scene, and takes 0.12 to 0.2 s for all of it on one core, less than 20 ms a scan.
 class Solid {
  public:
   /// Between two horizontal rectangles, the bottom and the top, which may differ: car bodies and roofs slant.

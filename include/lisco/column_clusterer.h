@@ -15,6 +15,7 @@
 #include "lisco/shelf.h"
 #include "lisco/tolerance.h"
 #include "lisco/view_mask.h"
+#include "lisco/view_strip.h"
 
 namespace lisco {
 
@@ -46,10 +47,10 @@ struct Parameters {
 /// update() makes the subclusters exact for all columns added so far; more columns may follow it.
 ///
 /// From the smallest unit to the largest: a *run* is a chain of neighbours that one laser returned within one
-/// block of columns and one tile of the mask; a *patch* is a connected group of runs within one tile; a
-/// *subcluster* is a set of patches. A patch stays open to new runs for a while; then it is closed and compared
-/// once with all patches before it that its mask shows (the half mask of the paper). So a pair is compared when
-/// its later patch closes, and the seam needs no care: the mask of the last columns reaches the first.
+/// block of columns; a *subcluster* is a set of runs. Far returns are compared one by one (ViewStrip). Near ones are
+/// compared by patches: a *patch* is a connected group of *pieces* of runs within one tile of the mask. It stays open
+/// to new pieces for a while; then it is closed and compared once with all patches before it that its mask shows
+/// (the half mask of the paper).
 ///
 /// Nothing is allocated once the buffers have grown to the largest rotation seen. Not thread safe; any number
 /// of instances may work side by side.
@@ -98,17 +99,23 @@ class ColumnClusterer {
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
   struct Run {
-    Box box;
     std::uint32_t first_return;  ///< its returns follow each other
     std::uint32_t count;
+  };
+  /// A run's part in one tile.
+  struct Piece {
+    Box box;
+    std::uint32_t first_return;
+    std::uint32_t count;
     std::uint32_t next_in_patch;
-    std::uint32_t patch;
+    std::uint32_t run;
   };
   struct Patch {
     Box box;
     std::uint32_t next_in_tile;  ///< an older patch
     std::uint32_t tile;
-    std::uint32_t first_run, last_run;
+    std::uint32_t first_piece, last_piece;
+    std::uint32_t run;  ///< one of its runs
   };
   /// What a tile of the mask holds. Numbers are kept with the rotation's stamp added, so that what earlier
   /// rotations left behind is recognized by being smaller and the tiles need no emptying.
@@ -120,21 +127,26 @@ class ColumnClusterer {
   struct StagedRow {
     float x[kMostBlockColumns], y[kMostBlockColumns], z[kMostBlockColumns];
     std::uint32_t source_index[kMostBlockColumns];
+    std::uint32_t column[kMostBlockColumns];  ///< counted from the first of the rotation
     std::size_t count = 0;
   };
 
   std::uint32_t unstamped(std::uint32_t number) const { return number >= stamp_ ? number - stamp_ : kNone; }
   void clusterBlock();
   template <typename Mask>
-  void readRow(const Mask& mask, const StagedRow& row);
-  void placeRun(std::uint32_t run, std::uint32_t tile);
+  void readRow(const Mask& mask, const StagedRow& row, std::size_t laser);
+  template <typename Mask>
+  void cutIntoPieces(const Mask& mask, const StagedRow& row, std::uint32_t first_return, const std::uint32_t* run,
+                     std::uint64_t wanted);
+  void placePiece(std::uint32_t piece, std::uint32_t tile);
   template <typename Mask>
   void closePatches(const Mask& mask, std::uint32_t end);
   template <typename Mask>
   void cluster(const Mask& mask, std::uint32_t patch);
   void shelve(std::uint32_t patch);
   bool neighbours(const Patch& a, const Patch& b) const;
-  bool neighbours(const Run& a, const Run& b) const;
+  bool neighbours(const Piece& a, const Piece& b) const;
+  static std::uint32_t mergeRuns(void* clusterer, std::uint32_t a, std::uint32_t b);
 
   Parameters parameters_;
   Tolerance tolerance_;
@@ -142,12 +154,15 @@ class ColumnClusterer {
 
   std::vector<StagedRow> staged_;
   std::size_t staged_columns_ = 0;
+  std::uint32_t column_ = 0;  ///< number of columns added
 
   std::vector<float> x_, y_, z_;  ///< all returns, run by run
   std::vector<std::uint32_t> source_index_;
   std::vector<Run> runs_;
+  DisjointSets subclusters_;   ///< of runs
+  ViewStrip strip_;            ///< far returns
+  std::vector<Piece> pieces_;  ///< of all others
   std::vector<Patch> patches_;
-  DisjointSets subclusters_;  ///< of patches
   std::vector<Tile> tiles_;
   std::uint32_t stamp_ = 0;
   std::vector<Shelf> shelves_;
@@ -171,11 +186,13 @@ void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt
         row.y[n] = cell.y;
         row.z[n] = cell.z;
         row.source_index[n] = cell.source_index;
+        row.column[n] = column_ + static_cast<std::uint32_t>(column - first);
         n += isReturn(cell.x, cell.y, cell.z) ? 1 : 0;
       }
       row.count = n;
     }
     first += count;
+    column_ += static_cast<std::uint32_t>(count);
     staged_columns_ += count;
     if (staged_columns_ == parameters_.block_columns) clusterBlock();
   }
@@ -183,8 +200,9 @@ void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt
 
 template <typename Visit>
 void ColumnClusterer::forEachRun(Visit&& visit) {
-  for (const Run& run : runs_)
-    visit(source_index_.data() + run.first_return, static_cast<std::size_t>(run.count), subclusters_.head(run.patch));
+  for (std::size_t run = 0; run < runs_.size(); ++run)
+    visit(source_index_.data() + runs_[run].first_return, static_cast<std::size_t>(runs_[run].count),
+          subclusters_.head(static_cast<std::uint32_t>(run)));
 }
 
 }  // namespace lisco

@@ -9,7 +9,7 @@
 
 namespace lisco {
 
-/// The paper's subclusters and their heads (section IV, createH / setH / getH / merge) as a disjoint-set
+/// The paper's subclusters and their heads (section IV, createH / getH / merge) as a disjoint-set
 /// forest (Galler and Fischer 1964, Tarjan 1975): the larger set keeps its head, as in the paper, and paths
 /// are halved, so that n operations take O(n alpha(n)) instead of the paper's O(n log n). Invariant: a head
 /// is its own parent, and weight(head) is the number of returns in its set.
@@ -19,11 +19,8 @@ class DisjointSets {
   void reserve(std::size_t n) { nodes_.reserve(n); }
   std::size_t size() const { return nodes_.size(); }
 
-  /// createH: a new set of its own that holds `weight` returns; the new element's number is size() - 1.
+  /// createH and setH: a new set of its own that holds `weight` returns; the new element's number is size() - 1.
   void create(std::uint32_t weight) { nodes_.push_back({static_cast<std::uint32_t>(nodes_.size()), weight}); }
-
-  /// setH: `weight` more returns belong to the set whose head is `head`.
-  void grow(std::uint32_t head, std::uint32_t weight) { nodes_[head].weight += weight; }
 
   /// getH: the head of the set that holds `element`.
   std::uint32_t head(std::uint32_t element) {

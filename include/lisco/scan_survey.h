@@ -16,6 +16,10 @@ class ScanSurvey {
  public:
   /// Two returns of one laser in adjacent columns.
   void addAlongRow(const Return& a, const Return& b) { along_row_.push_back({a, b}); }
+  /// Two returns of one laser, b `columns` columns after a, less than half a turn.
+  void addFurtherAlongRow(const Return& a, const Return& b, std::size_t columns) {
+    further_.push_back({a, b, columns});
+  }
   /// Two returns of adjacent lasers in one column.
   void addAlongColumn(const Return& a, const Return& b) { along_column_.push_back({a, b}); }
 
@@ -27,7 +31,12 @@ class ScanSurvey {
   struct Pair {
     Return a, b;
   };
+  struct FurtherPair {
+    Return a, b;
+    std::size_t columns;
+  };
   std::vector<Pair> along_row_, along_column_;
+  std::vector<FurtherPair> further_;
 };
 
 /// Looks at about a hundred cells of an organized cloud (lasers > 1) or of an unorganized one (lasers == 1).
@@ -37,6 +46,7 @@ Parameters surveyScan(std::size_t columns, std::size_t lasers, const std::array<
   constexpr std::size_t kSmall = 4096;  // below this a view is not worth its layout
   constexpr std::size_t kRows = 8;
   constexpr std::size_t kPlaces = 128;
+  constexpr std::size_t kFurther = 32;  // columns; less than half a turn of any sensor
   const auto valid = [](const Return& r) { return isReturn(r.x, r.y, r.z); };
 
   ScanSurvey survey;
@@ -51,11 +61,16 @@ Parameters surveyScan(std::size_t columns, std::size_t lasers, const std::array<
         const Return right = column + 1 < columns ? cell_at(laser, column + 1) : kNoReturn;
         const Return below = laser + 1 < lasers ? cell_at(laser + 1, column) : kNoReturn;
         if (valid(right)) survey.addAlongRow(cell, right);
+        const Return further = column + kFurther < columns ? cell_at(laser, column + kFurther) : kNoReturn;
+        if (lasers > 1 && valid(further)) survey.addFurtherAlongRow(cell, further, kFurther);
         if (valid(below)) survey.addAlongColumn(cell, below);
       }
   }
   Parameters parameters = survey.judge(sensor, lasers > 1);
   parameters.expected_returns = columns * lasers;
+  constexpr std::size_t kLeastShare = 4;  // of a turn; a strip for all of it would be mostly empty
+  if (static_cast<std::size_t>(parameters.view.steps_per_turn) > kLeastShare * columns)
+    parameters.view.steps_per_turn = 0;
   return parameters;
 }
 

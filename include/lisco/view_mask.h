@@ -21,6 +21,9 @@ struct ViewHints {
   std::array<float, 3> origin{0.0F, 0.0F, 0.0F};  ///< where the sensor stands, metres
   float azimuth_step = 0.0035F;                   ///< typical angle between columns, radians
   float elevation_step = 0.0087F;                 ///< typical angle between lasers, radians
+  int steps_per_turn = 0;                         ///< columns of a whole turn; 0: unknown
+  bool clockwise = false;                         ///< seen from above; of no use without steps_per_turn
+  float far_distance = 1e30F;                     ///< few returns are further away horizontally, metres
 };
 
 /// The neighbour mask of a rotating scan (getNeighborMask, Algorithm 2 of the paper), on measured angles.

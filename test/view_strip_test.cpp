@@ -1,0 +1,795 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+// Far returns in a strip of places: by itself on pairs made by hand, and within the engine on whole rotations.
+#include "lisco/view_strip.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine.h"
+#include "oracle.h"
+#include "random.h"
+#include "scans.h"
+
+namespace lisco_test {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr std::uint32_t kFirstPlace = 64;  // of the first return
+
+std::uint64_t timesEffort(std::uint64_t count) {
+  const char* const effort = std::getenv("LISCO_TEST_EFFORT");
+  return effort != nullptr ? count * std::strtoull(effort, nullptr, 10) : count;
+}
+
+lisco::ViewHints hintsFor(int steps, float elevation_step, bool clockwise = false) {
+  lisco::ViewHints hints;
+  hints.steps_per_turn = steps;
+  hints.elevation_step = elevation_step;
+  hints.clockwise = clockwise;
+  return hints;
+}
+
+/// From where on returns are far, as documented: where twelve returns lie in a square of the tolerance's size.
+double nearEnd(double tolerance, const lisco::ViewHints& hints) {
+  return tolerance / std::sqrt(12.0 * 2.0 * kPi / hints.steps_per_turn * static_cast<double>(hints.elevation_step));
+}
+
+/// A strip alone: what it joins it found itself, without any patches.
+class Probe {
+ public:
+  Probe(float tolerance, const lisco::ViewHints& hints) { begin(tolerance, hints); }
+
+  void begin(float tolerance, const lisco::ViewHints& hints) {
+    hints_ = hints;
+    points_.clear();
+    subclusters_.clear();
+    strip_.prepare(lisco::Tolerance(tolerance), hints);
+  }
+
+  /// The point a laser sees in the direction of a place (fractions count) of the strip, at a horizontal distance.
+  Point pointAt(double place, double rho, double slope) const {
+    const double turn = 2.0 * kPi * (place - kFirstPlace) / hints_.steps_per_turn;
+    const double azimuth = 0.3 + (hints_.clockwise ? -turn : turn);
+    return {static_cast<float>(rho * std::cos(azimuth)) + hints_.origin[0],
+            static_cast<float>(rho * std::sin(azimuth)) + hints_.origin[1],
+            static_cast<float>(rho * slope) + hints_.origin[2]};
+  }
+
+  /// \return whether it is loose
+  bool put(std::size_t laser, std::uint32_t column, const Point& point) {
+    const auto element = static_cast<std::uint32_t>(points_.size());
+    points_.push_back(point);
+    subclusters_.create(1);
+    const lisco::ViewStrip::Row row{laser, 1, &point.x, &point.y, &point.z, &column, &element};
+    float rho = 0;
+    strip_.horizontalDistances(row, &rho);
+    return strip_.place(row, &rho) != 0;
+  }
+  bool put(std::size_t laser, double place, double rho, double slope) {
+    return put(laser, static_cast<std::uint32_t>(std::lround(place)), pointAt(place, rho, slope));
+  }
+
+  void link() { strip_.link(merge, this); }
+  void linkAll() { strip_.linkAll(merge, this); }
+  bool joined(std::uint32_t a, std::uint32_t b) { return subclusters_.head(a) == subclusters_.head(b); }
+  bool neighbours(std::size_t a, std::size_t b, float tolerance) const {
+    return areNeighbours(points_[a], points_[b], tolerance);
+  }
+  std::size_t size() const { return points_.size(); }
+  const lisco::ViewStrip& strip() const { return strip_; }
+
+ private:
+  static std::uint32_t merge(void* probe, std::uint32_t a, std::uint32_t b) {
+    lisco::DisjointSets& sets = static_cast<Probe*>(probe)->subclusters_;
+    const std::uint32_t head_a = sets.head(a);
+    const std::uint32_t head_b = sets.head(b);
+    return head_a == head_b ? head_a : sets.merge(head_a, head_b);
+  }
+
+  lisco::ViewStrip strip_;
+  lisco::ViewHints hints_;
+  lisco::DisjointSets subclusters_;
+  std::vector<Point> points_;
+};
+
+constexpr float kTolerance = 1.0F;
+const lisco::ViewHints kHints = hintsFor(1024, 0.02F);  // far from 26 m on; the tolerance reaches over 6 places there
+
+/// The distance at which so many places are just within the tolerance.
+double distanceFor(double places) {
+  return 0.9999 * static_cast<double>(kTolerance) / (2.0 * std::sin(places * kPi / kHints.steps_per_turn));
+}
+
+TEST(ViewStrip, IsOfUseOnlyWhereItsHintsAre) {
+  lisco::ViewStrip strip;
+  const auto inUse = [&strip](float tolerance, const lisco::ViewHints& hints) {
+    strip.prepare(lisco::Tolerance(tolerance), hints);
+    return strip.inUse();
+  };
+  EXPECT_FALSE(strip.inUse());
+  EXPECT_TRUE(inUse(1.0F, kHints));
+  EXPECT_TRUE(inUse(1.0F, hintsFor(512, 0.02F)));
+  EXPECT_TRUE(inUse(1.0F, hintsFor(16384, 0.005F)));
+  EXPECT_FALSE(inUse(1.0F, lisco::ViewHints()));
+  EXPECT_FALSE(inUse(0.0F, kHints));
+  EXPECT_FALSE(inUse(kNan, kHints));
+  EXPECT_FALSE(inUse(std::numeric_limits<float>::infinity(), kHints));
+  EXPECT_FALSE(inUse(1e15F, kHints));
+  for (const int steps :
+       {-1000, -1, 0, 1, 511, 16385, std::numeric_limits<int>::max(), std::numeric_limits<int>::min()})
+    EXPECT_FALSE(inUse(1.0F, hintsFor(steps, 0.02F))) << steps;
+  for (const float step : {kNan, 0.0F, -1.0F, 1e30F, std::numeric_limits<float>::infinity()})
+    EXPECT_FALSE(inUse(1.0F, hintsFor(1024, step))) << step;
+  lisco::ViewHints hints = kHints;
+  for (const float distance : {10.0F, 0.0F, -1.0F, kNan}) {
+    hints.far_distance = distance;
+    EXPECT_FALSE(inUse(1.0F, hints)) << distance;
+  }
+  hints.far_distance = 100.0F;
+  EXPECT_TRUE(inUse(1.0F, hints));
+}
+
+TEST(ViewStrip, IsFarWhereFewReturnsAreInReach) {
+  Probe probe(kTolerance, kHints);
+  const double near_end = nearEnd(1.0, kHints);
+  EXPECT_FALSE(probe.strip().amongFar(static_cast<float>(near_end)));
+  EXPECT_FALSE(probe.strip().amongFar(static_cast<float>(near_end + 1.0)));
+  EXPECT_TRUE(probe.strip().amongFar(static_cast<float>(near_end + 1.01)));
+  EXPECT_TRUE(probe.strip().amongFar(1e14F));
+  EXPECT_FALSE(probe.strip().amongFar(1e15F));
+  EXPECT_FALSE(probe.strip().amongFar(std::numeric_limits<float>::infinity()));
+  EXPECT_FALSE(probe.strip().amongFar(kNan));
+}
+
+// Two returns so many places apart, at all places of a group, of all lasers, in both orders, and only just neighbours.
+TEST(ViewStrip, PairsAcrossPlaces) {
+  Probe probe(kTolerance, kHints);
+  for (int apart = 0; apart <= 6; ++apart)
+    for (int first = 100; first < 116; ++first)
+      for (const auto& [one, other] : {std::pair{0, 0}, {0, 1}, {1, 0}, {0, 3}, {3, 0}})
+        for (const bool clockwise : {false, true}) {
+          if (apart == 0 && one == other) continue;
+          SCOPED_TRACE(std::to_string(apart) + " places from " + std::to_string(first) + ", lasers " +
+                       std::to_string(one) + " and " + std::to_string(other));
+          lisco::ViewHints hints = kHints;
+          hints.clockwise = clockwise;
+          probe.begin(kTolerance, hints);
+          const double rho = apart == 0 ? 50.0 : distanceFor(apart);
+          EXPECT_FALSE(probe.put(5, kFirstPlace, 100.0, 0.0));
+          EXPECT_FALSE(probe.put(static_cast<std::size_t>(one), first, rho, 0.0));
+          EXPECT_FALSE(probe.put(static_cast<std::size_t>(other), first + apart, rho, 0.0));
+          ASSERT_TRUE(probe.neighbours(1, 2, kTolerance));
+          probe.linkAll();
+          EXPECT_TRUE(probe.joined(1, 2));
+          EXPECT_FALSE(probe.joined(0, 1));
+        }
+}
+
+// Returns stand up to three quarters of a place from where they are, here in opposite directions.
+TEST(ViewStrip, PairsThatStandFurtherApartThanTheyAre) {
+  constexpr double kOff = 0.745;
+  Probe probe(kTolerance, kHints);
+  for (int apart = 2; apart <= 7; ++apart)
+    for (int first = 100; first < 116; ++first)
+      for (const bool inwards : {false, true}) {
+        SCOPED_TRACE(std::to_string(apart) + " places from " + std::to_string(first) + (inwards ? ", inwards" : ""));
+        probe.begin(kTolerance, kHints);
+        const double off = inwards ? kOff : -kOff;  // inwards: closer to each other than their places are
+        const double distance = apart - 2.0 * off;
+        const double rho = std::min(200.0, distanceFor(distance));
+        if (rho < nearEnd(1.0, kHints) * 1.001) continue;
+        EXPECT_FALSE(probe.put(2, kFirstPlace, 300.0, 0.0));
+        EXPECT_FALSE(probe.put(0, first - 1, 300.0, 0.0));
+        EXPECT_FALSE(probe.put(1, first + apart - 1, 300.0, 0.1));
+        EXPECT_FALSE(probe.put(0, static_cast<std::uint32_t>(first), probe.pointAt(first + off, rho, 0.0)));
+        EXPECT_FALSE(
+            probe.put(1, static_cast<std::uint32_t>(first + apart), probe.pointAt(first + apart - off, rho, 0.0)));
+        ASSERT_TRUE(probe.neighbours(3, 4, kTolerance));
+        probe.linkAll();
+        EXPECT_TRUE(probe.joined(3, 4));
+      }
+}
+
+TEST(ViewStrip, AReturnThatIsNotWhereItIsExpectedIsPutWhereItIs) {
+  Probe probe(kTolerance, kHints);
+  EXPECT_FALSE(probe.put(0, kFirstPlace, 300.0, 0.0));
+  EXPECT_FALSE(probe.put(1, 500.0, 100.0, 0.0));
+  EXPECT_FALSE(probe.put(0, kFirstPlace + 1, probe.pointAt(500.0, 100.0, 0.001)));  // column 65, seen at place 500
+  EXPECT_FALSE(probe.put(0, kFirstPlace + 2, probe.pointAt(kFirstPlace + 1.0, 300.0, 0.001)));  // and back
+  EXPECT_FALSE(probe.put(0, kFirstPlace + 900, probe.pointAt(501.0, 100.0, 0.0)));
+  probe.linkAll();
+  EXPECT_TRUE(probe.joined(1, 2));
+  EXPECT_TRUE(probe.joined(1, 4));
+  EXPECT_FALSE(probe.joined(0, 1));
+  EXPECT_FALSE(probe.joined(0, 3));
+}
+
+// The opposite side of the turn, at the same distance from the line through the expected place.
+TEST(ViewStrip, AReturnOnTheOppositeSideIsNotExpected) {
+  Probe probe(kTolerance, kHints);
+  EXPECT_FALSE(probe.put(0, kFirstPlace, 300.0, 0.0));
+  EXPECT_FALSE(probe.put(0, kFirstPlace + 1, probe.pointAt(kFirstPlace + 1.0 + 512.0, 50.0, 0.0)));
+  EXPECT_FALSE(probe.put(1, kFirstPlace + 1, probe.pointAt(kFirstPlace + 1.0 + 512.0, 50.0, 0.001)));
+  probe.linkAll();
+  EXPECT_TRUE(probe.joined(1, 2));
+}
+
+TEST(ViewStrip, TheSeam) {
+  Probe probe(kTolerance, kHints);
+  const int turn = kHints.steps_per_turn;
+  for (int apart = 0; apart <= 6; ++apart)
+    for (int last = turn + 30; last < turn + 200; last += 1)
+      for (const int sign : {-1, 1}) {
+        const int first = last - turn + sign * apart;
+        if (first < 0 || first == static_cast<int>(kFirstPlace)) continue;
+        SCOPED_TRACE("places " + std::to_string(first) + " and " + std::to_string(last));
+        const double rho = apart == 0 ? 50.0 : distanceFor(apart);
+        probe.begin(kTolerance, kHints);
+        EXPECT_FALSE(probe.put(2, kFirstPlace, 300.0, 0.0));
+        EXPECT_FALSE(probe.put(3, kFirstPlace, 300.0, 0.0));
+        const std::size_t laser = static_cast<std::size_t>(last) % 3;
+        // By a quarter and a half of a turn, lest the turn be mistaken.
+        EXPECT_FALSE(probe.put(laser, first, rho, 0.0));
+        for (const int place : {300, 600, 900}) EXPECT_FALSE(probe.put(1, place, 300.0, 0.0));
+        EXPECT_FALSE(probe.put(1, last, rho, 0.0));
+        ASSERT_TRUE(probe.neighbours(2, 6, kTolerance));
+        probe.linkAll();
+        EXPECT_TRUE(probe.joined(2, 6));
+      }
+}
+
+TEST(ViewStrip, BeforeTheFirstReturn) {
+  Probe probe(kTolerance, kHints);
+  for (int place = 0; place <= 64; ++place) {
+    probe.begin(kTolerance, kHints);
+    EXPECT_FALSE(probe.put(0, kFirstPlace, 300.0, 0.0));
+    EXPECT_FALSE(probe.put(1, kFirstPlace, probe.pointAt(place, 50.0, 0.0)));
+    for (const int later : {300, 600, 900}) EXPECT_FALSE(probe.put(0, later, 300.0, 0.0));
+    EXPECT_FALSE(probe.put(0, place + 1024, 50.0, 0.0));
+    EXPECT_FALSE(probe.put(2, kFirstPlace, probe.pointAt(place + 1, 50.0, 0.0)));
+    probe.linkAll();
+    EXPECT_TRUE(probe.joined(1, 5)) << place;
+    EXPECT_TRUE(probe.joined(1, 6)) << place;
+  }
+}
+
+// More than fits: what has no place is loose, and found all the same.
+TEST(ViewStrip, BeyondTheLastPlace) {
+  Probe probe(kTolerance, kHints);
+  std::vector<bool> loose;
+  for (int place = kFirstPlace; place < 3 * 1024 + 200; ++place) loose.push_back(probe.put(0, place, 26.5, 0.0));
+  const std::size_t placed =
+      static_cast<std::size_t>(std::find(loose.begin(), loose.end(), true) - loose.begin()) + kFirstPlace;
+  EXPECT_EQ(placed, 1024U + 256U);
+  EXPECT_EQ(static_cast<std::size_t>(std::count(loose.begin(), loose.end(), true)),
+            loose.size() + kFirstPlace - placed);
+  probe.linkAll();
+  for (std::uint32_t i = 0; i < probe.size(); ++i) ASSERT_TRUE(probe.joined(0, i)) << i;
+}
+
+TEST(ViewStrip, ALooseReturnIsFoundAtOnceAndLater) {
+  Probe probe(kTolerance, kHints);
+  const double last = distanceFor(6.0);
+  for (int place = 100; place < 116; ++place)
+    for (const int apart : {-6, -3, 1, 6}) {
+      probe.begin(kTolerance, kHints);
+      EXPECT_FALSE(probe.put(2, kFirstPlace, 300.0, 0.0));
+      EXPECT_FALSE(probe.put(1, place, 100.0, 0.0));
+      EXPECT_TRUE(probe.put(1, place, last, 0.0)) << "there is one already";
+      probe.linkAll();
+      EXPECT_FALSE(probe.joined(1, 2));
+      EXPECT_FALSE(probe.put(0, place + apart, last, 0.0));
+      probe.linkAll();
+      EXPECT_TRUE(probe.joined(2, 3)) << place << ", " << apart;
+      EXPECT_FALSE(probe.joined(1, 2));
+    }
+}
+
+// A laser that is so far behind the others that all is compared before it comes.
+TEST(ViewStrip, ALateReturnIsFound) {
+  Probe probe(kTolerance, kHints);
+  for (int place = 100; place < 116; ++place)
+    for (int apart = -6; apart <= 6; ++apart) {
+      const double rho = apart == 0 ? 50.0 : distanceFor(std::abs(apart));
+      probe.begin(kTolerance, kHints);
+      for (int other = kFirstPlace; other < 400; ++other)
+        EXPECT_FALSE(probe.put(0, other, other == place ? rho : 300.0, 0.0));
+      probe.link();
+      EXPECT_FALSE(probe.put(1, 400, probe.pointAt(place + apart, rho, 0.0)));
+      const auto late = static_cast<std::uint32_t>(probe.size() - 1);
+      probe.linkAll();
+      EXPECT_TRUE(probe.joined(static_cast<std::uint32_t>(place) - kFirstPlace, late)) << place << ", " << apart;
+      EXPECT_FALSE(probe.joined(static_cast<std::uint32_t>(place) - kFirstPlace + 1, late));
+      // And one later still, next to the late one.
+      EXPECT_FALSE(probe.put(2, 400, probe.pointAt(place + apart + 1, rho, 0.0)));
+      probe.linkAll();
+      EXPECT_TRUE(probe.joined(late, late + 1));
+    }
+}
+
+TEST(ViewStrip, ALateReturnIsFoundAcrossTheSeam) {
+  Probe probe(kTolerance, kHints);
+  for (const int apart : {-6, -1, 0, 1, 6}) {
+    const double rho = apart == 0 ? 50.0 : distanceFor(std::abs(apart));
+    probe.begin(kTolerance, kHints);
+    for (int place = kFirstPlace; place < 1124; ++place)
+      EXPECT_FALSE(probe.put(0, place, place == 1100 ? rho : 300.0, 0.0));
+    probe.linkAll();
+    EXPECT_FALSE(probe.put(1, 100, probe.pointAt(1100 - 1024 + apart, rho, 0.0)));
+    EXPECT_FALSE(probe.put(1, 101, probe.pointAt(1040, 300.0, 0.0)));
+    probe.linkAll();
+    EXPECT_TRUE(probe.joined(1100 - kFirstPlace, static_cast<std::uint32_t>(probe.size() - 2))) << apart;
+  }
+}
+
+// One return above the other, as far as neighbours can be, with lasers in between and in any order.
+TEST(ViewStrip, PairsAboveEachOther) {
+  Probe probe(kTolerance, kHints);
+  std::array<std::size_t, 6> laser_of{};
+  for (const int order : {0, 1, 2, 3, 4, 5, 6, 7}) {
+    std::iota(laser_of.begin(), laser_of.end(), std::size_t{0});
+    if (order == 1) std::reverse(laser_of.begin(), laser_of.end());
+    Random random(static_cast<std::uint64_t>(order));
+    if (order > 1) random.shuffle(laser_of);
+    for (const bool linked_before : {false, true})
+      for (std::size_t ring = 0; ring < 4; ++ring)
+        for (const int apart : {-2, 0, 2}) {
+          SCOPED_TRACE("order " + std::to_string(order) + ", ring " + std::to_string(ring));
+          probe.begin(kTolerance, kHints);
+          constexpr double kRho = 30.0;
+          const double across = 2.0 * kRho * std::sin(std::abs(apart) * kPi / 1024.0);
+          const double rise = std::sqrt(0.9999 - across * across) / kRho;  // of two rings
+          const auto slope = [&](std::size_t r) { return 0.07 - 0.5 * rise * static_cast<double>(r); };
+          for (std::size_t r = 0; r < 6; ++r) EXPECT_FALSE(probe.put(laser_of[r], kFirstPlace, 300.0, slope(r)));
+          if (linked_before) {
+            for (std::size_t r = 0; r < 6; ++r) EXPECT_FALSE(probe.put(laser_of[r], 90, 300.0, slope(r)));
+            probe.link();
+          }
+          EXPECT_FALSE(probe.put(laser_of[ring], 100, kRho, slope(ring)));
+          EXPECT_FALSE(probe.put(laser_of[ring + 2], 100 + apart, kRho, slope(ring + 2)));
+          const auto one = static_cast<std::uint32_t>(probe.size() - 2);
+          ASSERT_TRUE(probe.neighbours(one, one + 1, kTolerance));
+          probe.linkAll();
+          EXPECT_TRUE(probe.joined(one, one + 1));
+        }
+  }
+}
+
+// A laser is where it was measured: here each sweeps over all elevations.
+TEST(ViewStrip, LasersThatSway) {
+  Probe probe(kTolerance, kHints);
+  const auto slope = [](std::size_t laser, int place) {
+    return (laser == 0 ? 0.3 : -0.3) * std::sin(0.02 * static_cast<double>(place));
+  };
+  for (int place = kFirstPlace; place < 800; ++place)
+    for (std::size_t laser = 0; laser < 2; ++laser) EXPECT_FALSE(probe.put(laser, place, 40.0, slope(laser, place)));
+  probe.linkAll();
+  std::size_t pairs = 0;
+  for (std::uint32_t i = 0; i < probe.size(); ++i)
+    for (std::uint32_t k = i + 1; k < probe.size(); ++k) {
+      if (!probe.neighbours(i, k, kTolerance)) continue;
+      ++pairs;
+      ASSERT_TRUE(probe.joined(i, k)) << i << ", " << k;
+    }
+  EXPECT_GT(pairs, 1000U);
+}
+
+TEST(ViewStrip, NothingOfTheLastRotationIsLeft) {
+  Probe probe(kTolerance, kHints);
+  for (const int steps : {1024, 1024, 1200, 512, 1024}) {
+    probe.begin(kTolerance, hintsFor(steps, 0.02F));
+    for (int i = 0; i < 500; ++i)
+      for (std::size_t laser = 0; laser < 8; ++laser) EXPECT_FALSE(probe.put(laser, kFirstPlace + i, 60.0, 0.0));
+    probe.linkAll();
+    probe.begin(kTolerance, hintsFor(steps, 0.02F));
+    for (int i = 0; i < 500; i += 50)
+      for (std::size_t laser = 0; laser < 9; ++laser)
+        EXPECT_FALSE(probe.put(laser, kFirstPlace + i, 60.0, 0.03 * static_cast<double>(laser)));
+    probe.linkAll();
+    for (std::uint32_t i = 1; i < probe.size(); ++i) EXPECT_FALSE(probe.joined(0, i)) << i;
+  }
+}
+
+// What comes after too many loose returns is loose too, wherever it is, and is still compared with all that was placed.
+TEST(ViewStrip, TooManyLooseReturnsEndThePlacing) {
+  Probe probe(kTolerance, kHints);
+  EXPECT_FALSE(probe.put(0, kFirstPlace, 60.0, 0.0));
+  EXPECT_FALSE(probe.put(0, kFirstPlace + 20, 60.0, 0.0));
+  while (!probe.put(0, kFirstPlace + 40, 60.0, 0.0))
+    ;
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(probe.put(0, kFirstPlace + 40, 60.0, 0.0));
+  for (int time = 0; time < 3; ++time) {
+    EXPECT_TRUE(probe.put(0, kFirstPlace + 20.4, 60.0, 0.0));  // its place is free
+    const auto element = static_cast<std::uint32_t>(probe.size() - 1);
+    probe.linkAll();
+    EXPECT_TRUE(probe.joined(1, element));
+    EXPECT_FALSE(probe.joined(0, element));
+  }
+}
+
+// A laser whose returns are all near is known, but not where it is.
+TEST(ViewStrip, LasersThatAppearLateAndNear) {
+  Probe probe(kTolerance, kHints);
+  EXPECT_FALSE(probe.put(0, kFirstPlace, 60.0, 0.0));
+  EXPECT_FALSE(probe.put(0, kFirstPlace + 1, 60.0, 0.0));
+  probe.link();
+  for (std::size_t laser = 1; laser < 60; ++laser) {  // few enough loose ones
+    EXPECT_FALSE(probe.put(laser, kFirstPlace + 2, 1.0, 0.0));
+    EXPECT_FALSE(probe.put(0, kFirstPlace + 1.0 + static_cast<double>(laser), 60.0, 0.0));
+    EXPECT_TRUE(probe.put(0, kFirstPlace, 60.0, 0.0));
+    probe.linkAll();
+    EXPECT_TRUE(probe.joined(0, static_cast<std::uint32_t>(probe.size() - 2)));
+    EXPECT_TRUE(probe.joined(0, static_cast<std::uint32_t>(probe.size() - 1)));
+  }
+}
+
+/// Two returns that are only just neighbours, the tolerance that makes them so, and where the strip has them.
+struct CriticalPair {
+  lisco::ViewHints hints;
+  float tolerance = 0;
+  std::array<double, 2> place{}, rho{}, slope{};  ///< places with fractions, as Probe::pointAt() takes them
+};
+
+/// Of any size, at any distance, seen under any angle that a strip may have to do with; one beside, above or behind
+/// the other.
+CriticalPair criticalPair(Random& random) {
+  const std::array<int, 6> steps_choices{512, 513, 1000, 2047, 4096, 16384};
+  CriticalPair pair;
+  const int steps = random.oneOf(steps_choices);
+  const double step = 2.0 * kPi / steps;
+  const double spacing = random.magnitude(2e-5, std::min(0.45, 40.0 * step));
+  pair.hints = hintsFor(steps, static_cast<float>(spacing * spacing / (12.0 * step)), random.chance(0.5));
+  const double near_end = random.chance(0.3) ? random.magnitude(1e-17, 1e11) : random.magnitude(1.0, 100.0);
+  if (random.chance(0.3))
+    for (float& axis : pair.hints.origin) axis = static_cast<float>(near_end * random.between(-0.5, 0.5));
+  const double reach = near_end * spacing;
+
+  // One of them stands ahead; the other is reached from there.
+  const double rho = near_end * (random.chance(0.7) ? random.between(1.0, 1.5) : random.magnitude(1.0, 100.0));
+  const std::array<double, 5> slopes{0.0, 0.0, 0.3, -0.3, 3.0};
+  const double slope = random.oneOf(slopes) * random.unit();
+  const double sine = reach / rho;
+  const double cosine = std::sqrt(1.0 - sine * sine);
+  const double range = rho * std::sqrt(1.0 + slope * slope);
+  std::array<double, 3> way{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};  // ahead, aside, up
+  switch (random.below(5)) {
+    case 0:  // as far aside as can be
+      way = {-sine, random.chance(0.5) ? cosine : -cosine, 0.0};
+      break;
+    case 1: {  // as far above or below as can be
+      const double angle =
+          std::atan(slope) + (random.chance(0.5) ? 1.0 : -1.0) * (0.5 * kPi + std::asin(std::min(1.0, reach / range)));
+      way = {std::cos(angle), 0.0, std::sin(angle)};
+      break;
+    }
+    case 2:
+      way = {random.chance(0.5) ? 1.0 : -1.0, 0.0, 0.0};
+      break;
+    default:
+      break;
+  }
+  const double length = std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+  for (double& axis : way) axis *= reach / length;
+  const double ahead = rho + way[0];
+  const double where = random.between(kFirstPlace + 60.0, kFirstPlace + 120.0);
+  pair.place = {where, where + std::atan2(way[1], ahead) / step};
+  pair.rho = {rho, std::hypot(ahead, way[1])};
+  pair.slope = {slope, (slope * rho + way[2]) / pair.rho[1]};
+  if (random.chance(0.5)) {
+    std::swap(pair.place[0], pair.place[1]);
+    std::swap(pair.rho[0], pair.rho[1]);
+    std::swap(pair.slope[0], pair.slope[1]);
+  }
+  pair.tolerance = static_cast<float>(reach);
+  return pair;
+}
+
+// In the places where they belong or next to them, before and after the seam, late and loose.
+TEST(ViewStrip, CriticalPairs) {
+  Probe probe(kTolerance, kHints);
+  std::size_t pairs = 0;
+  for (std::uint64_t seed = 1; seed < 1 + timesEffort(20000); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    CriticalPair pair = criticalPair(random);
+    const bool seam = random.chance(0.3);
+    if (seam) pair.place[1] += pair.hints.steps_per_turn;
+    const bool late = random.chance(0.3);
+    const bool first_later = !late && random.chance(0.5);
+    if (first_later) std::swap(pair.place[0], pair.place[1]);
+    if (first_later) std::swap(pair.rho[0], pair.rho[1]);
+    if (first_later) std::swap(pair.slope[0], pair.slope[1]);
+
+    // The least tolerance with which they are neighbours.
+    probe.begin(pair.tolerance, pair.hints);
+    const std::array<Point, 2> points{probe.pointAt(pair.place[0], pair.rho[0], pair.slope[0]),
+                                      probe.pointAt(pair.place[1], pair.rho[1], pair.slope[1])};
+    const double apart = std::hypot(static_cast<double>(points[0].x) - static_cast<double>(points[1].x),
+                                    static_cast<double>(points[0].y) - static_cast<double>(points[1].y),
+                                    static_cast<double>(points[0].z) - static_cast<double>(points[1].z));
+    pair.tolerance = static_cast<float>(apart * (1.0 - 3e-7));
+    for (int ulp = 0; ulp < 20 && !areNeighbours(points[0], points[1], pair.tolerance); ++ulp)
+      pair.tolerance = std::nextafter(pair.tolerance, 1e30F);
+    if (!areNeighbours(points[0], points[1], pair.tolerance)) continue;  // they all but coincide
+    const double near_end = nearEnd(lisco::Tolerance(pair.tolerance).reach(), pair.hints);
+    if (std::min(pair.rho[0], pair.rho[1]) < near_end * (1.0 + 1e-6)) continue;
+    probe.begin(pair.tolerance, pair.hints);
+    if (!probe.strip().inUse()) continue;
+
+    // All others are far behind them.
+    const double behind = 1000.0 * near_end;
+    probe.put(0, kFirstPlace, behind, 0.0);
+    probe.put(3, kFirstPlace, behind, 0.0);
+    std::array<std::uint32_t, 2> number{};
+    int loose = 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (i == 1 && late) {
+        for (const std::size_t laser : {0, 1, 3}) probe.put(laser, pair.place[1] + 200.0, behind, 0.0);
+        probe.link();
+      }
+      // Its laser is where the next place is up to three quarters of one off.
+      double place = std::round(pair.place[i]);
+      if (random.chance(0.5)) place += pair.place[i] > place ? 1.0 : -1.0;
+      const auto column = static_cast<std::uint32_t>(place);
+      if (random.chance(0.8)) probe.put(i + 1, place - 1.0, behind, pair.slope[i]);
+      const bool full = random.chance(0.2);
+      if (full) probe.put(i + 1, column, probe.pointAt(pair.place[i], behind, 0.0));
+      number[i] = static_cast<std::uint32_t>(probe.size());
+      loose += probe.put(i + 1, full ? column + 1 : column, points[i]) ? 1 : 0;
+      if (random.chance(0.1)) probe.linkAll();
+    }
+    if (loose == 2) continue;  // these are for others to find
+    ++pairs;
+    if (random.chance(0.5)) probe.put(random.below(4), pair.place[1] + 100.0, behind, 0.0);
+    if (random.chance(0.3)) probe.link();
+    probe.linkAll();
+    ASSERT_TRUE(probe.joined(number[0], number[1]))
+        << pair.hints.steps_per_turn << " steps, tolerance " << pair.tolerance << " at " << pair.rho[0] << " and "
+        << pair.rho[1] << ", places " << pair.place[0] << " and " << pair.place[1] << ", slopes " << pair.slope[0]
+        << " and " << pair.slope[1] << (late ? ", late" : "") << (loose > 0 ? ", loose" : "");
+  }
+  EXPECT_GT(pairs, timesEffort(10000));
+}
+
+/// What a sensor and its surroundings may be like.
+struct Rotation {
+  Scan scan{0, 0};
+  lisco::ViewHints hints;
+  std::vector<double> distances;  ///< horizontal, ascending
+};
+
+Rotation randomRotation(Random& random, double kept) {
+  const std::array<int, 6> steps_choices{512, 600, 720, 900, 1024, 1200};
+  const std::array<double, 6> turns{1.0, 1.0, 0.4, 1.05, 1.3, 2.3};
+  const std::array<double, 5> jitters{0.0, 0.02, 0.2, 0.7, 2.0};
+  const int steps = random.oneOf(steps_choices);
+  const std::size_t lasers = random.chance(0.1) ? 1 : 2 + random.below(31);
+  const auto columns = static_cast<std::size_t>(steps * random.oneOf(turns));
+  const bool clockwise = random.chance(0.5);
+  const double start = random.between(0.0, 2.0 * kPi);
+  const double step = (clockwise ? -2.0 : 2.0) * kPi / steps;
+  const double ring = random.between(0.005, 0.04);
+  const double sway = random.chance(0.3) ? random.between(0.0, 3.0 * ring) : 0.0;
+  const double jitter = random.oneOf(jitters) * std::fabs(step);
+  const double lost = random.chance(0.5) ? 0.05 : 0.0;
+  const double twice = random.chance(0.5) ? 0.05 : 0.0;
+  std::vector<double> lag(lasers, 0.0);
+  if (random.chance(0.6))
+    for (std::size_t i = 0; i < lasers; ++i)
+      lag[i] = random.chance(0.5) ? random.between(-60.0, 60.0) : 20.0 * static_cast<double>(i % 4);
+  std::vector<std::size_t> row(lasers);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  if (random.chance(0.3)) std::reverse(row.begin(), row.end());
+  if (random.chance(0.2)) random.shuffle(row);
+  const bool appear = random.chance(0.2);  // each laser later than the one before
+
+  Rotation rotation;
+  lisco::ViewHints& hints = rotation.hints;
+  hints = hintsFor(steps, static_cast<float>(ring), clockwise);
+  if (random.chance(0.15)) hints.steps_per_turn = static_cast<int>(512 + random.below(1500));
+  if (random.chance(0.1)) hints.clockwise = !clockwise;
+  if (random.chance(0.1)) hints.elevation_step *= static_cast<float>(random.magnitude(0.2, 5.0));
+  const std::array<double, 6> scales{1.0, 1.0, 1.0, 1.0, 1e-15, 1e12};
+  const double scale = random.oneOf(scales);
+  if (random.chance(0.3))
+    for (float& axis : hints.origin) axis = static_cast<float>(scale * random.between(-20.0, 20.0));
+
+  // Things of any width stand around, at any distance, on a floor.
+  std::vector<double> distance(64);
+  for (double& d : distance) d = random.magnitude(3.0, 80.0);
+  const double roughness = random.chance(0.7) ? random.magnitude(0.001, 0.3) : 0.0;
+
+  std::vector<std::size_t> order;
+  for (std::size_t packet = 0; packet < columns; packet += 16) {
+    if (random.chance(lost)) continue;
+    for (int times = random.chance(twice) ? 2 : 1; times > 0; --times)
+      for (std::size_t c = packet; c < std::min(columns, packet + 16); ++c) order.push_back(c);
+  }
+  Scan& scan = rotation.scan;
+  scan = Scan(order.size(), lasers);
+  for (std::size_t i = 0; i < order.size(); ++i)
+    for (std::size_t laser = 0; laser < lasers; ++laser) {
+      if (!random.chance(kept) || (appear && i * lasers < row[laser] * order.size() / 2)) {
+        scan.set(row[laser], i, {0, 0, 0});
+        continue;
+      }
+      const double azimuth =
+          start + step * (static_cast<double>(order[i]) + lag[laser]) + random.between(-jitter, jitter);
+      const double elevation = 0.1 - ring * static_cast<double>(laser) + sway * std::sin(3.0 * azimuth);
+      const double around = azimuth - 2.0 * kPi * std::floor(azimuth / (2.0 * kPi));
+      double rho = distance[std::min<std::size_t>(63, static_cast<std::size_t>(around * 64.0 / (2.0 * kPi)))];
+      if (elevation < -0.01) rho = std::min(rho, -1.8 / elevation);
+      rho *= 1.0 + roughness * random.unit();
+      rotation.distances.push_back(rho * scale);
+      scan.set(row[laser], i,
+               {static_cast<float>(scale * rho * std::cos(azimuth)) + hints.origin[0],
+                static_cast<float>(scale * rho * std::sin(azimuth)) + hints.origin[1],
+                static_cast<float>(scale * rho * std::tan(elevation)) + hints.origin[2]});
+    }
+  std::sort(rotation.distances.begin(), rotation.distances.end());
+  if (rotation.distances.empty()) rotation.distances.push_back(1.0);
+  return rotation;
+}
+
+/// A tolerance with which about this part of the returns is far.
+float toleranceFor(const Rotation& rotation, double far_part) {
+  const auto index = static_cast<std::size_t>((1.0 - far_part) * static_cast<double>(rotation.distances.size() - 1));
+  return static_cast<float>(rotation.distances[index] / nearEnd(1.0, rotation.hints));
+}
+
+lisco::Parameters parametersFor(Random& random, const Rotation& rotation, float tolerance) {
+  constexpr std::array<std::size_t, 5> kBlocks{64, 64, 1, 16, 7};
+  lisco::Parameters parameters;
+  parameters.tolerance = tolerance;
+  parameters.view = rotation.hints;
+  parameters.block_columns = random.oneOf(kBlocks);
+  return parameters;
+}
+
+/// In portions, with a look at the subclusters now and then.
+void feed(lisco::ColumnClusterer& clusterer, Random& random, const Scan& scan) {
+  const double looks = random.chance(0.5) ? 0.1 : 0.0;
+  const std::size_t portion = random.chance(0.3) ? 1 : 1 + random.below(200);
+  for (std::size_t first = 0; first < scan.columns; first += portion) {
+    clusterer.addColumns(std::min(portion, scan.columns - first), scan.lasers,
+                         [&](std::size_t laser, std::size_t column) { return scan.at(laser, first + column); });
+    if (portion > 10 && random.chance(looks)) clusterer.update();
+  }
+}
+
+constexpr std::array<double, 5> kFarParts{1.0, 0.9, 0.5, 0.5, 0.1};
+
+/// In parts, so that they can run side by side.
+class StripScans : public testing::TestWithParam<std::uint64_t> {};
+INSTANTIATE_TEST_SUITE_P(Seeds, StripScans, testing::Range<std::uint64_t>(1, 4));
+
+TEST_P(StripScans, EqualTheEngineWithoutTheStrip) {
+  lisco::ColumnClusterer clusterer;
+  lisco::ColumnClusterer without;
+  const std::uint64_t seeds = GetParam() * 1'000'000;
+  for (std::uint64_t seed = seeds; seed < seeds + timesEffort(40); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const Rotation rotation = randomRotation(random, random.chance(0.5) ? 0.95 : random.between(0.1, 1.0));
+    lisco::Parameters parameters = parametersFor(random, rotation, toleranceFor(rotation, random.oneOf(kFarParts)));
+    clusterer.begin(parameters);
+    feed(clusterer, random, rotation.scan);
+    parameters.view.steps_per_turn = 0;
+    without.begin(parameters);
+    without.addColumns(rotation.scan.columns, rotation.scan.lasers,
+                       [&](std::size_t laser, std::size_t column) { return rotation.scan.at(laser, column); });
+    ASSERT_EQ(difference(clustersOf(without), clustersOf(clusterer)), "");
+  }
+}
+
+// Few returns: clusters are pairs, and each of them is found by one comparison only.
+TEST_P(StripScans, EqualTheOracle) {
+  lisco::ColumnClusterer clusterer;
+  const std::uint64_t seeds = GetParam() * 1'000'000 + 500'000;
+  for (std::uint64_t seed = seeds; seed < seeds + timesEffort(60); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const Rotation rotation = randomRotation(random, random.between(0.01, 0.08));
+    const float tolerance = toleranceFor(rotation, random.oneOf(kFarParts));
+    clusterer.begin(parametersFor(random, rotation, tolerance));
+    feed(clusterer, random, rotation.scan);
+    std::vector<Point> points;
+    for (const Point& point : rotation.scan.points())
+      if (isValid(point)) points.push_back(point);
+    std::vector<std::uint32_t> number(rotation.scan.cells.size());  // among the valid
+    std::uint32_t valid = 0;
+    for (const lisco::Return& cell : rotation.scan.cells)
+      number[cell.source_index] = isValid({cell.x, cell.y, cell.z}) ? valid++ : 0;
+    Clustering found = clustersOf(clusterer);
+    for (Cluster& cluster : found)
+      for (std::uint32_t& member : cluster.members) member = number[member];
+    ASSERT_EQ(difference(trueClusters(points, tolerance), found), "");
+  }
+}
+
+TEST(StripScans, NoPatchIsNeededForWhatIsFar) {
+  lisco::ColumnClusterer clusterer;
+  for (const bool clockwise : {false, true}) {
+    SCOPED_TRACE(clockwise ? "clockwise" : "counter-clockwise");
+    Random random(5);
+    Scan scan(1024, 16);
+    for (std::size_t laser = 0; laser < 16; ++laser)
+      for (std::size_t column = 0; column < 1024; ++column) {
+        const double azimuth = (clockwise ? -2.0 : 2.0) * kPi * static_cast<double>(column) / 1024.0;
+        const double rho = 40.0 + random.unit();
+        scan.set(laser, column,
+                 {static_cast<float>(rho * std::cos(azimuth)), static_cast<float>(rho * std::sin(azimuth)),
+                  static_cast<float>(rho * (0.1 - 0.02 * static_cast<double>(laser)))});
+      }
+    Setting setting{"strip", {}};
+    setting.parameters.view = kHints;
+    setting.parameters.view.clockwise = clockwise;
+    const Clustering with = cluster(clusterer, scan, kTolerance, setting);
+    EXPECT_EQ(clusterer.comparisons(), 0U);
+    setting.parameters.view.steps_per_turn = 0;
+    EXPECT_EQ(difference(cluster(clusterer, scan, kTolerance, setting), with), "");
+    EXPECT_GT(clusterer.comparisons(), 0U);
+  }
+}
+
+/// Pairs whose returns lie on both sides of a distance, or a tolerance from it, by a few ulps.
+Scan pairsAround(Random& random, double distance, double tolerance) {
+  constexpr std::size_t kPairs = 40;
+  Scan scan(512, 3);
+  const auto close = [&random] { return 1.0 + (random.chance(0.5) ? 1e-7 : 3e-5) * random.between(-2.0, 2.0); };
+  for (std::size_t pair = 0; pair < kPairs; ++pair) {
+    const std::size_t column = pair * 12;
+    const std::array<double, 4> bases{0.0, 0.0, -1.0, 1.0};
+    const double near = (distance + random.oneOf(bases) * tolerance) * close();
+    const double apart = tolerance * close();
+    const std::array<double, 3> slopes{0.0, 0.1, -2.0};
+    const double z = distance * random.oneOf(slopes);
+    const std::array<double, 3> radials{apart, -apart, random.between(-apart, apart)};
+    const double radial = random.oneOf(radials);
+    const double rest = std::sqrt(std::max(0.0, apart * apart - radial * radial));
+    const double turn = random.between(0.0, 2.0 * kPi);
+    const double azimuth = 2.0 * kPi * static_cast<double>(column) / 512.0;
+    const auto set = [&](std::size_t laser, std::size_t c, double ahead, double left, double up) {
+      scan.set(laser, c,
+               {static_cast<float>(ahead * std::cos(azimuth) - left * std::sin(azimuth)),
+                static_cast<float>(ahead * std::sin(azimuth) + left * std::cos(azimuth)), static_cast<float>(up)});
+    };
+    set(random.below(3), column, near, 0.0, z);
+    set(random.below(3), column + 1 + random.below(2), near + radial, rest * std::cos(turn), z + rest * std::sin(turn));
+  }
+  return scan;
+}
+
+TEST(StripScans, PairsAtTheNearEndAndTheFarEnd) {
+  lisco::ColumnClusterer clusterer;
+  for (std::uint64_t seed = 1; seed < 1 + timesEffort(300); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const std::array<float, 4> steps{0.001F, 0.01F, 0.1F, 1.0F};
+    Setting setting{"strip", {}};
+    setting.parameters.view = hintsFor(512, random.oneOf(steps));
+    setting.parameters.expected_returns = 100;
+    const bool at_far_end = random.chance(0.3);
+    const std::array<double, 6> tolerances{0.3, 1.0, 7e-5, 1e-17, 1e9, 2e13};
+    const std::array<double, 3> huge{1e13, 5e13, 1e14};
+    const double tolerance = at_far_end ? random.oneOf(huge) : random.oneOf(tolerances);
+    const double distance = at_far_end ? 1e15 : nearEnd(tolerance, setting.parameters.view);
+    const Scan scan = pairsAround(random, distance, tolerance);
+    const auto rounded = static_cast<float>(tolerance);
+    ASSERT_EQ(difference(trueClusters(scan.points(), rounded), cluster(clusterer, scan, rounded, setting)), "");
+  }
+}
+
+}  // namespace
+}  // namespace lisco_test
