@@ -236,6 +236,7 @@ bool ColumnClusterer::neighbours(const Piece& a, const Piece& b) const {
   const float squared_tolerance = tolerance_.squared();
   if (!(Box::squaredGap(a.box, b.box) < squared_tolerance)) return false;
   for (std::uint32_t i = a.first_return; i < a.first_return + a.count; ++i) {
+    if (!(Box::squaredGap(Box::around(x_[i], y_[i], z_[i]), b.box) < squared_tolerance)) continue;
     bool any = false;
     for (std::uint32_t j = b.first_return; j < b.first_return + b.count; ++j)
       any |= squaredDistance(x_[i] - x_[j], y_[i] - y_[j], z_[i] - z_[j]) < squared_tolerance;

@@ -18,7 +18,7 @@ constexpr float kDeviation = 0.75F;
 constexpr float kAngleRounding = 1e-4F;  // radians, on elevations; far more than their rounding
 constexpr float kFarEnd = 1e15F;         // what is further away is not far but elsewhere: its squares may overflow
 // With more loose returns than this, no more are placed: each loose one is searched for again whenever somebody asks.
-constexpr std::size_t kFewLoose = 64;
+constexpr std::size_t kFewLoose = 4096;
 constexpr std::size_t kPlacedPerLoose = 32;
 constexpr std::size_t kFewestSteps = 512;  // so that all places are less than two turns, and the seam is one
 constexpr std::size_t kMostSteps = 16384;

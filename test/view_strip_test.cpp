@@ -408,7 +408,7 @@ TEST(ViewStrip, TooManyLooseReturnsEndThePlacing) {
   EXPECT_FALSE(probe.put(0, kFirstPlace + 20, 60.0, 0.0));
   while (!probe.put(0, kFirstPlace + 40, 60.0, 0.0))
     ;
-  for (int i = 0; i < 100; ++i) EXPECT_TRUE(probe.put(0, kFirstPlace + 40, 60.0, 0.0));
+  for (int i = 0; i < 5000; ++i) EXPECT_TRUE(probe.put(0, kFirstPlace + 40, 60.0, 0.0));
   for (int time = 0; time < 3; ++time) {
     EXPECT_TRUE(probe.put(0, kFirstPlace + 20.4, 60.0, 0.0));  // its place is free
     const auto element = static_cast<std::uint32_t>(probe.size() - 1);
