@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Repeats the paper's evaluation: simulates its five scenes, times PCL, Lisco as published, a voxel grid and this library on them and on
 # the real scans in $LISCO_TEST_DATA (default ../shared/data), and rewrites the tables and charts of doc/evaluation.md.
-# Takes about half an hour; --runs N (default 20, as in the paper) shortens it.
+# Takes about twenty minutes; --runs N (default 20, as in the paper) shortens it.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/benchmarks/tools.sh"
