@@ -147,25 +147,23 @@ std::uint64_t ViewStrip::place(const Row& row, const float* rho) {
     const float y = row.y[i] - origin_[1];
     if (!started_) {
       started_ = true;
-      first_azimuth_ = std::atan2(y, x) - direction_ * static_cast<float>(kMargin) * radians_per_place_;
-      start_cosine_ = std::cos(first_azimuth_);
-      start_sine_ = std::sin(first_azimuth_);
+      const float start = std::atan2(y, x) - direction_ * static_cast<float>(kMargin) * radians_per_place_;
+      start_cosine_ = std::cos(start);
+      start_sine_ = std::sin(start);
       first_column_ = row.column[i];
     }
-    // Seen from the start, turning with time.
-    const float u = x * start_cosine_ + y * start_sine_;
-    const float v = direction_ * (y * start_cosine_ - x * start_sine_);
+    const Seen seen = seenFromStart(x, y);
     std::int64_t place = laser.next_place == kNowhere
                              ? static_cast<std::int64_t>(kMargin) + row.column[i] - std::int64_t{first_column_}
                              : laser.next_place + row.column[i] - std::int64_t{laser.next_column};
-    const bool expected = laser.next_place != kNowhere && place >= 0 && place < places &&
-                          std::fabs(u * sine_[static_cast<std::size_t>(place)] -
-                                    v * cosine_[static_cast<std::size_t>(place)]) <= rho[i] * deviation &&
-                          u * cosine_[static_cast<std::size_t>(place)] + v * sine_[static_cast<std::size_t>(place)] > 0;
+    const bool expected =
+        laser.next_place != kNowhere && place >= 0 && place < places &&
+        std::fabs(seen.u * sine_[static_cast<std::size_t>(place)] -
+                  seen.v * cosine_[static_cast<std::size_t>(place)]) <= rho[i] * deviation &&
+        seen.u * cosine_[static_cast<std::size_t>(place)] + seen.v * sine_[static_cast<std::size_t>(place)] > 0;
     if (!expected) {
       const auto turn = static_cast<std::int64_t>(steps_);
-      const auto measured =
-          std::llround(static_cast<double>(std::atan2(v, u)) / static_cast<double>(radians_per_place_));
+      const std::int64_t measured = placeOf(seen);
       place = measured + turn * std::llround(static_cast<double>(place - measured) / static_cast<double>(turn));
     }
     laser.next_place = place + 1;
@@ -200,6 +198,15 @@ std::uint64_t ViewStrip::place(const Row& row, const float* rho) {
 
 bool ViewStrip::isFar(float rho) const {
   return rho >= near_end_ && rho < kFarEnd;
+}
+
+ViewStrip::Seen ViewStrip::seenFromStart(float x, float y) const {
+  return {x * start_cosine_ + y * start_sine_, direction_ * (y * start_cosine_ - x * start_sine_)};
+}
+
+/// The place of its azimuth, within half a turn of place 0.
+std::int64_t ViewStrip::placeOf(const Seen& seen) const {
+  return std::llround(static_cast<double>(std::atan2(seen.v, seen.u)) / static_cast<double>(radians_per_place_));
 }
 
 void ViewStrip::updateElevations() {
@@ -354,11 +361,8 @@ void ViewStrip::search(const Loose& loose, Merge merge, void* context) {
   const float x = loose.x - origin_[0];
   const float y = loose.y - origin_[1];
   const float rho = std::sqrt(x * x + y * y);
-  const float u = x * start_cosine_ + y * start_sine_;
-  const float v = direction_ * (y * start_cosine_ - x * start_sine_);
   const auto turn = static_cast<std::int64_t>(steps_);
-  const auto measured =
-      std::llround(static_cast<double>(std::atan2(v, u)) / static_cast<double>(radians_per_place_)) % turn;
+  const std::int64_t measured = placeOf(seenFromStart(x, y)) % turn;
   const std::int64_t middle = measured < 0 ? measured + turn : measured;
   const float angle = asinBound(reach_ / rho);
   const auto before = static_cast<std::int64_t>(angle / radians_per_place_ + (kDeviation + 1.0F));

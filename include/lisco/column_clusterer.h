@@ -95,7 +95,7 @@ class ColumnClusterer {
   std::uint64_t comparisons() const { return comparisons_; }
 
  private:
-  static constexpr std::size_t kMostBlockColumns = 64;
+  static constexpr std::size_t kMostBlockColumns = ViewStrip::kMostInRow;
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
   struct Run {

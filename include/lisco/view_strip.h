@@ -25,7 +25,7 @@ namespace lisco {
 /// kept elsewhere as well.
 class ViewStrip {
  public:
-  static constexpr std::size_t kMostInRow = 64;  ///< returns per call of place ()
+  static constexpr std::size_t kMostInRow = 64;  ///< returns per call of place (), which has a bit for each
 
   /// Called for two elements whose returns are neighbours. \return the head both have now
   using Merge = std::uint32_t (*)(void* context, std::uint32_t a, std::uint32_t b);
@@ -75,7 +75,14 @@ class ViewStrip {
   };
 
   std::size_t at(std::size_t laser, std::size_t place) const { return laser * stride_ + kMargin + place; }
+  /// A return as it lies seen from the strip's start, turning with time.
+  struct Seen {
+    float u, v;  ///< metres, towards place 0 and across
+  };
+
   bool isFar(float rho) const;
+  Seen seenFromStart(float x, float y) const;
+  std::int64_t placeOf(const Seen& seen) const;
   void addLasers(std::size_t lasers);
   void updateElevations();
   void linkPlaces(std::size_t begin, std::size_t end, Merge merge, void* context);
@@ -92,7 +99,6 @@ class ViewStrip {
   std::size_t stride_ = 0;  ///< floats per laser
   float direction_ = 1;     ///< +1: azimuth grows with time
   float radians_per_place_ = 0;
-  float first_azimuth_ = 0;
   float start_cosine_ = 1;
   float start_sine_ = 0;
   std::uint32_t first_column_ = 0;
