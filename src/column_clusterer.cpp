@@ -2,247 +2,169 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "lisco/column_clusterer.h"
 
-#include <array>
-#include <limits>
-
 namespace lisco {
-
-ColumnClusterer::ColumnClusterer() {
-  Parameters lightest;
-  lightest.mask = Parameters::Mask::kGrid;
-  lightest.expected_returns = 0;
-  begin(lightest);
-}
 
 void ColumnClusterer::begin(const Parameters& parameters) {
   parameters_ = parameters;
-  parameters_.block_columns = std::clamp<std::size_t>(parameters.block_columns, 1, kMostBlockColumns);
+  parameters_.block_columns = std::clamp<std::size_t>(parameters.block_columns, 1, Row::kColumns);
+  if (parameters.threads == 0) parameters_.threads = allThreads();
   tolerance_ = Tolerance(parameters.tolerance);
-  if (parameters.mask == Parameters::Mask::kView) {
-    if (!std::holds_alternative<ViewMask>(mask_)) mask_.emplace<ViewMask>();
-    std::get<ViewMask>(mask_).prepare(tolerance_, parameters.view, parameters.expected_returns);
-  } else {
-    if (!std::holds_alternative<GridMask>(mask_)) mask_.emplace<GridMask>();
-    std::get<GridMask>(mask_).prepare(tolerance_, parameters.expected_returns);
+  threads_ = 1;
+  if (readings_.size() < parameters_.threads) readings_.resize(parameters_.threads);
+  for (Reading& reading : readings_) {
+    reading.first_element = 0;
+    reading.source_index.clear();
+    reading.runs.clear();
+    reading.rows.clear();
+    reading.voxels.prepare(tolerance_);
   }
-  ViewHints hints = parameters.view;
-  if (parameters.mask != Parameters::Mask::kView) hints.steps_per_turn = 0;
-  strip_.prepare(tolerance_, hints);
-  const std::size_t tiles = std::visit([](const auto& mask) { return mask.tileCount(); }, mask_);
-  // Every number of the last rotation lies below stamp + returns + 1, and no rotation has 2^31 returns.
-  stamp_ += static_cast<std::uint32_t>(returnCount()) + 1;
-  if (stamp_ >= std::uint32_t{1} << 31) {
-    tiles_.clear();
-    stamp_ = 1;
-  }
-  if (tiles_.size() < tiles) tiles_.resize(tiles);
-
-  for (StagedRow& row : staged_) row.count = 0;
+  readings_.front().source_index.reserve(parameters.expected_returns / parameters_.threads);
+  strip_.prepare(tolerance_, parameters_.view, parameters_.threads);
+  subclusters_.reset(0);
+  subcluster_sizes_.clear();
   staged_columns_ = 0;
-  for (auto* coordinate : {&x_, &y_, &z_}) {
-    coordinate->clear();
-    coordinate->reserve(parameters.expected_returns);
-  }
-  source_index_.clear();
-  source_index_.reserve(parameters.expected_returns);
   column_ = 0;
-  runs_.clear();
-  pieces_.clear();
-  patches_.clear();
-  shelves_.clear();
-  subclusters_.clear();
-  first_open_patch_ = 0;
-  young_patch_ = 0;
-  young_columns_ = 0;
-  comparisons_ = 0;
+}
+
+std::size_t ColumnClusterer::returnCount() const {
+  std::size_t count = 0;
+  for (const Reading& reading : readings_) count += reading.source_index.size();
+  return count;
+}
+
+bool ColumnClusterer::readsInParallel(std::size_t columns, std::size_t lasers) const {
+  constexpr std::size_t kWorthThreads = 8192;  // cells
+  return parameters_.threads > 1 && column_ == 0 && staged_columns_ == 0 && lasers > 1 &&
+         columns * lasers >= kWorthThreads;
+}
+
+/// Gives each thread some lasers, and elements for as many runs as they can have.
+void ColumnClusterer::prepareReadings(std::size_t columns, std::size_t lasers) {
+  threads_ = std::min(parameters_.threads, lasers);
+  subclusters_.reset(lasers * columns + Row::kColumns);
+  for (std::size_t thread = 0; thread < threads_; ++thread)
+    readings_[thread].first_element = static_cast<std::uint32_t>(lasers * thread / threads_ * columns);
+  if (strip_.inUse()) strip_.addLasers(lasers);
+}
+
+void ColumnClusterer::stageLasers(std::size_t lasers) {
+  while (staged_.size() < lasers) {
+    staged_.emplace_back();
+    std::fill_n(staged_.back().x, Row::kMargin + Row::kColumns, kNoReturn.x);
+    std::fill_n(staged_.back().y, Row::kMargin + Row::kColumns, kNoReturn.y);
+    std::fill_n(staged_.back().z, Row::kMargin + Row::kColumns, kNoReturn.z);
+  }
+  if (strip_.inUse()) strip_.addLasers(lasers);
+}
+
+/// Lets the strip begin at the first far return of a row.
+void ColumnClusterer::startStripAt(const Row& row, const MeasuredRow& measured, std::uint32_t first_column) {
+  const auto first = static_cast<std::size_t>(__builtin_ctzll(measured.far));
+  strip_.start(row.x[Row::kMargin + first], row.y[Row::kMargin + first],
+               first_column + static_cast<std::uint32_t>(first));
+}
+
+void ColumnClusterer::startStrip(Reading& reading, Row& row, std::uint32_t first_column, std::size_t columns) {
+  measureRow(row, columns, tolerance_.squared(), strip_.farRange(), reading.measured);
+  if (reading.measured.far != 0 && !strip_.hasStarted()) startStripAt(row, reading.measured, first_column);
+}
+
+/// Reads the columns that have been staged, row by row.
+void ColumnClusterer::clusterBlock() {
+  for (std::size_t laser = 0; laser < staged_.size(); ++laser)
+    readRow(readings_[threads_ - 1], threads_ - 1, staged_[laser], laser, column_, staged_columns_);
+  const std::size_t columns = staged_columns_;
+  staged_columns_ = 0;
+  finishBlock(columns);
+}
+
+/// Links what all lasers have passed.
+void ColumnClusterer::finishBlock(std::size_t columns) {
+  column_ += static_cast<std::uint32_t>(columns);
+  if (strip_.inUse()) strip_.link(subclusters_);
+}
+
+/// Chains the returns of one laser into runs: each a neighbour of the one before. Far ones go to their places in the
+/// strip, all others, and some far ones that others must find, into voxels.
+void ColumnClusterer::readRow(Reading& reading, std::size_t thread, Row& row, std::size_t laser,
+                              std::uint32_t first_column, std::size_t columns) {
+  MeasuredRow& measured = reading.measured;
+  measureRow(row, columns, tolerance_.squared(), strip_.farRange(), measured);
+  if (measured.returns == 0) return;
+
+  const auto first_run = static_cast<std::uint32_t>(reading.runs.size());
+  const std::uint64_t ends = ~measured.returns | measured.starts;
+  subclusters_.grow(reading.first_element + reading.runs.size() + Row::kColumns);
+  for (std::uint64_t starts = measured.starts; starts != 0; starts &= starts - 1) {
+    const auto begin = static_cast<std::size_t>(__builtin_ctzll(starts));
+    const std::uint64_t after = begin == Row::kColumns - 1 ? 0 : ends & ~std::uint64_t{0} << (begin + 1);
+    const std::size_t end = after != 0 ? static_cast<std::size_t>(__builtin_ctzll(after)) : Row::kColumns;
+    const std::uint32_t element = reading.first_element + static_cast<std::uint32_t>(reading.runs.size());
+    subclusters_.create(element);
+    std::fill(measured.run + begin, measured.run + end, element);
+    reading.runs.push_back(
+        {static_cast<std::uint32_t>(reading.source_index.size()), static_cast<std::uint32_t>(end - begin), 0});
+    reading.source_index.insert(reading.source_index.end(), row.source_index + begin, row.source_index + end);
+  }
+  reading.rows.push_back(
+      {static_cast<std::uint32_t>(laser), first_run, static_cast<std::uint32_t>(reading.runs.size()) - first_run});
+
+  std::uint64_t loose = 0;
+  if (measured.far != 0) {
+    if (!strip_.hasStarted()) startStripAt(row, measured, first_column);
+    loose = strip_.place(row, measured, laser, first_column, thread);
+  }
+  const std::uint64_t near = measured.returns & (~measured.only_far | loose);
+  if (near != 0) reading.voxels.add(row, measured, near, subclusters_);
 }
 
 void ColumnClusterer::update() {
   if (staged_columns_ > 0) clusterBlock();
-  const auto end = static_cast<std::uint32_t>(patches_.size());
-  std::visit([&](const auto& mask) { closePatches(mask, end); }, mask_);
-  if (strip_.inUse()) strip_.linkAll(mergeRuns, this);
-  young_patch_ = end;
-  young_columns_ = 0;
-}
+  subclusters_.share(threads_ > 1);
+  if (strip_.inUse()) strip_.linkAll(subclusters_);
+  subclusters_.share(false);
+  Voxels& voxels = readings_.front().voxels;
+  for (std::size_t thread = 1; thread < threads_; ++thread) voxels.absorb(readings_[thread].voxels, subclusters_);
+  voxels.link(subclusters_);
 
-/// Reads a block of columns row by row into runs and patches, then closes the patches that are no longer young.
-void ColumnClusterer::clusterBlock() {
-  std::visit(
-      [&](const auto& mask) {
-        for (std::size_t laser = 0; laser < staged_.size(); ++laser) {
-          if (staged_[laser].count > 0) readRow(mask, staged_[laser], laser);
-          staged_[laser].count = 0;
-        }
-        if (strip_.inUse()) strip_.link(mergeRuns, this);
-        young_columns_ += staged_columns_;
-        if (young_columns_ >= parameters_.open_columns) {
-          closePatches(mask, young_patch_);
-          young_patch_ = static_cast<std::uint32_t>(patches_.size());
-          young_columns_ = 0;
-        }
-      },
-      mask_);
-  staged_columns_ = 0;
-}
-
-/// Chains the returns of one laser into runs: each a neighbour of the one before. Far ones go to their places in the
-/// strip, all others, and some far ones that others must find, into patches.
-template <typename Mask>
-void ColumnClusterer::readRow(const Mask& mask, const StagedRow& row, std::size_t laser) {
-  const auto first_return = static_cast<std::uint32_t>(returnCount());
-  x_.insert(x_.end(), row.x, row.x + row.count);
-  y_.insert(y_.end(), row.y, row.y + row.count);
-  z_.insert(z_.end(), row.z, row.z + row.count);
-  source_index_.insert(source_index_.end(), row.source_index, row.source_index + row.count);
-
-  std::array<float, kMostBlockColumns> step;  // squared, from the return before
-  step[0] = std::numeric_limits<float>::infinity();
-  for (std::size_t i = 1; i < row.count; ++i)
-    step[i] = squaredDistance(row.x[i] - row.x[i - 1], row.y[i] - row.y[i - 1], row.z[i] - row.z[i - 1]);
-  std::array<std::uint32_t, kMostBlockColumns> run;
-  const float squared_tolerance = tolerance_.squared();
-  for (std::size_t i = 0; i < row.count;) {
-    const std::size_t begin = i;
-    const auto number = static_cast<std::uint32_t>(runs_.size());
-    do run[i++] = number;
-    while (i < row.count && step[i] < squared_tolerance);
-    runs_.push_back({first_return + static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(i - begin)});
-    subclusters_.create(static_cast<std::uint32_t>(i - begin));
-  }
-
-  std::uint64_t wanted = ~std::uint64_t{0};
-  if (strip_.inUse()) {
-    std::array<float, kMostBlockColumns> rho;
-    const ViewStrip::Row far{laser, row.count, row.x, row.y, row.z, row.column, run.data()};
-    strip_.horizontalDistances(far, rho.data());
-    wanted = strip_.place(far, rho.data());
-    for (std::size_t i = 0; i < row.count; ++i) wanted |= static_cast<std::uint64_t>(!strip_.amongFar(rho[i])) << i;
-  }
-  if (wanted != 0) cutIntoPieces(mask, row, first_return, run.data(), wanted);
-}
-
-/// Cuts runs where they pass from one tile to the next, and puts the pieces of wanted returns into patches.
-/// \param run the number of each return's run
-/// \param wanted bit i: return i
-template <typename Mask>
-void ColumnClusterer::cutIntoPieces(const Mask& mask, const StagedRow& row, std::uint32_t first_return,
-                                    const std::uint32_t* run, std::uint64_t wanted) {
-  std::array<std::uint32_t, kMostBlockColumns> tiles;
-  mask.tilesOf(row.x, row.y, row.z, row.count, tiles.data());
-  const auto isWanted = [wanted](std::size_t i) { return (wanted >> i & 1U) != 0; };
-  for (std::size_t i = 0; i < row.count;) {
-    const std::size_t begin = i++;
-    if (!isWanted(begin)) continue;
-    Box box = Box::around(row.x[begin], row.y[begin], row.z[begin]);
-    for (; i < row.count && isWanted(i) && tiles[i] == tiles[begin] && run[i] == run[begin]; ++i)
-      box.add(Box::around(row.x[i], row.y[i], row.z[i]));
-    pieces_.push_back({box, first_return + static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(i - begin),
-                       kNone, run[begin]});
-    placePiece(static_cast<std::uint32_t>(pieces_.size() - 1), tiles[begin]);
-  }
-}
-
-/// Adds a piece to an open patch of its tile that it touches, or starts a patch with it. Not every patch is
-/// tried, and of a patch only its latest piece: what is missed here is found when the patches close.
-void ColumnClusterer::placePiece(std::uint32_t piece_number, std::uint32_t tile) {
-  constexpr int kMostTried = 4;
-  Piece& piece = pieces_[piece_number];
-  const std::uint32_t newest = unstamped(tiles_[tile].newest_open);
-  std::uint32_t candidate = newest;
-  for (int tried = 0; tried < kMostTried && candidate != kNone && candidate >= first_open_patch_; ++tried) {
-    Patch& patch = patches_[candidate];
-    if (Box::squaredSpan(patch.box, piece.box) < tolerance_.squared() || neighbours(piece, pieces_[patch.last_piece])) {
-      patch.box.add(piece.box);
-      pieces_[patch.last_piece].next_in_patch = piece_number;
-      patch.last_piece = piece_number;
-      mergeRuns(this, patch.run, piece.run);
-      return;
-    }
-    candidate = patch.next_in_tile;
-  }
-  patches_.push_back({piece.box, newest, tile, piece_number, piece_number, piece.run});
-  tiles_[tile].newest_open = static_cast<std::uint32_t>(patches_.size() - 1) + stamp_;
-}
-
-/// Joins the subclusters of two runs. \return the head that they have now
-std::uint32_t ColumnClusterer::mergeRuns(void* clusterer, std::uint32_t a, std::uint32_t b) {
-  DisjointSets& subclusters = static_cast<ColumnClusterer*>(clusterer)->subclusters_;
-  const std::uint32_t head_a = subclusters.head(a);
-  const std::uint32_t head_b = subclusters.head(b);
-  return head_a == head_b ? head_a : subclusters.merge(head_a, head_b);
-}
-
-template <typename Mask>
-void ColumnClusterer::closePatches(const Mask& mask, std::uint32_t end) {
-  if (tolerance_.joinsAnything())
-    for (std::uint32_t patch = first_open_patch_; patch < end; ++patch) {
-      cluster(mask, patch);
-      shelve(patch);
-    }
-  first_open_patch_ = std::max(first_open_patch_, end);
-}
-
-/// Algorithm 4 of the paper for a whole patch: merges its subcluster with that of every older patch within
-/// its mask that holds a neighbour of one of its returns.
-template <typename Mask>
-void ColumnClusterer::cluster(const Mask& mask, std::uint32_t patch_number) {
-  const Patch& patch = patches_[patch_number];
-  const Box& box = patch.box;
-  const float squared_tolerance = tolerance_.squared();
-  std::uint32_t head = subclusters_.head(patch.run);
-  mask.forEachTile(box, [&](std::uint32_t tile) {
-    for (std::uint32_t s = unstamped(tiles_[tile].newest_shelf); s != kNone; s = shelves_[s].next_in_tile) {
-      const Shelf& shelf = shelves_[s];
-      comparisons_ += Shelf::kPlaces;
-      std::uint32_t near = shelf.placesNear(box, squared_tolerance);
-      for (std::uint32_t place = 0; near != 0; ++place, near >>= 1) {
-        if ((near & 1U) == 0) continue;
-        const Patch& other = patches_[shelf.patch[place]];
-        const std::uint32_t other_head = subclusters_.head(other.run);
-        if (other_head != head && neighbours(patch, other)) head = subclusters_.merge(head, other_head);
+  // A head is the first element of its set.
+  subcluster_sizes_.clear();
+  for (std::size_t thread = 0; thread < threads_; ++thread) {
+    Reading& reading = readings_[thread];
+    for (std::size_t i = 0; i < reading.runs.size(); ++i) {
+      Run& run = reading.runs[i];
+      const std::uint32_t element = reading.first_element + static_cast<std::uint32_t>(i);
+      const std::uint32_t head = subclusters_.head(element);
+      if (head == element) {
+        run.subcluster = static_cast<std::uint32_t>(subcluster_sizes_.size());
+        subcluster_sizes_.push_back(run.count);
+        continue;
       }
+      std::size_t owner = thread;
+      while (head < readings_[owner].first_element) --owner;
+      run.subcluster = readings_[owner].runs[head - readings_[owner].first_element].subcluster;
+      subcluster_sizes_[run.subcluster] += run.count;
     }
-  });
+  }
 }
 
-/// Puts a closed patch where later patches look for it.
-void ColumnClusterer::shelve(std::uint32_t patch_number) {
-  const Patch& patch = patches_[patch_number];
-  const std::uint32_t newest = unstamped(tiles_[patch.tile].newest_shelf);
-  if (newest != kNone && !shelves_[newest].full()) {
-    shelves_[newest].add(patch_number, patch.box);
-    return;
+/// Sorts the rows by laser, those of one laser as they came.
+void ColumnClusterer::orderRows() {
+  std::size_t lasers = 0;
+  std::size_t rows = 0;
+  for (std::size_t thread = 0; thread < threads_; ++thread) {
+    rows += readings_[thread].rows.size();
+    for (const RowRuns& row : readings_[thread].rows) lasers = std::max<std::size_t>(lasers, row.laser + 1);
   }
-  tiles_[patch.tile].newest_shelf = static_cast<std::uint32_t>(shelves_.size()) + stamp_;
-  shelves_.push_back(Shelf::empty(newest));
-  shelves_.back().add(patch_number, patch.box);
-}
-
-/// Whether any return of one patch is a neighbour of any return of the other.
-bool ColumnClusterer::neighbours(const Patch& a, const Patch& b) const {
-  const float squared_tolerance = tolerance_.squared();
-  if (Box::squaredSpan(a.box, b.box) < squared_tolerance) return true;
-  for (std::uint32_t i = a.first_piece; i != kNone; i = pieces_[i].next_in_patch) {
-    if (!(Box::squaredGap(pieces_[i].box, b.box) < squared_tolerance)) continue;
-    for (std::uint32_t j = b.first_piece; j != kNone; j = pieces_[j].next_in_patch)
-      if (neighbours(pieces_[i], pieces_[j])) return true;
-  }
-  return false;
-}
-
-/// Whether any return of one piece is a neighbour of any return of the other.
-bool ColumnClusterer::neighbours(const Piece& a, const Piece& b) const {
-  const float squared_tolerance = tolerance_.squared();
-  if (!(Box::squaredGap(a.box, b.box) < squared_tolerance)) return false;
-  for (std::uint32_t i = a.first_return; i < a.first_return + a.count; ++i) {
-    if (!(Box::squaredGap(Box::around(x_[i], y_[i], z_[i]), b.box) < squared_tolerance)) continue;
-    bool any = false;
-    for (std::uint32_t j = b.first_return; j < b.first_return + b.count; ++j)
-      any |= squaredDistance(x_[i] - x_[j], y_[i] - y_[j], z_[i] - z_[j]) < squared_tolerance;
-    if (any) return true;
-  }
-  return false;
+  rows_of_laser_.assign(lasers + 1, 0);
+  for (std::size_t thread = 0; thread < threads_; ++thread)
+    for (const RowRuns& row : readings_[thread].rows) ++rows_of_laser_[row.laser + 1];
+  for (std::size_t laser = 0; laser < lasers; ++laser) rows_of_laser_[laser + 1] += rows_of_laser_[laser];
+  ordered_rows_.resize(rows);
+  for (std::size_t thread = 0; thread < threads_; ++thread)
+    for (std::size_t row = 0; row < readings_[thread].rows.size(); ++row)
+      ordered_rows_[rows_of_laser_[readings_[thread].rows[row].laser]++] = {static_cast<std::uint32_t>(thread),
+                                                                            static_cast<std::uint32_t>(row)};
 }
 
 }  // namespace lisco

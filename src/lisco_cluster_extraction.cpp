@@ -27,62 +27,55 @@ bool pcl::detail::LiscoCloudClusterer::select(std::size_t points, const Indices*
 
   // A small part of a cloud is sorted out beforehand, so that the rest of the cloud costs nothing.
   constexpr std::size_t kSmallPart = 8;
-  few_ = indices && indices->size() < points / kSmallPart;
-  few_points_.clear();
-  if (few_) {
+  selection_ = !indices ? Selection::kAll : indices->size() < points / kSmallPart ? Selection::kFew : Selection::kMany;
+  if (selection_ == Selection::kFew) {
     few_points_ = *indices;
     std::sort(few_points_.begin(), few_points_.end());
     few_points_.erase(std::unique(few_points_.begin(), few_points_.end()), few_points_.end());
-    head_of_cell_.assign(few_points_.size(), kSelected);
-    return (true);
+  } else if (selection_ == Selection::kMany) {
+    is_selected_.assign(points, 0);
+    for (const auto& index : *indices) is_selected_[static_cast<std::size_t>(index)] = 1;
   }
-  head_of_cell_.assign(points, indices ? kNotSelected : kSelected);
-  if (indices)
-    for (const auto& index : *indices) head_of_cell_[static_cast<std::size_t>(index)] = kSelected;
   return (true);
-}
-
-std::uint32_t pcl::detail::LiscoCloudClusterer::headOf(index_t point) const {
-  const std::size_t cell =
-      few_ ? static_cast<std::size_t>(std::lower_bound(few_points_.begin(), few_points_.end(), point) -
-                                      few_points_.begin())
-           : static_cast<std::size_t>(point);
-  return (head_of_cell_[cell]);
 }
 
 void pcl::detail::LiscoCloudClusterer::collect(const Indices* indices, const PCLHeader& header, uindex_t min_size,
                                                uindex_t max_size, std::vector<PointIndices>& clusters) {
-  clusterer_.forEachRun([this](const std::uint32_t* cells, std::size_t count, std::uint32_t head) {
-    for (std::size_t i = 0; i < count; ++i) head_of_cell_[cells[i]] = head;
-  });
-
   constexpr std::uint32_t kUndecided = ~std::uint32_t{0};
   constexpr std::uint32_t kNoCluster = kUndecided - 1;
-  cluster_of_head_.assign(clusterer_.headLimit(), kUndecided);
+  cluster_of_subcluster_.assign(clusterer_.subclusterCount(), kUndecided);
   const std::size_t first_cluster = clusters.size();
-  const auto decide = [&](std::uint32_t head) {
-    const std::uint32_t size = clusterer_.weight(head);
-    cluster_of_head_[head] = kNoCluster;
+  const auto decide = [&](std::uint32_t subcluster) {
+    if (cluster_of_subcluster_[subcluster] != kUndecided) return;
+    const std::uint32_t size = clusterer_.sizeOf(subcluster);
+    cluster_of_subcluster_[subcluster] = kNoCluster;
     if (size < min_size || size > max_size) return;
-    cluster_of_head_[head] = static_cast<std::uint32_t>(clusters.size() - first_cluster);
+    cluster_of_subcluster_[subcluster] = static_cast<std::uint32_t>(clusters.size() - first_cluster);
     clusters.emplace_back();
     clusters.back().header = header;
     clusters.back().indices.reserve(size);
   };
-  const auto decide_once = [&](std::uint32_t head) {
-    if (head < kSelected && cluster_of_head_[head] == kUndecided) decide(head);
-  };
 
   // The order of the clusters is that of their first points in the indices; within each, indices ascend.
-  if (indices)
-    for (const auto& index : *indices) decide_once(headOf(index));
-  for (std::size_t cell = 0; cell < head_of_cell_.size(); ++cell) {
-    const std::uint32_t head = head_of_cell_[cell];
-    decide_once(head);
-    if (head < kSelected && cluster_of_head_[head] != kNoCluster)
-      clusters[first_cluster + cluster_of_head_[head]].indices.push_back(few_ ? few_points_[cell]
-                                                                              : static_cast<index_t>(cell));
+  if (indices && !std::is_sorted(indices->begin(), indices->end())) {
+    std::uint32_t points = 0;
+    for (const auto& index : *indices) points = std::max(points, static_cast<std::uint32_t>(index) + 1);
+    subcluster_of_point_.assign(points, kNoCluster);
+    clusterer_.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
+      for (std::size_t i = 0; i < count; ++i) subcluster_of_point_[cells[i]] = subcluster;
+    });
+    for (const auto& index : *indices) {
+      const std::uint32_t subcluster = subcluster_of_point_[static_cast<std::size_t>(index)];
+      if (subcluster != kNoCluster) decide(subcluster);
+    }
   }
+  clusterer_.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
+    decide(subcluster);
+    const std::uint32_t cluster = cluster_of_subcluster_[subcluster];
+    if (cluster == kNoCluster) return;
+    Indices& members = clusters[first_cluster + cluster].indices;
+    members.insert(members.end(), cells, cells + count);
+  });
 }
 
 PCL_INSTANTIATE(LiscoClusterExtraction, PCL_XYZ_POINT_TYPES)

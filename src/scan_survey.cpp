@@ -25,15 +25,6 @@ Direction directionOf(const Return& point, const std::array<float, 3>& origin) {
   return {std::atan2(y, x), std::atan2(z, std::hypot(x, y))};
 }
 
-double angleBetween(const Return& a, const Return& b, const std::array<float, 3>& origin) {
-  const Direction p = directionOf(a, origin);
-  const Direction q = directionOf(b, origin);
-  const double across = std::sin(0.5 * (p.azimuth - q.azimuth));
-  const double along = std::sin(0.5 * (p.elevation - q.elevation));
-  const double chord = along * along + std::cos(p.elevation) * std::cos(q.elevation) * across * across;  // haversine
-  return 2.0 * std::asin(std::sqrt(std::min(chord, 1.0)));
-}
-
 float median(std::vector<double>& values, float if_empty) {
   if (values.empty()) return if_empty;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -58,72 +49,46 @@ bool mayHaveSeen(const std::array<float, 3>& origin, const Box& box) {
 }  // namespace
 
 Parameters ScanSurvey::judge(const std::array<float, 3>& sensor, bool organized) const {
-  // A view whose neighbouring cells lie further apart than this, in the median, is no view.
-  constexpr double kWidestStep = 0.05;
   constexpr std::size_t kFewest = 8;
-
   Parameters parameters;
-  // Cells of an unorganized cloud are no columns: there, patches stay open to the end.
-  if (!organized) parameters.open_columns = std::numeric_limits<std::size_t>::max();
-  parameters.mask = Parameters::Mask::kGrid;  // needs no layout, so it also serves what is too small for a survey
-  if (along_row_.size() + along_column_.size() < kFewest) return parameters;
+  if (!organized || along_row_.size() + along_column_.size() < kFewest || further_.size() < kFewest) return parameters;
 
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
   for (const auto* pairs : {&along_row_, &along_column_})
     for (const Pair& pair : *pairs) box.add(Box::around(pair.a.x, pair.a.y, pair.a.z));
-
   if (!mayHaveSeen(parameters.view.origin, box)) {
     if (!mayHaveSeen(sensor, box)) return parameters;
     parameters.view.origin = sensor;
   }
+  const auto& origin = parameters.view.origin;
 
-  std::vector<double> azimuth_steps;
-  for (const Pair& pair : along_row_) {
-    if (!organized) {  // consecutive points may follow each other up and down as well
-      azimuth_steps.push_back(angleBetween(pair.a, pair.b, parameters.view.origin));
-      continue;
-    }
-    const double turn = std::fabs(directionOf(pair.a, parameters.view.origin).azimuth -
-                                  directionOf(pair.b, parameters.view.origin).azimuth);
-    azimuth_steps.push_back(std::min(turn, 2.0 * kPi - turn));
-  }
   std::vector<double> elevation_steps;
   for (const Pair& pair : along_column_)
-    elevation_steps.push_back(std::fabs(directionOf(pair.a, parameters.view.origin).elevation -
-                                        directionOf(pair.b, parameters.view.origin).elevation));
-  parameters.view.azimuth_step = median(azimuth_steps, parameters.view.azimuth_step);
+    elevation_steps.push_back(std::fabs(directionOf(pair.a, origin).elevation - directionOf(pair.b, origin).elevation));
   parameters.view.elevation_step = median(elevation_steps, parameters.view.elevation_step);
-  const auto azimuth_step = static_cast<double>(parameters.view.azimuth_step);
-  const auto elevation_step = static_cast<double>(parameters.view.elevation_step);
-  const bool coarse = azimuth_step > kWidestStep || elevation_step > 4.0 * kWidestStep;
-  const bool fine = azimuth_step * ViewMask::kColumnsPerTile < kPi / ViewMask::kMostSectors ||
-                    elevation_step * ViewMask::kLasersPerTile < 0.5 * kPi / ViewMask::kMostRows;
-  if (!coarse && !fine) parameters.mask = Parameters::Mask::kView;
 
   // Over many columns, steps are measured more finely, and so is the direction of the turn.
   std::vector<double> turns;
   for (const FurtherPair& pair : further_)
-    turns.push_back(std::remainder(directionOf(pair.b, parameters.view.origin).azimuth -
-                                       directionOf(pair.a, parameters.view.origin).azimuth,
-                                   2.0 * kPi) /
-                    static_cast<double>(pair.columns));
-  if (turns.size() >= kFewest) {
-    const auto step = static_cast<double>(median(turns, 0.0F));
-    constexpr double kLeastStep = 1e-4;
-    if (std::fabs(step) > kLeastStep)
-      parameters.view.steps_per_turn = static_cast<int>(std::lround(2.0 * kPi / std::fabs(step)));
-    parameters.view.clockwise = step < 0;
-    constexpr double kFew = 0.2;
-    std::vector<double> distances;
-    for (const Pair& pair : along_row_)
-      distances.push_back(std::hypot(static_cast<double>(pair.a.x) - static_cast<double>(parameters.view.origin[0]),
-                                     static_cast<double>(pair.a.y) - static_cast<double>(parameters.view.origin[1])));
-    if (!distances.empty()) {
-      const auto few = distances.end() - 1 - static_cast<std::ptrdiff_t>(kFew * static_cast<double>(distances.size()));
-      std::nth_element(distances.begin(), few, distances.end());
-      parameters.view.far_distance = static_cast<float>(*few);
-    }
+    turns.push_back(
+        std::remainder(directionOf(pair.b, origin).azimuth - directionOf(pair.a, origin).azimuth, 2.0 * kPi) /
+        static_cast<double>(pair.columns));
+  const auto step = static_cast<double>(median(turns, 0.0F));
+  constexpr double kLeastStep = 1e-4;
+  if (std::fabs(step) > kLeastStep)
+    parameters.view.steps_per_turn = static_cast<int>(std::lround(2.0 * kPi / std::fabs(step)));
+  parameters.view.clockwise = step < 0;
+
+  constexpr double kFew = 0.2;
+  std::vector<double> distances;
+  for (const Pair& pair : along_row_)
+    distances.push_back(std::hypot(static_cast<double>(pair.a.x) - static_cast<double>(origin[0]),
+                                   static_cast<double>(pair.a.y) - static_cast<double>(origin[1])));
+  if (!distances.empty()) {
+    const auto few = distances.end() - 1 - static_cast<std::ptrdiff_t>(kFew * static_cast<double>(distances.size()));
+    std::nth_element(distances.begin(), few, distances.end());
+    parameters.view.far_distance = static_cast<float>(*few);
   }
   return parameters;
 }

@@ -4,17 +4,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "view_strip.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
+
+#include "lanes-inl.h"
+
+#ifndef LISCO_VIEW_STRIP_CONSTANTS
+#define LISCO_VIEW_STRIP_CONSTANTS
 namespace lisco {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // A return stands at most this many places from where its azimuth is; half a place is the least possible.
 constexpr float kDeviation = 0.75F;
+constexpr int kMostReach = 48;           // places; far returns never reach further
 constexpr float kAngleRounding = 1e-4F;  // radians, on elevations; far more than their rounding
 constexpr float kFarEnd = 1e15F;         // what is further away is not far but elsewhere: its squares may overflow
 // With more loose returns than this, no more are placed: each loose one is searched for again whenever somebody asks.
@@ -24,28 +34,11 @@ constexpr std::size_t kFewestSteps = 512;  // so that all places are less than t
 constexpr std::size_t kMostSteps = 16384;
 
 // From where on returns are far: where about this many of a flat surface's lie in a square of the tolerance's size.
-constexpr double kReturnsPerSquare = 12.0;
-
-/// Sixteen lanes as four registers, for any processor.
-using Floats = float __attribute__((vector_size(16)));
-using Ints = std::int32_t __attribute__((vector_size(16)));
-constexpr std::size_t kRegisters = 4;
-
-template <typename Register, typename Value>
-inline Register load(const Value* from) {
-  Register lanes;
-  std::memcpy(&lanes, from, sizeof lanes);
-  return lanes;
-}
-inline Floats all(float value) {
-  return Floats{value, value, value, value};
-}
-
-inline bool any(const Ints& mask) {
-  std::uint64_t halves[2];
-  std::memcpy(halves, &mask, sizeof halves);
-  return (halves[0] | halves[1]) != 0;
-}
+#ifndef LISCO_RPS
+#define LISCO_RPS 150.0
+#endif
+constexpr double kReturnsPerSquare = LISCO_RPS;
+constexpr double kLeastNearEnd = 2.5;  // in units of the tolerance
 
 /// An upper bound on asin (ratio), 0 <= ratio < 1.
 inline float asinBound(float ratio) {
@@ -53,336 +46,613 @@ inline float asinBound(float ratio) {
 }
 
 }  // namespace
+}  // namespace lisco
+#endif
 
-void ViewStrip::prepare(const Tolerance& tolerance, const ViewHints& hints) {
-  tolerance_ = tolerance;
-  origin_ = hints.origin;
-  started_ = false;
-  linked_ = 0;
-  end_ = 0;
-  placed_ = 0;
-  full_ = false;
-  loose_.clear();
-  late_.clear();
-  const auto steps = static_cast<std::size_t>(hints.steps_per_turn);
-  const double step = 2 * kPi / static_cast<double>(std::max<std::size_t>(steps, 1));
-  const double spacing = std::sqrt(kReturnsPerSquare * step * static_cast<double>(hints.elevation_step));
-  const double near_end = tolerance.reach() / spacing;
-  const bool useful =
-      steps >= kFewestSteps && steps <= kMostSteps && tolerance.joinsAnything() && spacing > 1e-5 && spacing < 0.5 &&
-      near_end > 1e-18 && near_end < 1e15 && near_end < static_cast<double>(hints.far_distance) &&
-      asinBound(static_cast<float>(spacing)) / static_cast<float>(step) + 3 < static_cast<float>(kMostReach);
-  if (!useful) {
-    steps_ = 0;
-    return;
-  }
-  near_end_ = static_cast<float>(near_end);
-  reach_ = static_cast<float>(tolerance.reach()) * 1.00001F;
-  // Distances are rounded, and so are these sums.
-  far_enough_ = near_end_ * 1.00001F + reach_;
-  not_too_far_ = kFarEnd * 0.9999F - reach_;
-  direction_ = hints.clockwise ? -1.0F : 1.0F;
-  if (steps != steps_) {
-    steps_ = steps;
-    radians_per_place_ = static_cast<float>(step);
-    const std::size_t places = steps + 4 * kMargin;
-    stride_ = (places + kMargin + 2 * kLanes) / kLanes * kLanes;
-    cosine_.resize(places);
-    sine_.resize(places);
-    for (std::size_t place = 0; place < places; ++place) {
-      cosine_[place] = static_cast<float>(std::cos(step * static_cast<double>(place)));
-      sine_[place] = static_cast<float>(std::sin(step * static_cast<double>(place)));
-    }
-    lasers_.clear();
-  }
-  const std::size_t lasers = lasers_.size();
-  lasers_.clear();
-  addLasers(lasers);
-  std::fill_n(rho_.begin(), lasers * stride_, kNan);
+HWY_BEFORE_NAMESPACE();
+namespace lisco {
+namespace HWY_NAMESPACE {
+
+/// Whether a lane's azimuth is the place's, within kDeviation.
+HWY_INLINE FloatMask standsAt(const StripData& strip, std::int64_t place, FloatVector u, FloatVector v,
+                              FloatVector rho) {
+  const auto index = static_cast<std::size_t>(place + static_cast<std::int64_t>(StripData::kMargin));
+  const FloatVector cosine = hn::LoadU(kFloats, &strip.cosine[index]);
+  const FloatVector sine = hn::LoadU(kFloats, &strip.sine[index]);
+  const FloatVector across = hn::Abs(hn::Sub(hn::Mul(u, sine), hn::Mul(v, cosine)));
+  const FloatVector along = hn::Add(hn::Mul(u, cosine), hn::Mul(v, sine));
+  const FloatVector deviation = hn::Set(kFloats, std::sin(kDeviation * strip.radians_per_place));
+  return hn::And(hn::Le(across, hn::Mul(rho, deviation)), hn::Gt(along, hn::Zero(kFloats)));
 }
 
-void ViewStrip::addLasers(std::size_t lasers) {
-  if (lasers <= lasers_.size()) return;
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  lasers_.resize(lasers, {kInfinity, -kInfinity, kNowhere, 0});
-  above_.assign(lasers, 0);
-  below_.assign(lasers, 0);
-  elevations_changed_ = true;  // there are more of them
-  const std::size_t size = lasers * stride_ + kLanes;
-  if (rho_.size() < size) {
-    rho_.resize(size, kNan);
-    for (auto* coordinate : {&x_, &y_, &z_}) coordinate->resize(size);
-    element_.resize(size);
+/// Stores some returns of a row, the first cell's place given, where places are free.
+/// \return those whose places are taken
+std::uint64_t store(StripData& strip, const Row& row, const MeasuredRow& measured, std::size_t laser,
+                    std::int64_t first_place, std::uint64_t which) {
+  std::uint64_t taken = 0;
+  const std::size_t cell = strip.at(laser, first_place);
+  for (std::size_t k = 0; k < Row::kColumns; k += kLanes) {
+    const std::uint64_t here = which >> k & ((std::uint64_t{1} << kLanes) - 1);
+    if (here == 0) continue;
+    const FloatVector there = hn::LoadU(kFloats, &strip.x[cell + k]);
+    const std::uint64_t is_free = bitsOf(hn::IsNaN(there)) & here;
+    taken |= (here & ~is_free) << k;
+    std::uint8_t bytes[8];
+    std::memcpy(bytes, &is_free, sizeof bytes);
+    const FloatMask mask = hn::LoadMaskBits(kFloats, bytes);
+    hn::BlendedStore(hn::LoadU(kFloats, row.x + Row::kMargin + k), mask, kFloats, &strip.x[cell + k]);
+    hn::BlendedStore(hn::LoadU(kFloats, row.y + Row::kMargin + k), mask, kFloats, &strip.y[cell + k]);
+    hn::BlendedStore(hn::LoadU(kFloats, row.z + Row::kMargin + k), mask, kFloats, &strip.z[cell + k]);
+    hn::BlendedStore(hn::LoadU(kWords, measured.run + k), hn::RebindMask(kWords, mask), kWords,
+                     &strip.element[cell + k]);
   }
+  return taken;
 }
 
-void ViewStrip::horizontalDistances(const Row& row, float* rho) const {
-  for (std::size_t i = 0; i < row.count; ++i) {
-    const float x = row.x[i] - origin_[0];
-    const float y = row.y[i] - origin_[1];
-    rho[i] = std::sqrt(x * x + y * y);
+std::uint64_t placeReturns(StripData& strip, const Row& row, const MeasuredRow& measured, std::size_t laser_number,
+                           std::uint32_t first_column, StripData::Placing& placing) {
+  StripData::Laser& laser = strip.lasers[laser_number];
+  const auto places = static_cast<std::int64_t>(strip.places);
+  const auto turn = static_cast<std::int64_t>(strip.steps);
+  const auto margin = static_cast<std::int64_t>(StripData::kMargin);
+  const auto most = margin - 1;  // of places before the first and behind the last that have memory
+  float u[Row::kColumns];
+  float v[Row::kColumns];
+  for (std::size_t k = 0; k < Row::kColumns; k += kLanes) {
+    if ((measured.far >> k & ((std::uint64_t{1} << kLanes) - 1)) == 0) continue;
+    const FloatVector east =
+        hn::Sub(hn::LoadU(kFloats, row.x + Row::kMargin + k), hn::Set(kFloats, strip.range.origin[0]));
+    const FloatVector north =
+        hn::Sub(hn::LoadU(kFloats, row.y + Row::kMargin + k), hn::Set(kFloats, strip.range.origin[1]));
+    const FloatVector cosine = hn::Set(kFloats, strip.start_cosine);
+    const FloatVector sine = hn::Set(kFloats, strip.start_sine);
+    const FloatVector direction = hn::Set(kFloats, strip.direction);
+    hn::StoreU(hn::Add(hn::Mul(east, cosine), hn::Mul(north, sine)), kFloats, u + k);
+    hn::StoreU(hn::Mul(direction, hn::Sub(hn::Mul(north, cosine), hn::Mul(east, sine))), kFloats, v + k);
   }
-}
 
-std::uint64_t ViewStrip::place(const Row& row, const float* rho) {
-  if (row.laser >= lasers_.size()) {
-    const std::size_t before = lasers_.size();
-    addLasers(row.laser + 1);
-    std::fill_n(rho_.begin() + static_cast<std::ptrdiff_t>(before * stride_), (lasers_.size() - before) * stride_,
-                kNan);
-  }
-  Laser& laser = lasers_[row.laser];
+  // Where the row's first cell stands if this laser's returns go on as before.
+  std::int64_t first_place = laser.next_place == StripData::kNowhere
+                                 ? margin + first_column - std::int64_t{strip.first_column}
+                                 : laser.next_place + first_column - std::int64_t{laser.next_column};
   std::uint64_t loose = 0;
-  const auto places = static_cast<std::int64_t>(cosine_.size());
-  const float deviation = std::sin(kDeviation * radians_per_place_);
-  for (std::size_t i = 0; i < row.count; ++i) {
-    if (!isFar(rho[i])) continue;
-    const Loose one{row.x[i], row.y[i], row.z[i], row.element[i]};
-    if (full_) {
+  std::uint64_t left = measured.far;
+  while (left != 0) {
+    // The returns from here on that stand where they are expected go to their places together.
+    const auto next = static_cast<std::size_t>(__builtin_ctzll(left));
+    std::uint64_t astray = left;
+    if (first_place >= -most && first_place <= places - 1 + most) {
+      astray = 0;
+      for (std::size_t k = next / kLanes * kLanes; k < Row::kColumns && astray == 0; k += kLanes) {
+        const std::uint64_t here = left >> k & ((std::uint64_t{1} << kLanes) - 1);
+        if (here == 0) continue;
+        const FloatMask stands = standsAt(strip, first_place + static_cast<std::int64_t>(k), hn::LoadU(kFloats, u + k),
+                                          hn::LoadU(kFloats, v + k), hn::LoadU(kFloats, measured.rho + k));
+        astray = (here & ~std::uint64_t{bitsOf(stands)}) << k;
+      }
+      // Places before the first and behind the last are nobody's.
+      if (first_place < 0) {
+        const std::uint64_t before = (std::uint64_t{1} << -first_place) - 1;
+        loose |= left & before & (astray != 0 ? (astray & -astray) - 1 : ~std::uint64_t{0});
+      }
+      if (first_place + static_cast<std::int64_t>(Row::kColumns) > places) {
+        const std::int64_t inside = places - first_place;
+        const std::uint64_t behind = inside <= 0 ? ~std::uint64_t{0} : ~std::uint64_t{0} << inside;
+        loose |= left & behind & (astray != 0 ? (astray & -astray) - 1 : ~std::uint64_t{0});
+      }
+    }
+    const std::uint64_t together = left & (astray != 0 ? (astray & -astray) - 1 : ~std::uint64_t{0});
+    if (together != 0) {
+      const std::uint64_t placed = together & ~loose;
+      if (placed != 0) {
+        loose |= store(strip, row, measured, laser_number, first_place, placed);
+        const auto last = static_cast<std::int64_t>(63 - __builtin_clzll(placed));
+        placing.placed += static_cast<std::size_t>(__builtin_popcountll(placed & ~loose));
+        placing.end = std::max(placing.end, static_cast<std::size_t>(first_place + last + 1));
+        if (first_place + static_cast<std::int64_t>(next) < static_cast<std::int64_t>(strip.linked))
+          for (std::uint64_t some = placed & ~loose; some != 0; some &= some - 1) {
+            const auto i = static_cast<std::size_t>(__builtin_ctzll(some));
+            if (first_place + static_cast<std::int64_t>(i) >= static_cast<std::int64_t>(strip.linked)) break;
+            placing.late.push_back(
+                {row.x[Row::kMargin + i], row.y[Row::kMargin + i], row.z[Row::kMargin + i], measured.run[i]});
+          }
+      }
+      const auto last = static_cast<std::int64_t>(63 - __builtin_clzll(together));
+      laser.next_place = first_place + last + 1;
+      laser.next_column = first_column + static_cast<std::uint32_t>(last) + 1;
+      left &= ~together;
+    }
+    if (left == 0) break;
+    // The next one tells where those behind it are.
+    const auto i = static_cast<std::size_t>(__builtin_ctzll(left));
+    const std::int64_t measured_place = strip.placeOf({u[i], v[i]});
+    const std::int64_t expected = first_place + static_cast<std::int64_t>(i);
+    const std::int64_t turns = std::llround(static_cast<double>(expected - measured_place) / static_cast<double>(turn));
+    const std::int64_t own_place = measured_place + turn * turns;
+    first_place = own_place - static_cast<std::int64_t>(i);
+    if (own_place < 0 || own_place >= places) {
       loose |= std::uint64_t{1} << i;
-      loose_.push_back(one);
-      continue;
+      left &= left - 1;
+      laser.next_place = own_place + 1;
+      laser.next_column = first_column + static_cast<std::uint32_t>(i) + 1;
     }
-    const float x = row.x[i] - origin_[0];
-    const float y = row.y[i] - origin_[1];
-    if (!started_) {
-      started_ = true;
-      const float start = std::atan2(y, x) - direction_ * static_cast<float>(kMargin) * radians_per_place_;
-      start_cosine_ = std::cos(start);
-      start_sine_ = std::sin(start);
-      first_column_ = row.column[i];
-    }
-    const Seen seen = seenFromStart(x, y);
-    std::int64_t place = laser.next_place == kNowhere
-                             ? static_cast<std::int64_t>(kMargin) + row.column[i] - std::int64_t{first_column_}
-                             : laser.next_place + row.column[i] - std::int64_t{laser.next_column};
-    const bool expected =
-        laser.next_place != kNowhere && place >= 0 && place < places &&
-        std::fabs(seen.u * sine_[static_cast<std::size_t>(place)] -
-                  seen.v * cosine_[static_cast<std::size_t>(place)]) <= rho[i] * deviation &&
-        seen.u * cosine_[static_cast<std::size_t>(place)] + seen.v * sine_[static_cast<std::size_t>(place)] > 0;
-    if (!expected) {
-      const auto turn = static_cast<std::int64_t>(steps_);
-      const std::int64_t measured = placeOf(seen);
-      place = measured + turn * std::llround(static_cast<double>(place - measured) / static_cast<double>(turn));
-    }
-    laser.next_place = place + 1;
-    laser.next_column = row.column[i] + 1;
-    const float slope = (row.z[i] - origin_[2]) / rho[i];
-    if (slope < laser.lowest || slope > laser.highest) {
-      constexpr float kWidening = 1e-3F;  // so that bounds settle soon
-      laser.lowest = std::min(laser.lowest, slope - kWidening * (1 + std::fabs(slope)));
-      laser.highest = std::max(laser.highest, slope + kWidening * (1 + std::fabs(slope)));
-      elevations_changed_ = true;
-    }
-    if (place < 0 || place >= places ||
-        rho_[at(row.laser, static_cast<std::size_t>(place))] == rho_[at(row.laser, static_cast<std::size_t>(place))]) {
-      loose |= std::uint64_t{1} << i;
-      loose_.push_back(one);
-      full_ = loose_.size() > kFewLoose + placed_ / kPlacedPerLoose;
-      continue;
-    }
-    const auto here = static_cast<std::size_t>(place);
-    const std::size_t cell = at(row.laser, here);
-    rho_[cell] = rho[i];
-    x_[cell] = row.x[i];
-    y_[cell] = row.y[i];
-    z_[cell] = row.z[i];
-    element_[cell] = row.element[i];
-    ++placed_;
-    end_ = std::max(end_, here + 1);
-    if (here < linked_) late_.push_back(one);
   }
   return loose;
 }
 
-bool ViewStrip::isFar(float rho) const {
-  return rho >= near_end_ && rho < kFarEnd;
+/// Compares the returns of neighbouring lasers at the same place.
+void linkSamePlaces(const StripData& strip, std::size_t begin, std::size_t end, DisjointSets& subclusters) {
+  const FloatVector r2 = hn::Set(kFloats, strip.tolerance.squared());
+  for (std::size_t laser = 0; laser + 1 < strip.lasers.size(); ++laser) {
+    if (strip.lasers[laser].next_place == StripData::kNowhere ||
+        strip.lasers[laser + 1].next_place == StripData::kNowhere)
+      continue;
+    const std::size_t upper = strip.at(laser, 0);
+    const std::size_t lower = strip.at(laser + 1, 0);
+    for (std::size_t k = begin; k < end; k += kLanes) {
+      const auto apart = [&](const std::vector<float>& coordinate) {
+        return hn::Sub(hn::LoadU(kFloats, &coordinate[upper + k]), hn::LoadU(kFloats, &coordinate[lower + k]));
+      };
+      FloatMask joined = areNeighbours(apart(strip.x), apart(strip.y), apart(strip.z), r2);
+      std::uint32_t left = bitsOf(joined);
+      while (left != 0) {  // pairs of the same two runs need one merge
+        const auto i = static_cast<std::size_t>(__builtin_ctz(left));
+        const std::uint32_t above = strip.element[upper + k + i];
+        const std::uint32_t below = strip.element[lower + k + i];
+        subclusters.merge(above, below);
+        left &= left - 1;
+        if (left == 0) break;
+        left &= bitsOf(hn::Or(differ(&strip.element[upper + k], hn::Set(kWords, above)),
+                              differ(&strip.element[lower + k], hn::Set(kWords, below))));
+      }
+    }
+  }
 }
 
-ViewStrip::Seen ViewStrip::seenFromStart(float x, float y) const {
-  return {x * start_cosine_ + y * start_sine_, direction_ * (y * start_cosine_ - x * start_sine_)};
+/// Cuts the runs in sixteen places of all lasers into segments.
+/// \param later places are counted from so many before the strip's
+void cutSector(const StripData& strip, std::int64_t number, std::size_t later, StripData::Sector& sector,
+               DisjointSets& subclusters) {
+  const std::size_t lasers = strip.lasers.size();
+  const std::int64_t first_place = number * static_cast<std::int64_t>(StripData::kSector);
+  const float offset = static_cast<float>(first_place + static_cast<std::int64_t>(later));
+  std::uint32_t count = 0;
+  for (std::size_t laser = 0; laser < lasers; ++laser) {
+    sector.begin[laser] = count;
+    if (strip.lasers[laser].next_place == StripData::kNowhere) continue;
+    const std::size_t cell = strip.at(laser, first_place);
+    float rho[StripData::kSector];
+    std::uint32_t returns = 0;
+    std::uint32_t starts = 0;
+    for (std::size_t k = 0; k < StripData::kSector; k += kLanes) {
+      const FloatVector x = hn::LoadU(kFloats, &strip.x[cell + k]);
+      const FloatVector east = hn::Sub(x, hn::Set(kFloats, strip.range.origin[0]));
+      const FloatVector north =
+          hn::Sub(hn::LoadU(kFloats, &strip.y[cell + k]), hn::Set(kFloats, strip.range.origin[1]));
+      hn::StoreU(hn::Sqrt(hn::Add(hn::Mul(east, east), hn::Mul(north, north))), kFloats, rho + k);
+      returns |= bitsOf(hn::Eq(x, x)) << k;
+      starts |= bitsOf(differ(&strip.element[cell + k - 1], hn::LoadU(kWords, &strip.element[cell + k]))) << k;
+    }
+    if (returns == 0) continue;
+    starts = returns & (starts | ~(returns << 1));
+    const std::uint32_t ends = ~returns | starts;  // and the sector's
+    while (starts != 0) {
+      const auto first = static_cast<std::uint32_t>(__builtin_ctz(starts));
+      starts &= starts - 1;
+      const std::uint32_t after = ends & ~((2U << first) - 1) & 0xFFFFU;
+      const std::uint32_t end = after != 0 ? static_cast<std::uint32_t>(__builtin_ctz(after))
+                                           : static_cast<std::uint32_t>(StripData::kSector);
+      float nearest = rho[first];
+      float farthest = rho[first];
+      float lowest = strip.z[cell + first];
+      float highest = lowest;
+      for (std::uint32_t i = first + 1; i < end; ++i) {
+        nearest = std::min(nearest, rho[i]);
+        farthest = std::max(farthest, rho[i]);
+        lowest = std::min(lowest, strip.z[cell + i]);
+        highest = std::max(highest, strip.z[cell + i]);
+      }
+      sector.nearest[count] = nearest;
+      sector.farthest[count] = farthest;
+      sector.lowest[count] = lowest;
+      sector.highest[count] = highest;
+      sector.first[count] = offset + static_cast<float>(first);
+      sector.last[count] = offset + static_cast<float>(end - 1);
+      sector.head[count] = subclusters.head(strip.element[cell + first]);
+      sector.cell[count] = static_cast<std::uint32_t>(cell) + first;
+      sector.count[count] = static_cast<std::uint8_t>(end - first);
+      ++count;
+    }
+  }
+  sector.begin[lasers] = count;
+  sector.number = number;
 }
 
-/// The place of its azimuth, within half a turn of place 0.
-std::int64_t ViewStrip::placeOf(const Seen& seen) const {
-  return std::llround(static_cast<double>(std::atan2(seen.v, seen.u)) / static_cast<double>(radians_per_place_));
+/// Whether any return of one segment is a neighbour of any return of the other.
+bool haveNeighbours(const StripData& strip, std::size_t a, std::size_t a_count, std::size_t b, std::size_t b_count) {
+  if (a_count > b_count) {
+    std::swap(a, b);
+    std::swap(a_count, b_count);
+  }
+  const FloatVector r2 = hn::Set(kFloats, strip.tolerance.squared());
+  const std::uint32_t lanes = (1U << b_count) - 1;
+  for (std::size_t i = a; i < a + a_count; ++i) {
+    const FloatVector x = hn::Set(kFloats, strip.x[i]);
+    const FloatVector y = hn::Set(kFloats, strip.y[i]);
+    const FloatVector z = hn::Set(kFloats, strip.z[i]);
+    for (std::size_t k = 0; k < b_count; k += kLanes) {
+      const FloatMask near = areNeighbours(hn::Sub(x, hn::LoadU(kFloats, &strip.x[b + k])),
+                                           hn::Sub(y, hn::LoadU(kFloats, &strip.y[b + k])),
+                                           hn::Sub(z, hn::LoadU(kFloats, &strip.z[b + k])), r2);
+      if ((bitsOf(near) & lanes >> k) != 0) return true;
+    }
+  }
+  return false;
+}
+
+/// Finds neighbours of a sector's segments in sectors up to its own place.
+class Windows {
+ public:
+  Windows(const StripData& strip, StripData::Linking& linking, DisjointSets& subclusters)
+      : strip_(strip), linking_(linking), subclusters_(subclusters) {}
+
+  /// Links a sector with itself and with those before it.
+  void linkSector(std::int64_t number) {
+    StripData::Sector& sector = linking_.sectors[static_cast<std::size_t>(number) % StripData::kSectorsKept];
+    cutSector(strip_, number, 0, sector, subclusters_);
+    forEachSegment(sector, [&](std::uint32_t segment, std::int64_t before) {
+      const std::int64_t sectors = (before + 15) / 16;
+      for (std::int64_t other = std::max<std::int64_t>(number - sectors, 0); other < number; ++other)
+        search(sector, segment, cut(other), ~0U);
+      search(sector, segment, sector, segment);
+    });
+  }
+
+  /// Links what lies around the beginning with what lies a turn later.
+  void linkSeam(std::size_t end) {
+    const auto turn = static_cast<std::int64_t>(strip_.steps);
+    const auto last = (static_cast<std::int64_t>(end) - 1) / 16;
+    for (std::int64_t number = 0; number * 16 + turn - kMostReach < static_cast<std::int64_t>(end); ++number) {
+      StripData::Sector& sector = linking_.beyond;
+      cutSector(strip_, number, strip_.steps, sector, subclusters_);
+      forEachSegment(sector, [&](std::uint32_t segment, std::int64_t before) {
+        const std::int64_t from = std::max<std::int64_t>(0, number * 16 + turn - before) / 16;
+        const std::int64_t to = std::min(last, (number * 16 + 15 + turn + before) / 16);
+        for (std::int64_t other = from; other <= to; ++other) search(sector, segment, cut(other), ~0U);
+      });
+    }
+  }
+
+ private:
+  StripData::Sector& cut(std::int64_t number) {
+    StripData::Sector& sector = linking_.sectors[static_cast<std::size_t>(number) % StripData::kSectorsKept];
+    if (sector.number != number) cutSector(strip_, number, 0, sector, subclusters_);
+    return sector;
+  }
+
+  /// Calls visit (segment, places that its mask reaches over), after first_laser_ and last_laser_ are set.
+  template <typename Visit>
+  void forEachSegment(const StripData::Sector& sector, Visit&& visit) {
+    const std::size_t lasers = strip_.lasers.size();
+    for (std::size_t laser = 0; laser < lasers; ++laser) {
+      const std::uint32_t begin = sector.begin[laser];
+      const std::uint32_t end = sector.begin[laser + 1];
+      if (begin == end) continue;
+      float nearest = sector.nearest[begin];
+      for (std::uint32_t segment = begin + 1; segment < end; ++segment)
+        nearest = std::min(nearest, sector.nearest[segment]);
+      const float angle = asinBound(strip_.reach / nearest);
+      before_ = static_cast<float>(
+          std::min(kMostReach, static_cast<int>(angle / strip_.radians_per_place + (2 * kDeviation + 0.02F))));
+      reachLasers(laser, angle);
+      for (std::uint32_t segment = begin; segment < end; ++segment) visit(segment, static_cast<std::int64_t>(before_));
+    }
+  }
+
+  /// Sets the lasers whose elevations come within the angle of this one's.
+  void reachLasers(std::size_t laser, float angle) {
+    const float top = strip_.highest[laser] + angle + kAngleRounding;
+    const float bottom = strip_.lowest[laser] - angle - kAngleRounding;
+    const auto last_of_all = strip_.lasers.size() - 1;
+    std::size_t first = laser - std::min<std::size_t>(laser, linking_.above[laser]);
+    while (first > 0 && strip_.lowest_above[first - 1] <= top) --first;
+    while (first < laser && strip_.lowest_above[first] > top) ++first;
+    std::size_t last = std::min<std::size_t>(last_of_all, laser + linking_.below[laser]);
+    while (last < last_of_all && strip_.highest_below[last + 1] >= bottom) ++last;
+    while (last > laser && strip_.highest_below[last] < bottom) --last;
+    linking_.above[laser] = static_cast<std::uint32_t>(laser - first);
+    linking_.below[laser] = static_cast<std::uint32_t>(last - laser);
+    first_laser_ = first;
+    last_laser_ = last;
+  }
+
+  /// Compares a segment with those of a sector that its mask shows.
+  /// \param limit only with those before this one
+  void search(StripData::Sector& own, std::uint32_t segment, StripData::Sector& other, std::uint32_t limit) {
+    const std::uint32_t begin = other.begin[first_laser_];
+    const std::uint32_t end = std::min(limit, other.begin[last_laser_ + 1]);
+    if (begin >= end) return;
+    const float reach = strip_.reach + 1e-6F * own.farthest[segment];
+    const FloatVector nearest = hn::Set(kFloats, own.nearest[segment] - reach);
+    const FloatVector farthest = hn::Set(kFloats, own.farthest[segment] + reach);
+    const FloatVector lowest = hn::Set(kFloats, own.lowest[segment] - reach);
+    const FloatVector highest = hn::Set(kFloats, own.highest[segment] + reach);
+    const FloatVector first = hn::Set(kFloats, own.first[segment] - before_);
+    const FloatVector last = hn::Set(kFloats, own.last[segment] + before_);
+    std::uint32_t head = subclusters_.head(own.head[segment]);
+    for (std::uint32_t i = begin; i < end; i += std::uint32_t{kLanes}) {
+      const auto load = [&](const std::vector<float>& bound) { return hn::LoadU(kFloats, &bound[i]); };
+      const FloatMask range = hn::And(hn::Le(load(other.nearest), farthest), hn::Ge(load(other.farthest), nearest));
+      const FloatMask height = hn::And(hn::Le(load(other.lowest), highest), hn::Ge(load(other.highest), lowest));
+      const FloatMask places = hn::And(hn::Le(load(other.first), last), hn::Ge(load(other.last), first));
+      const FloatMask unlike = differ(&other.head[i], hn::Set(kWords, head));
+      std::uint32_t left = bitsOf(hn::And(hn::And(range, height), hn::And(places, unlike)));
+      if (end - i < kLanes) left &= (1U << (end - i)) - 1;
+      for (; left != 0; left &= left - 1) {
+        const std::uint32_t candidate = i + static_cast<std::uint32_t>(__builtin_ctz(left));
+        const std::uint32_t other_head = subclusters_.head(other.head[candidate]);
+        other.head[candidate] = other_head;
+        if (other_head == head) continue;
+        if (haveNeighbours(strip_, own.cell[segment], own.count[segment], other.cell[candidate],
+                           other.count[candidate]))
+          other.head[candidate] = head = subclusters_.merge(head, other_head);
+      }
+    }
+    own.head[segment] = head;
+  }
+
+  const StripData& strip_;
+  StripData::Linking& linking_;
+  DisjointSets& subclusters_;
+  float before_ = 0;
+  std::size_t first_laser_ = 0;
+  std::size_t last_laser_ = 0;
+};
+
+void linkPlaces(const StripData& strip, std::size_t begin, std::size_t end, StripData::Linking& linking,
+                DisjointSets& subclusters) {
+  linkSamePlaces(strip, begin, end, subclusters);
+  Windows windows(strip, linking, subclusters);
+  for (std::size_t place = begin; place < end; place += StripData::kSector)
+    windows.linkSector(static_cast<std::int64_t>(place / StripData::kSector));
+}
+
+void linkSeam(const StripData& strip, std::size_t end, StripData::Linking& linking, DisjointSets& subclusters) {
+  Windows(strip, linking, subclusters).linkSeam(end);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lisco
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lisco {
+namespace {
+
+HWY_EXPORT(placeReturns);
+HWY_EXPORT(linkPlaces);
+HWY_EXPORT(linkSeam);
+
+}  // namespace
+
+void ViewStrip::prepare(const Tolerance& new_tolerance, const ViewHints& hints, std::size_t threads) {
+  tolerance = new_tolerance;
+  started = false;
+  linked = 0;
+  placing.resize(std::max(placing.size(), threads));
+  for (Placing& one : placing) {
+    one.loose.clear();
+    one.late.clear();
+    one.placed = one.end = 0;
+    one.full = one.elevations_changed = false;
+  }
+  linking.resize(std::max(linking.size(), threads));
+
+  const double turn_steps = std::clamp<double>(hints.steps_per_turn, 0, 1e9);
+  const auto new_steps = static_cast<std::size_t>(turn_steps);
+  const double step = 2 * kPi / std::max(turn_steps, 1.0);
+  const double spacing = std::sqrt(kReturnsPerSquare * step * static_cast<double>(hints.elevation_step));
+  // As near as that, but not so near that a mask has more than kMostReach places.
+  const double near_end =
+      tolerance.reach() * std::max({1 / spacing, kLeastNearEnd, 1 / std::sin((kMostReach - 3) * step)});
+  const bool useful = new_steps >= kFewestSteps && new_steps <= kMostSteps && tolerance.joinsAnything() &&
+                      spacing > 1e-5 && spacing < 10 && near_end > 1e-18 && near_end < 1e15 &&
+                      near_end < static_cast<double>(hints.far_distance);
+  range = FarRange();
+  range.origin = hints.origin;
+  range.near_end = range.far_enough = kInfinity;
+  if (!useful) {
+    steps = 0;
+    return;
+  }
+  reach = static_cast<float>(tolerance.reach()) * 1.00001F;
+  range.near_end = static_cast<float>(near_end);
+  range.far_end = kFarEnd;
+  // Distances are rounded, and so are these sums.
+  range.far_enough = range.near_end * 1.00001F + reach;
+  range.not_too_far = kFarEnd * 0.9999F - reach;
+  direction = hints.clockwise ? -1.0F : 1.0F;
+  if (new_steps != steps) {
+    steps = new_steps;
+    radians_per_place = static_cast<float>(step);
+    places = steps + 4 * kMargin;
+    stride = kMargin + places + 2 * kMargin;
+    cosine.resize(stride + kMargin);
+    sine.resize(stride + kMargin);
+    for (std::size_t i = 0; i < cosine.size(); ++i) {
+      const double angle = step * (static_cast<double>(i) - static_cast<double>(kMargin));
+      cosine[i] = static_cast<float>(std::cos(angle));
+      sine[i] = static_cast<float>(std::sin(angle));
+    }
+    lasers.clear();
+  }
+  const std::size_t lasers_before = lasers.size();
+  lasers.clear();
+  addLasers(lasers_before);
+}
+
+void ViewStrip::addLasers(std::size_t count) {
+  const std::size_t before = lasers.size();
+  if (count <= before) return;
+  lasers.resize(count, {kInfinity, -kInfinity, kNowhere, 0});
+  placing.front().elevations_changed = true;  // there are more of them
+  const std::size_t size = count * stride + kMargin;
+  if (x.size() < size) {
+    for (auto* coordinate : {&x, &y, &z}) coordinate->resize(size);
+    element.resize(size);
+  }
+  std::fill(x.begin() + static_cast<std::ptrdiff_t>(before * stride),
+            x.begin() + static_cast<std::ptrdiff_t>(count * stride + kMargin), kNan);
+  const std::size_t segments = count * kSector + kSector;  // vectors are read a little behind the last
+  for (Linking& one : linking) {
+    one.above.assign(count, 0);
+    one.below.assign(count, 0);
+    const auto prepareSector = [&](Sector& sector) {
+      sector.number = kNoSector;
+      for (auto* bound :
+           {&sector.nearest, &sector.farthest, &sector.lowest, &sector.highest, &sector.first, &sector.last})
+        bound->resize(segments);
+      sector.head.resize(segments);
+      sector.cell.resize(segments);
+      sector.count.resize(segments);
+      sector.begin.resize(count + 1);
+    };
+    for (Sector& sector : one.sectors) prepareSector(sector);
+    prepareSector(one.beyond);
+  }
+}
+
+void ViewStrip::start(float x_seen, float y_seen, std::uint32_t column) {
+  started = true;
+  const float azimuth = std::atan2(y_seen - range.origin[1], x_seen - range.origin[0]);
+  const float before = direction * static_cast<float>(kMargin) * radians_per_place;
+  start_cosine = std::cos(azimuth - before);
+  start_sine = std::sin(azimuth - before);
+  first_column = column;
+}
+
+std::uint64_t ViewStrip::place(const Row& row, const MeasuredRow& measured, std::size_t laser, std::uint32_t column,
+                               std::size_t thread) {
+  Placing& own = placing[thread];
+  if (measured.lowest < lasers[laser].lowest || measured.highest > lasers[laser].highest) {
+    constexpr float kWidening = 1e-3F;  // so that bounds settle soon
+    lasers[laser].lowest =
+        std::min(lasers[laser].lowest, measured.lowest - kWidening * (1 + std::fabs(measured.lowest)));
+    lasers[laser].highest =
+        std::max(lasers[laser].highest, measured.highest + kWidening * (1 + std::fabs(measured.highest)));
+    own.elevations_changed = true;
+  }
+  const std::uint64_t loose =
+      own.full ? measured.far : HWY_DYNAMIC_DISPATCH(placeReturns)(*this, row, measured, laser, column, own);
+  for (std::uint64_t some = loose; some != 0; some &= some - 1) {
+    const auto i = static_cast<std::size_t>(__builtin_ctzll(some));
+    own.loose.push_back({row.x[Row::kMargin + i], row.y[Row::kMargin + i], row.z[Row::kMargin + i], measured.run[i]});
+  }
+  if (loose != 0) own.full = own.full || own.loose.size() > kFewLoose + own.placed / kPlacedPerLoose;
+  return loose;
+}
+
+std::size_t ViewStrip::end() const {
+  std::size_t last = 0;
+  for (const Placing& one : placing) last = std::max(last, one.end);
+  return last;
 }
 
 void ViewStrip::updateElevations() {
-  if (!elevations_changed_) return;
-  elevations_changed_ = false;
-  const std::size_t lasers = lasers_.size();
+  bool changed = false;
+  for (Placing& one : placing) {
+    changed = changed || one.elevations_changed;
+    one.elevations_changed = false;
+  }
+  if (!changed) return;
+  const std::size_t count = lasers.size();
   // Lasers are taken from top to bottom; if they come the other way round, elevations are turned over.
   float first = 0;
   float last = 0;
   bool any_seen = false;
-  for (const Laser& laser : lasers_) {
+  for (const Laser& laser : lasers) {
     if (laser.lowest > laser.highest) continue;
     if (!any_seen) first = laser.lowest + laser.highest;
     any_seen = true;
     last = laser.lowest + laser.highest;
   }
-  upside_down_ = last > first;
-  lowest_above_.resize(lasers);
-  highest_below_.resize(lasers);
-  lowest_.resize(lasers);
-  highest_.resize(lasers);
-  for (std::size_t i = 0; i < lasers; ++i) {
-    const bool seen = lasers_[i].lowest <= lasers_[i].highest;
-    const float lowest = seen ? std::atan(lasers_[i].lowest) : 10.0F;
-    const float highest = seen ? std::atan(lasers_[i].highest) : -10.0F;
-    lowest_[i] = seen && upside_down_ ? -highest : lowest;
-    highest_[i] = seen && upside_down_ ? -lowest : highest;
+  upside_down = last > first;
+  for (auto* angles : {&lowest, &highest, &lowest_above, &highest_below}) angles->resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool seen = lasers[i].lowest <= lasers[i].highest;
+    const float low = seen ? std::atan(lasers[i].lowest) : 10.0F;
+    const float high = seen ? std::atan(lasers[i].highest) : -10.0F;
+    lowest[i] = seen && upside_down ? -high : low;
+    highest[i] = seen && upside_down ? -low : high;
   }
   float bound = 10.0F;
-  for (std::size_t i = 0; i < lasers; ++i) lowest_above_[i] = bound = std::min(bound, lowest_[i]);
+  for (std::size_t i = 0; i < count; ++i) lowest_above[i] = bound = std::min(bound, lowest[i]);
   bound = -10.0F;
-  for (std::size_t i = lasers; i-- > 0;) highest_below_[i] = bound = std::max(bound, highest_[i]);
+  for (std::size_t i = count; i-- > 0;) highest_below[i] = bound = std::max(bound, highest[i]);
 }
 
-void ViewStrip::link(Merge merge, void* context) {
-  if (!started_) return;
+void ViewStrip::link(DisjointSets& subclusters) {
+  if (!started) return;
   updateElevations();
   std::int64_t front = std::numeric_limits<std::int64_t>::max();
   std::uint32_t column = 0;
-  for (const Laser& laser : lasers_)
+  for (const Laser& laser : lasers)
     if (laser.next_place != kNowhere) column = std::max(column, laser.next_column);
-  for (const Laser& laser : lasers_)
+  for (const Laser& laser : lasers)
     if (laser.next_place != kNowhere) front = std::min(front, laser.next_place + (column - laser.next_column));
-  front = std::clamp<std::int64_t>(front, 0, static_cast<std::int64_t>(cosine_.size()));
-  const std::size_t complete = static_cast<std::size_t>(front) / kLanes * kLanes;
-  if (complete > linked_) {
-    linkPlaces(linked_, complete, merge, context);
-    linked_ = complete;
+  front = std::clamp<std::int64_t>(front, 0, static_cast<std::int64_t>(places));
+  const std::size_t complete = static_cast<std::size_t>(front) / kSector * kSector;
+  if (complete > linked) {
+    HWY_DYNAMIC_DISPATCH(linkPlaces)(*this, linked, complete, linking.front(), subclusters);
+    linked = complete;
   }
 }
 
-void ViewStrip::linkAll(Merge merge, void* context) {
-  if (!started_) return;
-  link(merge, context);
-  linkPlaces(linked_, end_, merge, context);
-  for (const Loose& late : late_) search(late, merge, context);
-  late_.clear();
-  for (const Loose& loose : loose_) search(loose, merge, context);
-  if (full_) loose_.clear();  // nothing comes after them
-}
-
-void ViewStrip::linkPlaces(std::size_t begin, std::size_t end, Merge merge, void* context) {
-  for (std::size_t place = begin; place < end; place += kLanes)
-    for (std::size_t laser = 0; laser < lasers_.size(); ++laser)
-      if (lasers_[laser].next_place != kNowhere) linkGroup(laser, place, merge, context);
-}
-
-/// Compares sixteen neighbouring places of a laser with the places before them, of lasers above and below too, and with
-/// the same places of the lasers below. Near the end of the turn also with the places around its beginning.
-void ViewStrip::linkGroup(std::size_t laser, std::size_t place, Merge merge, void* context) {
-  const std::size_t own = at(laser, place);
-  Floats rho[kRegisters];
-  Floats x[kRegisters];
-  Floats y[kRegisters];
-  Floats z[kRegisters];
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  Floats nearest_lanes = all(kInfinity);
-  Floats farthest_lanes = all(0.0F);
-  for (std::size_t i = 0; i < kRegisters; ++i) {  // comparisons with NaN, an empty place, are false
-    rho[i] = load<Floats>(&rho_[own + 4 * i]);
-    nearest_lanes = rho[i] < nearest_lanes ? rho[i] : nearest_lanes;
-    farthest_lanes = rho[i] > farthest_lanes ? rho[i] : farthest_lanes;
+void ViewStrip::linkAll(DisjointSets& subclusters) {
+  if (!started) return;
+  link(subclusters);
+  const std::size_t last = end();
+  if (last > linked) HWY_DYNAMIC_DISPATCH(linkPlaces)(*this, linked, last, linking.front(), subclusters);
+  HWY_DYNAMIC_DISPATCH(linkSeam)(*this, last, linking.front(), subclusters);
+  for (Sector& sector : linking.front().sectors)  // more may come there
+    if (sector.number >= static_cast<std::int64_t>(linked / kSector)) sector.number = kNoSector;
+  for (Placing& one : placing) {
+    for (const Loose& late : one.late) search(late, subclusters);
+    one.late.clear();
+    for (const Loose& loose : one.loose) search(loose, subclusters);
+    if (one.full) one.loose.clear();  // nothing comes after them
   }
-  const float nearest =
-      std::min(std::min(nearest_lanes[0], nearest_lanes[1]), std::min(nearest_lanes[2], nearest_lanes[3]));
-  const float farthest =
-      std::max(std::max(farthest_lanes[0], farthest_lanes[1]), std::max(farthest_lanes[2], farthest_lanes[3]));
-  if (nearest == kInfinity) return;
-  for (std::size_t i = 0; i < kRegisters; ++i) {
-    x[i] = load<Floats>(&x_[own + 4 * i]);
-    y[i] = load<Floats>(&y_[own + 4 * i]);
-    z[i] = load<Floats>(&z_[own + 4 * i]);
-  }
-  std::uint32_t* const own_element = &element_[own];
-  const Floats reach = all(reach_ + 1e-6F * farthest);
-  const Floats squared_tolerance = all(tolerance_.squared());
-  const auto compare = [&](std::size_t cell) {
-    Ints hit[kRegisters];
-    Ints some{};
-    for (std::size_t i = 0; i < kRegisters; ++i) {
-      const Floats apart = load<Floats>(&rho_[cell + 4 * i]) - rho[i];
-      hit[i] =
-          (apart < reach) & (-apart < reach) & (load<Ints>(&element_[cell + 4 * i]) != load<Ints>(&own_element[4 * i]));
-      some |= hit[i];
-    }
-    if (!any(some)) return;
-    for (std::size_t i = 0; i < kRegisters; ++i) {
-      const Floats dx = load<Floats>(&x_[cell + 4 * i]) - x[i];
-      const Floats dy = load<Floats>(&y_[cell + 4 * i]) - y[i];
-      const Floats dz = load<Floats>(&z_[cell + 4 * i]) - z[i];
-      hit[i] &= ((dx * dx + dy * dy) + dz * dz) < squared_tolerance;  // squaredDistance, four times
-      if (!any(hit[i])) continue;
-      for (std::size_t lane = 0; lane < 4; ++lane)
-        if (hit[i][lane] != 0)
-          element_[cell + 4 * i + lane] = own_element[4 * i + lane] =
-              merge(context, own_element[4 * i + lane], element_[cell + 4 * i + lane]);
-    }
-  };
-
-  const float angle = asinBound(reach_ / nearest);
-  const int before = std::min(kMostReach, static_cast<int>(angle / radians_per_place_ + (2 * kDeviation + 0.02F)));
-  const float top = highest_[laser] + angle + kAngleRounding;
-  const float bottom = lowest_[laser] - angle - kAngleRounding;
-  const int last_laser = static_cast<int>(lasers_.size()) - 1;
-  const int me = static_cast<int>(laser);
-  int first = me - std::min(me, above_[laser]);
-  while (first > 0 && lowest_above_[static_cast<std::size_t>(first) - 1] <= top) --first;
-  while (first < me && lowest_above_[static_cast<std::size_t>(first)] > top) ++first;
-  int last = std::min(last_laser, me + below_[laser]);
-  while (last < last_laser && highest_below_[static_cast<std::size_t>(last) + 1] >= bottom) ++last;
-  while (last > me && highest_below_[static_cast<std::size_t>(last)] < bottom) --last;
-  above_[laser] = me - first;
-  below_[laser] = last - me;
-
-  for (int other = me + 1; other <= last; ++other) compare(own + static_cast<std::size_t>(other - me) * stride_);
-  for (int other = first; other <= last; ++other) {
-    const std::size_t same = at(static_cast<std::size_t>(other), place);
-    for (int k = 1; k <= before; ++k) compare(same - static_cast<std::size_t>(k));
-  }
-  if (place + kLanes + static_cast<std::size_t>(before) <= steps_) return;
-  // The seam: what lies a turn before.
-  for (int other = first; other <= last; ++other)
-    for (int k = -before; k <= before; ++k) {
-      const std::int64_t around = static_cast<std::int64_t>(place) - static_cast<std::int64_t>(steps_) + k;
-      if (around > -static_cast<std::int64_t>(kLanes))
-        compare(static_cast<std::size_t>(static_cast<std::int64_t>(at(static_cast<std::size_t>(other), 0)) + around));
-    }
 }
 
 /// Compares one return with all places that may hold its neighbours.
-void ViewStrip::search(const Loose& loose, Merge merge, void* context) {
-  const float x = loose.x - origin_[0];
-  const float y = loose.y - origin_[1];
-  const float rho = std::sqrt(x * x + y * y);
-  const auto turn = static_cast<std::int64_t>(steps_);
-  const std::int64_t measured = placeOf(seenFromStart(x, y)) % turn;
+void ViewStrip::search(const Loose& loose, DisjointSets& subclusters) const {
+  const float east = loose.x - range.origin[0];
+  const float north = loose.y - range.origin[1];
+  const float rho = std::sqrt(east * east + north * north);
+  const auto turn = static_cast<std::int64_t>(steps);
+  const std::int64_t measured = placeOf(seenFromStart(east, north)) % turn;
   const std::int64_t middle = measured < 0 ? measured + turn : measured;
-  const float angle = asinBound(reach_ / rho);
-  const auto before = static_cast<std::int64_t>(angle / radians_per_place_ + (kDeviation + 1.0F));
-  const float slope = std::atan((loose.z - origin_[2]) / rho);
-  const float elevation = upside_down_ ? -slope : slope;
-  const float squared_tolerance = tolerance_.squared();
-  for (std::size_t laser = 0; laser < lasers_.size(); ++laser) {
-    if (lowest_[laser] > elevation + angle + kAngleRounding || highest_[laser] < elevation - angle - kAngleRounding)
+  const float angle = asinBound(reach / rho);
+  const auto before = static_cast<std::int64_t>(angle / radians_per_place + (kDeviation + 1.0F));
+  const float slope = std::atan((loose.z - range.origin[2]) / rho);
+  const float elevation = upside_down ? -slope : slope;
+  const float squared_tolerance = tolerance.squared();
+  const auto last = static_cast<std::int64_t>(end()) - 1;
+  for (std::size_t laser = 0; laser < lasers.size(); ++laser) {
+    if (lowest[laser] > elevation + angle + kAngleRounding || highest[laser] < elevation - angle - kAngleRounding)
       continue;
     for (const std::int64_t center : {middle - turn, middle, middle + turn}) {
       const std::int64_t from = std::max<std::int64_t>(0, center - before);
-      const std::int64_t to = std::min(static_cast<std::int64_t>(end_) - 1, center + before);
+      const std::int64_t to = std::min(last, center + before);
       for (std::int64_t place = from; place <= to; ++place) {
-        const std::size_t cell = at(laser, static_cast<std::size_t>(place));
-        if (!(rho_[cell] >= 0)) continue;
-        if (squaredDistance(x_[cell] - loose.x, y_[cell] - loose.y, z_[cell] - loose.z) < squared_tolerance)
-          merge(context, loose.element, element_[cell]);
+        const std::size_t cell = at(laser, place);
+        if (isFree(cell)) continue;
+        if (squaredDistance(x[cell] - loose.x, y[cell] - loose.y, z[cell] - loose.z) < squared_tolerance)
+          subclusters.merge(loose.element, element[cell]);
       }
     }
   }
 }
 
 }  // namespace lisco
+#endif

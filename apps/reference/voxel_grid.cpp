@@ -100,14 +100,14 @@ void VoxelGrid::sortItems() {
 void VoxelGrid::gatherCells(const std::vector<lisco::Return>& returns) {
   points_.resize(items_.size());
   cells_.clear();
-  components_.clear();
+  components_.reset(items_.size());
   for (std::size_t i = 0; i < items_.size(); ++i) {
     const lisco::Return& p = returns[items_[i].number];
     points_[i] = {p.x, p.y, p.z};
     const auto at = lisco::Box::around(p.x, p.y, p.z);
     if (i == 0 || items_[i].key != items_[i - 1].key) {
       cells_.push_back({items_[i].key, static_cast<std::uint32_t>(i), at});
-      components_.create(1);
+      components_.create(static_cast<std::uint32_t>(cells_.size() - 1));
     } else {
       cells_.back().box.add(at);
     }

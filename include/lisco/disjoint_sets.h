@@ -9,45 +9,67 @@
 
 namespace lisco {
 
-/// The paper's subclusters and their heads (section IV, createH / getH / merge) as a disjoint-set
-/// forest (Galler and Fischer 1964, Tarjan 1975): the larger set keeps its head, as in the paper, and paths
-/// are halved, so that n operations take O(n alpha(n)) instead of the paper's O(n log n). Invariant: a head
-/// is its own parent, and weight(head) is the number of returns in its set.
+/// The paper's subclusters and their heads (section IV, createH / getH / merge) as a disjoint-set forest (Galler and
+/// Fischer 1964): the head of a set is its element with the lowest number, so that which element is the head does not
+/// depend on the order of the merges, and paths are halved on the way (van Leeuwen and van der Weide 1977).
+///
+/// While it is shared, any number of threads may call head () and merge () at once: a head becomes another's child by
+/// one compare-and-swap (Anderson and Woll 1991), and an element's parent only ever moves towards its head.
 class DisjointSets {
  public:
-  void clear() { nodes_.clear(); }
-  void reserve(std::size_t n) { nodes_.reserve(n); }
-  std::size_t size() const { return nodes_.size(); }
+  /// Forgets all elements and makes room for so many. Keeps its memory.
+  void reset(std::size_t room) {
+    if (parents_.size() < room) parents_.resize(room);
+    shared_ = false;
+  }
+  std::size_t room() const { return parents_.size(); }
 
-  /// createH and setH: a new set of its own that holds `weight` returns; the new element's number is size() - 1.
-  void create(std::uint32_t weight) { nodes_.push_back({static_cast<std::uint32_t>(nodes_.size()), weight}); }
+  /// createH: a new set of one element. There is room for it.
+  void create(std::uint32_t element) { parents_[element] = element; }
+  /// Makes room for more elements than reset () said.
+  void grow(std::size_t room) {
+    if (parents_.size() < room) parents_.resize(room + room / 2);
+  }
 
-  /// getH: the head of the set that holds `element`.
+  /// Whether several threads are at work.
+  void share(bool shared) { shared_ = shared; }
+
+  /// getH: the head of the set that holds the element.
   std::uint32_t head(std::uint32_t element) {
-    while (nodes_[element].parent != element) {
-      nodes_[element].parent = nodes_[nodes_[element].parent].parent;
-      element = nodes_[element].parent;
+    std::uint32_t parent = load(element);
+    while (parent != element) {
+      const std::uint32_t grandparent = load(parent);
+      if (grandparent != parent) store(element, grandparent);
+      element = parent;
+      parent = grandparent;
     }
     return element;
   }
 
-  /// merge: joins two sets given by their different heads and returns the head that stays.
-  std::uint32_t merge(std::uint32_t head_a, std::uint32_t head_b) {
-    if (nodes_[head_a].weight < nodes_[head_b].weight) std::swap(head_a, head_b);
-    nodes_[head_b].parent = head_a;
-    nodes_[head_a].weight += nodes_[head_b].weight;
-    return head_a;
+  /// merge: joins the sets of two elements. \return their head now
+  std::uint32_t merge(std::uint32_t a, std::uint32_t b) {
+    for (;;) {
+      a = head(a);
+      b = head(b);
+      if (a == b) return a;
+      if (a > b) std::swap(a, b);
+      if (!shared_) {
+        store(b, a);
+        return a;
+      }
+      std::uint32_t expected = b;
+      if (__atomic_compare_exchange_n(&parents_[b], &expected, a, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) return a;
+    }
   }
 
-  /// Number of returns in the set whose head is `head`.
-  std::uint32_t weight(std::uint32_t head) const { return nodes_[head].weight; }
-
  private:
-  struct Node {
-    std::uint32_t parent;
-    std::uint32_t weight;
-  };
-  std::vector<Node> nodes_;
+  std::uint32_t load(std::uint32_t element) const { return __atomic_load_n(&parents_[element], __ATOMIC_RELAXED); }
+  void store(std::uint32_t element, std::uint32_t parent) {
+    __atomic_store_n(&parents_[element], parent, __ATOMIC_RELAXED);
+  }
+
+  std::vector<std::uint32_t> parents_;
+  bool shared_ = false;
 };
 
 }  // namespace lisco

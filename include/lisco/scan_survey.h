@@ -23,7 +23,7 @@ class ScanSurvey {
   /// Two returns of adjacent lasers in one column.
   void addAlongColumn(const Return& a, const Return& b) { along_column_.push_back({a, b}); }
 
-  /// The mask, its viewpoint and its finest tiles for this cloud. Never changes the result, only the speed.
+  /// Where the cloud was seen from, and in what steps. Never changes the result, only the speed.
   /// \param sensor where the cloud says its sensor stands; used if the cloud does not lie around (0, 0, 0)
   Parameters judge(const std::array<float, 3>& sensor, bool organized) const;
 

@@ -3,65 +3,26 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
+#include "lisco/disjoint_sets.h"
+#include "lisco/row.h"
 #include "lisco/tolerance.h"
-#include "lisco/view_mask.h"
+#include "lisco/view_hints.h"
 
 namespace lisco {
 
-/// Far returns, each in a place of its own: the sensor's view unrolled, a row per laser and a place per step of the
-/// turn.
-///
-/// Where the tolerance is seen under few steps and lasers, the paper's mask is a few places, and what lies there is
-/// compared place by place, sixteen neighbouring places of a laser at a time. The mask is measured: a return stands at
-/// the place of its *azimuth*, whatever its column, and lasers are reached by the elevations *measured* on them.
-///
-/// A return is far if its horizontal distance is at least a certain multiple of the tolerance. Neighbours that are both
-/// far are found here, but for those with a loose one: a far return that found its place taken. Loose returns must be
-/// kept elsewhere as well.
-class ViewStrip {
- public:
-  static constexpr std::size_t kMostInRow = 64;  ///< returns per call of place (), which has a bit for each
-
-  /// Called for two elements whose returns are neighbours. \return the head both have now
-  using Merge = std::uint32_t (*)(void* context, std::uint32_t a, std::uint32_t b);
-
-  /// Starts a rotation. Keeps its memory.
-  void prepare(const Tolerance& tolerance, const ViewHints& hints);
-
-  /// False if the hints give no steps, or the tolerance joins nothing: then no return is far.
-  bool inUse() const { return steps_ > 0; }
-  /// Whether a return at this horizontal distance has no neighbour that is not far itself.
-  bool amongFar(float rho) const { return rho >= far_enough_ && rho < not_too_far_; }
-
-  /// Some returns of one laser, in the order of their columns.
-  struct Row {
-    std::size_t laser = 0;
-    std::size_t count = 0;
-    const float *x = nullptr, *y = nullptr, *z = nullptr;
-    const std::uint32_t* column = nullptr;   ///< counted from the first of the rotation
-    const std::uint32_t* element = nullptr;  ///< what is merged when two returns are neighbours
-  };
-  /// Puts the far ones of these returns in their places.
-  /// \param rho horizontal distance of each from the sensor, as computed by horizontalDistances ()
-  /// \return bit i is set if return i is loose
-  std::uint64_t place(const Row& row, const float* rho);
-  void horizontalDistances(const Row& row, float* rho) const;
-
-  /// Compares what has come since the last call, as far as all lasers have passed it.
-  void link(Merge merge, void* context);
-  /// Compares all that has not been compared, the seam included. More returns may follow.
-  void linkAll(Merge merge, void* context);
-
- private:
-  static constexpr std::size_t kLanes = 16;
+/// What a strip holds; see ViewStrip. The vector code works on it.
+struct StripData {
+  static constexpr std::size_t kSector = 16;  ///< places
   static constexpr std::size_t kMargin = 64;  ///< places before the first return's, for staggered lasers
-  static constexpr int kMostReach = 48;       ///< places; far returns never reach further
   static constexpr std::int64_t kNowhere = std::numeric_limits<std::int64_t>::min();
+  static constexpr std::size_t kSectorsKept = 8;
+  static constexpr std::int64_t kNoSector = -1;
 
   /// What is known of a laser.
   struct Laser {
@@ -73,51 +34,121 @@ class ViewStrip {
     float x, y, z;
     std::uint32_t element;
   };
+  /// What a thread keeps while it places returns.
+  struct Placing {
+    std::vector<Loose> loose;
+    std::vector<Loose> late;  ///< placed where all had been compared
+    std::size_t placed = 0;
+    std::size_t end = 0;  ///< after the last place taken
+    bool full = false;    ///< too many were loose: all that follow are, too
+    bool elevations_changed = false;
+  };
+  /// The segments of a sector, ordered by laser and place.
+  struct Sector {
+    std::int64_t number = kNoSector;
+    std::vector<float> nearest, farthest;  ///< horizontal distance
+    std::vector<float> lowest, highest;    ///< z
+    std::vector<float> first, last;        ///< place
+    std::vector<std::uint32_t> head;       ///< of its subcluster, perhaps not the newest
+    std::vector<std::uint32_t> cell;       ///< where its returns begin
+    std::vector<std::uint8_t> count;       ///< of returns
+    std::vector<std::uint32_t> begin;      ///< of each laser's segments, and the end
+  };
+  /// What a thread keeps while it links.
+  struct Linking {
+    std::array<Sector, kSectorsKept> sectors;
+    Sector beyond;                            ///< a sector around the beginning, seen as if a turn later
+    std::vector<std::uint32_t> above, below;  ///< lasers reached by the last segments of each
+  };
 
-  std::size_t at(std::size_t laser, std::size_t place) const { return laser * stride_ + kMargin + place; }
   /// A return as it lies seen from the strip's start, turning with time.
   struct Seen {
     float u, v;  ///< metres, towards place 0 and across
   };
 
-  bool isFar(float rho) const;
-  Seen seenFromStart(float x, float y) const;
-  std::int64_t placeOf(const Seen& seen) const;
-  void addLasers(std::size_t lasers);
-  void updateElevations();
-  void linkPlaces(std::size_t begin, std::size_t end, Merge merge, void* context);
-  void linkGroup(std::size_t laser, std::size_t place, Merge merge, void* context);
-  void search(const Loose& loose, Merge merge, void* context);
+  /// \param place not less than -kMargin
+  std::size_t at(std::size_t laser, std::int64_t place) const {
+    return laser * stride + static_cast<std::size_t>(place + static_cast<std::int64_t>(kMargin));
+  }
+  bool isFree(std::size_t cell) const { return x[cell] != x[cell]; }
+  Seen seenFromStart(float east, float north) const {
+    return {east * start_cosine + north * start_sine, direction * (north * start_cosine - east * start_sine)};
+  }
+  /// The place of its azimuth, within half a turn of place 0.
+  std::int64_t placeOf(const Seen& seen) const {
+    return std::llround(static_cast<double>(std::atan2(seen.v, seen.u)) / static_cast<double>(radians_per_place));
+  }
 
-  Tolerance tolerance_;
-  std::array<float, 3> origin_{};
-  float near_end_ = 0;
-  float far_enough_ = 0;
-  float not_too_far_ = 0;
-  float reach_ = 0;
-  std::size_t steps_ = 0;   ///< places in a turn
-  std::size_t stride_ = 0;  ///< floats per laser
-  float direction_ = 1;     ///< +1: azimuth grows with time
-  float radians_per_place_ = 0;
-  float start_cosine_ = 1;
-  float start_sine_ = 0;
-  std::uint32_t first_column_ = 0;
-  bool started_ = false;
-  std::vector<float> cosine_, sine_;  ///< of each place
-  std::vector<float> rho_, x_, y_, z_;
-  std::vector<std::uint32_t> element_;
-  std::vector<Laser> lasers_;
-  bool elevations_changed_ = false;
-  bool upside_down_ = false;                         ///< the lasers come from bottom to top
-  std::vector<float> lowest_, highest_;              ///< radians, of each laser; turned over if upside down
-  std::vector<float> lowest_above_, highest_below_;  ///< of all lasers up to, and from, each one
-  std::vector<int> above_, below_;                   ///< lasers reached by the last group
-  std::size_t linked_ = 0;                           ///< places before this are compared
-  std::size_t end_ = 0;                              ///< after the last place taken
-  std::size_t placed_ = 0;
-  bool full_ = false;  ///< too many were loose: all that follow are, too
-  std::vector<Loose> loose_;
-  std::vector<Loose> late_;  ///< placed where all had been compared
+  Tolerance tolerance;
+  FarRange range;
+  float reach = 0;
+  std::size_t steps = 0;   ///< places in a turn
+  std::size_t places = 0;  ///< of a laser: more than a turn
+  std::size_t stride = 0;  ///< floats per laser
+  float direction = 1;     ///< +1: azimuth grows with time
+  float radians_per_place = 0;
+  float start_cosine = 1;
+  float start_sine = 0;
+  std::uint32_t first_column = 0;
+  bool started = false;
+  std::vector<float> cosine, sine;  ///< of each place, and of some before and behind
+  std::vector<float> x, y, z;       ///< x is NaN where a place is free
+  std::vector<std::uint32_t> element;
+  std::vector<Laser> lasers;
+  bool upside_down = false;                        ///< the lasers come from bottom to top
+  std::vector<float> lowest, highest;              ///< radians, of each laser; turned over if upside down
+  std::vector<float> lowest_above, highest_below;  ///< of all lasers up to, and from, each one
+  std::size_t linked = 0;                          ///< places before this are compared
+  std::vector<Placing> placing;
+  std::vector<Linking> linking;
+};
+
+/// Far returns, each in a place of its own: the sensor's view unrolled, a row per laser and a place per step of the
+/// turn.
+///
+/// Where the tolerance is seen under few steps and lasers, the paper's mask is a window of places. It is measured: a
+/// return stands at the place of its *azimuth*, whatever its column, and lasers are reached by the elevations *measured*
+/// on them. Sixteen places of all lasers are a *sector*; what a run has in a sector is a *segment*. Neighbours are found in
+/// two steps:
+///   1. returns at the same place of lasers next to each other are compared, sixteen at a time, which joins most of
+///      what belongs together;
+///   2. each segment looks at the segments in its window that are not in its subcluster by then, bounds first, and
+///      compares its returns with those of the few that are left.
+///
+/// A return is far if its horizontal distance is at least a certain multiple of the tolerance. Neighbours that are both
+/// far are found here, but for those with a loose one: a far return that found its place taken. Loose returns must be
+/// kept elsewhere as well.
+class ViewStrip : private StripData {
+ public:
+  /// Starts a rotation. Keeps its memory.
+  /// \param threads how many may place returns of different lasers, or link, at the same time
+  void prepare(const Tolerance& tolerance, const ViewHints& hints, std::size_t threads = 1);
+
+  /// False if the hints give no steps, or the tolerance joins nothing: then no return is far.
+  bool inUse() const { return steps > 0; }
+  const FarRange& farRange() const { return range; }
+
+  /// Makes room for so many lasers. Not while another thread uses the strip.
+  void addLasers(std::size_t lasers);
+  bool hasStarted() const { return started; }
+  /// Lays the first place where this return is seen, or a little before.
+  void start(float x_seen, float y_seen, std::uint32_t column);
+
+  /// Puts the far returns of a row in their places. Different threads may do so for different lasers.
+  /// \param first_column column of the row's first cell, counted from the first of the rotation
+  /// \return bit i is set if return i is loose
+  std::uint64_t place(const Row& row, const MeasuredRow& measured, std::size_t laser, std::uint32_t first_column,
+                      std::size_t thread = 0);
+
+  /// Compares what has come since the last call, as far as all lasers have passed it.
+  void link(DisjointSets& subclusters);
+  /// Compares all that has not been compared, the seam included. More returns may follow.
+  void linkAll(DisjointSets& subclusters);
+
+ private:
+  void updateElevations();
+  void search(const Loose& loose, DisjointSets& subclusters) const;
+  std::size_t end() const;
 };
 
 }  // namespace lisco

@@ -27,12 +27,14 @@ class LiscoCloudClusterer {
  public:
   /** \brief Clusters a cloud.
    * \param[in] indices which of its points; nullptr: all
+   * \param[in] threads how many may share the work; 0: one for each core
    * \param[in] caller named in front of a PCL_ERROR
    * \return false, after a PCL_ERROR, if an index is not within the cloud or the cloud is too large for
    * index_t
    */
   template <typename PointT>
-  bool cluster(const PointCloud<PointT>& cloud, const Indices* indices, float tolerance, const char* caller);
+  bool cluster(const PointCloud<PointT>& cloud, const Indices* indices, float tolerance, unsigned int threads,
+               const char* caller);
 
   /** \brief Appends the clusters of the last cloud whose size is within [min_size, max_size], in the order in
    * which their first points appear in the indices; the indices of each ascend.
@@ -44,20 +46,16 @@ class LiscoCloudClusterer {
   static bool fitsIndexType(std::size_t points);
 
  private:
-  static constexpr std::uint32_t kNotSelected = ~std::uint32_t{0};
-  static constexpr std::uint32_t kSelected = kNotSelected - 1;
-
   bool select(std::size_t points, const Indices* indices, const char* caller);
 
-  /** \brief The head of a point's subcluster, or kSelected or kNotSelected. */
-  std::uint32_t headOf(index_t point) const;
+  enum class Selection { kAll, kMany, kFew };  ///< few points are sorted out beforehand
 
   lisco::ColumnClusterer clusterer_;
-  bool few_ = false;                            ///< only a small part of the cloud's points is to be clustered:
-  Indices few_points_;                          ///< these, ascending
-  std::vector<std::uint32_t> head_of_cell_;     ///< per point of the cloud, or of few_points_: kNotSelected,
-                                                ///< kSelected (but no return), or the head of its subcluster
-  std::vector<std::uint32_t> cluster_of_head_;  ///< number in the output
+  Selection selection_ = Selection::kAll;
+  std::vector<char> is_selected_;                     ///< per point of the cloud, of kMany
+  Indices few_points_;                                ///< of kFew, ascending
+  std::vector<std::uint32_t> subcluster_of_point_;    ///< only where the order of the indices is needed
+  std::vector<std::uint32_t> cluster_of_subcluster_;  ///< number in the output
 };
 
 }  // namespace detail
@@ -150,6 +148,14 @@ class LiscoClusterExtraction : public PCLBase<PointT> {
   /** \brief Get the largest number of points of a cluster. */
   inline pcl::uindex_t getMaxClusterSize() const { return (max_pts_per_cluster_); }
 
+  /** \brief Set how many threads share the work of extract () (default 1). It changes nothing but the time.
+   * \param[in] nr_threads 0: one for each core
+   */
+  inline void setNumberOfThreads(unsigned int nr_threads = 0) { threads_ = nr_threads; }
+
+  /** \brief Get the number of threads, as it was set. */
+  inline unsigned int getNumberOfThreads() const { return (threads_); }
+
  protected:
   using BasePCLBase::deinitCompute;
   using BasePCLBase::fake_indices_;
@@ -179,6 +185,7 @@ class LiscoClusterExtraction : public PCLBase<PointT> {
   std::size_t appendClusters(std::vector<PointIndices>& clusters);
 
   detail::LiscoCloudClusterer clusterer_;
+  unsigned int threads_ = 1;
 };
 
 /** \brief Extract Euclidean clusters as LiscoClusterExtraction does, from a whole cloud. The counterpart of

@@ -13,28 +13,42 @@
 
 template <typename PointT>
 bool pcl::detail::LiscoCloudClusterer::cluster(const PointCloud<PointT>& cloud, const Indices* indices, float tolerance,
-                                               const char* caller) {
+                                               unsigned int threads, const char* caller) {
   if (!select(cloud.size(), indices, caller)) return (false);
 
   // Lasers are the cloud's rows and columns its columns; what is not organized is the work of one laser.
-  const bool organized =
-      !few_ && cloud.height > 1 && static_cast<std::size_t>(cloud.width) * cloud.height == cloud.size();
+  const bool organized = selection_ != Selection::kFew && cloud.height > 1 &&
+                         static_cast<std::size_t>(cloud.width) * cloud.height == cloud.size();
   const std::size_t lasers = organized ? cloud.height : 1;
-  const std::size_t columns = (few_ ? few_points_.size() : cloud.size()) / lasers;
-  const PointT* const points = cloud.points.data();
-  const auto cell_at = [&, few = few_](std::size_t laser, std::size_t column) {
-    const std::size_t cell = laser * columns + column;
-    if (head_of_cell_[cell] == kNotSelected) return (lisco::kNoReturn);
-    const PointT& point = points[few ? static_cast<std::size_t>(few_points_[cell]) : cell];
-    return (lisco::Return{point.x, point.y, point.z, static_cast<std::uint32_t>(cell)});
-  };
-
+  const std::size_t columns = (selection_ == Selection::kFew ? few_points_.size() : cloud.size()) / lasers;
   const std::array<float, 3> sensor{cloud.sensor_origin_[0], cloud.sensor_origin_[1], cloud.sensor_origin_[2]};
-  lisco::Parameters parameters = lisco::surveyScan(columns, lasers, sensor, cell_at);
-  parameters.tolerance = tolerance;
-  clusterer_.begin(parameters);
-  clusterer_.addColumns(columns, lasers, cell_at);
-  clusterer_.update();
+  const PointT* const points = cloud.points.data();
+  const auto return_at = [points](std::size_t point) {
+    return (lisco::Return{points[point].x, points[point].y, points[point].z, static_cast<std::uint32_t>(point)});
+  };
+  const auto cluster = [&](const auto& cell_at) {
+    lisco::Parameters parameters = lisco::surveyScan(columns, lasers, sensor, cell_at);
+    parameters.tolerance = tolerance;
+    parameters.threads = threads;
+    clusterer_.begin(parameters);
+    clusterer_.addColumns(columns, lasers, cell_at);
+    clusterer_.update();
+  };
+  switch (selection_) {
+    case Selection::kAll:
+      cluster([&](std::size_t laser, std::size_t column) { return (return_at(laser * columns + column)); });
+      break;
+    case Selection::kMany:
+      cluster([&](std::size_t laser, std::size_t column) {
+        const std::size_t point = laser * columns + column;
+        return (is_selected_[point] ? return_at(point) : lisco::kNoReturn);
+      });
+      break;
+    case Selection::kFew:
+      cluster(
+          [&](std::size_t, std::size_t column) { return (return_at(static_cast<std::size_t>(few_points_[column]))); });
+      break;
+  }
   return (true);
 }
 
@@ -46,7 +60,7 @@ std::size_t pcl::LiscoClusterExtraction<PointT>::appendClusters(std::vector<Poin
   }
   const std::size_t first = clusters.size();
   const Indices* const indices = fake_indices_ ? nullptr : indices_.get();
-  if (clusterer_.cluster(*input_, indices, static_cast<float>(cluster_tolerance_),
+  if (clusterer_.cluster(*input_, indices, static_cast<float>(cluster_tolerance_), threads_,
                          "pcl::LiscoClusterExtraction::extract"))
     clusterer_.collect(indices, input_->header, min_pts_per_cluster_, max_pts_per_cluster_, clusters);
   else
@@ -95,7 +109,7 @@ template <typename PointT>
 void pcl::extractLiscoClusters(const PointCloud<PointT>& cloud, float tolerance, std::vector<PointIndices>& clusters,
                                unsigned int min_pts_per_cluster, unsigned int max_pts_per_cluster) {
   detail::LiscoCloudClusterer clusterer;
-  if (clusterer.cluster(cloud, nullptr, tolerance, "pcl::extractLiscoClusters"))
+  if (clusterer.cluster(cloud, nullptr, tolerance, 1, "pcl::extractLiscoClusters"))
     clusterer.collect(nullptr, cloud.header, min_pts_per_cluster, max_pts_per_cluster, clusters);
   else
     clusters.clear();
@@ -106,7 +120,7 @@ void pcl::extractLiscoClusters(const PointCloud<PointT>& cloud, const Indices& i
                                std::vector<PointIndices>& clusters, unsigned int min_pts_per_cluster,
                                unsigned int max_pts_per_cluster) {
   detail::LiscoCloudClusterer clusterer;
-  if (clusterer.cluster(cloud, &indices, tolerance, "pcl::extractLiscoClusters"))
+  if (clusterer.cluster(cloud, &indices, tolerance, 1, "pcl::extractLiscoClusters"))
     clusterer.collect(&indices, cloud.header, min_pts_per_cluster, max_pts_per_cluster, clusters);
   else
     clusters.clear();

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "lisco/box.h"
+#include "lisco/disjoint_sets.h"
+#include "lisco/row.h"
+#include "lisco/tolerance.h"
+
+namespace lisco {
+
+/// Cubes of space for returns that have no place in a view: those near the sensor, seen under so wide a mask that
+/// angles tell nothing, and all those of a cloud that no single place has seen.
+///
+/// A cube is so small (eps / sqrt (3)) that what lies in it belongs together, so a thousand near returns are a handful of
+/// cubes. 4 x 4 x 4 cubes are a block: one bit of a word for each cube in use, so that the cubes around one come from a
+/// few words. What a run has in a cube is a *piece*.
+class Voxels {
+ public:
+  /// Starts a rotation. Keeps its memory.
+  void prepare(const Tolerance& tolerance);
+
+  /// Takes some returns of a row.
+  /// \param which bit i: return i
+  void add(const Row& row, const MeasuredRow& measured, std::uint64_t which, DisjointSets& subclusters);
+  /// Takes all that another one holds, which is left empty.
+  void absorb(Voxels& other, DisjointSets& subclusters);
+
+  /// Compares what has come since the last call with everything. More returns may follow.
+  void link(DisjointSets& subclusters);
+
+ private:
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  static constexpr std::size_t kCubes = 64;  ///< of a block
+
+  using Key = std::array<std::uint32_t, 3>;
+
+  struct Piece {
+    std::uint32_t first_point;
+    std::uint32_t count;
+    std::uint32_t next_in_unit;
+  };
+  /// Pieces of one cube that are neighbours all of them; nearly always all of the cube.
+  struct Unit {
+    Box box;
+    std::uint32_t head;  ///< of its subcluster, perhaps not the newest
+    std::uint32_t first_piece, last_piece;
+    std::uint32_t next_in_cube;
+    bool is_new;  ///< something in it has not been compared yet
+  };
+  struct Block {
+    Key key;
+    std::uint32_t units;     ///< where the list of its cubes' first units begins
+    std::uint32_t room;      ///< of that list
+    std::uint64_t occupied;  ///< bit i: cube i
+    bool is_new;
+  };
+
+  std::uint32_t findBlock(const Key& key) const;
+  std::uint32_t makeBlock(const Key& key);
+  void rehash(std::size_t slots);
+  std::uint32_t& firstUnit(Block& block, std::uint32_t cube);
+  void addPiece(const Key& cube, const Box& box, std::uint32_t piece, std::uint32_t element, DisjointSets& subclusters);
+  std::uint64_t numberCubesOf(const float* coordinates, std::uint64_t which, std::uint32_t* numbers) const;
+  void linkBlock(const Block& block, bool all_new, DisjointSets& subclusters);
+  bool haveNeighbours(const Unit& a, const Unit& b) const;
+
+  Tolerance tolerance_;
+  double cubes_per_metre_ = 1;
+  float safe_ = 0;  ///< up to this coordinate, cubes are numbered in float
+  std::vector<float> x_, y_, z_;
+  std::vector<Piece> pieces_;
+  std::vector<Unit> units_;
+  std::vector<Block> blocks_;
+  std::vector<std::uint32_t> first_units_;
+  std::vector<std::uint32_t> slots_;  ///< hash table of blocks
+  std::uint32_t latest_block_ = kNone;
+  std::vector<std::uint32_t> new_blocks_;  ///< that hold new units
+  bool anything_linked_ = false;
+};
+
+}  // namespace lisco

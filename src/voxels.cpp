@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "lisco/voxels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "voxels.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
+
+#include "lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lisco {
+namespace HWY_NAMESPACE {
+
+/// The number of each return's cube along an axis. \return bit i is set if return i + 1 has another than return i
+std::uint64_t numberCubes(const float* coordinates, float per_metre, std::uint32_t* numbers) {
+  const hn::RebindToSigned<Floats> signed_words;
+  for (std::size_t k = 0; k < Row::kColumns; k += kLanes) {
+    const FloatVector number = hn::Mul(hn::LoadU(kFloats, coordinates + k), hn::Set(kFloats, per_metre));
+    hn::StoreU(hn::BitCast(kWords, hn::ConvertTo(signed_words, hn::Floor(number))), kWords, numbers + k);
+  }
+  std::uint64_t changes = 0;
+  for (std::size_t k = 0; k < Row::kColumns; k += kLanes)
+    changes |= std::uint64_t{bitsOf(differ(numbers + k, hn::LoadU(kWords, numbers + k + 1)))} << k;
+  return changes;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lisco
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lisco {
+namespace {
+
+HWY_EXPORT(numberCubes);
+
+// A little less than eps / sqrt (3). Rounding moves a return by less than an eighth of a cube, so that
+// neighbours, which are 1.7323 sides apart at most, lie in cubes whose numbers differ by 2 at most.
+constexpr double kSide = 0.9999 / 1.7320508075688772;
+constexpr float kSafeNumbers = 1 << 20;             // up to here, numbers computed in float are that good
+constexpr double kMostNumber = 2251799813685248.0;  // 2^51: and here, those computed in double
+constexpr std::uint32_t kBlockMask = (std::uint32_t{1} << 30) - 1;
+constexpr std::size_t kFewestSlots = 256;
+constexpr std::size_t kNeighbourBlocks = 27;
+
+/// masks[cube][i]: those cubes of neighbour block i whose numbers differ by 2 at most from the cube's.
+struct Neighbourhood {
+  std::uint64_t all[64][kNeighbourBlocks] = {};
+  std::uint64_t later[64][kNeighbourBlocks] = {};  ///< half of them: each pair once
+
+  Neighbourhood() {
+    for (int cube = 0; cube < 64; ++cube)
+      for (int dz = -2; dz <= 2; ++dz)
+        for (int dy = -2; dy <= 2; ++dy)
+          for (int dx = -2; dx <= 2; ++dx) {
+            const int x = (cube & 3) + dx;
+            const int y = (cube >> 2 & 3) + dy;
+            const int z = (cube >> 4) + dz;
+            const auto block = [](int number) { return number < 0 ? 0 : number > 3 ? 2 : 1; };
+            const std::size_t i = static_cast<std::size_t>(block(z) * 9 + block(y) * 3 + block(x));
+            const std::uint64_t bit = std::uint64_t{1} << ((x & 3) | (y & 3) << 2 | (z & 3) << 4);
+            all[cube][i] |= bit;
+            if (dz > 0 || (dz == 0 && (dy > 0 || (dy == 0 && dx > 0)))) later[cube][i] |= bit;
+          }
+  }
+};
+
+const Neighbourhood kNeighbourhood;
+
+/// How many bits are set, without the instruction for it, which the oldest processors do not have.
+std::uint32_t countBits(std::uint64_t bits) {
+  bits -= bits >> 1 & 0x5555555555555555U;
+  bits = (bits & 0x3333333333333333U) + (bits >> 2 & 0x3333333333333333U);
+  bits = (bits + (bits >> 4)) & 0x0F0F0F0F0F0F0F0FU;
+  return static_cast<std::uint32_t>(bits * 0x0101010101010101U >> 56);
+}
+
+std::uint32_t hashOf(const std::array<std::uint32_t, 3>& key) {
+  // Teschner et al. 2003, with a final mix so that flat scenes use the whole table.
+  std::uint32_t hash = key[0] * 73856093U ^ key[1] * 19349663U ^ key[2] * 83492791U;
+  hash ^= hash >> 15;
+  return hash;
+}
+
+bool sameKey(const std::array<std::uint32_t, 3>& a, const std::array<std::uint32_t, 3>& b) {
+  return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2])) == 0;
+}
+
+}  // namespace
+
+void Voxels::prepare(const Tolerance& tolerance) {
+  tolerance_ = tolerance;
+  cubes_per_metre_ = 1.0 / (kSide * std::max(tolerance.reach(), 1e-22));
+  const double safe = static_cast<double>(kSafeNumbers) / cubes_per_metre_ * 0.999;
+  safe_ = cubes_per_metre_ < 1e30 ? static_cast<float>(std::min(safe, 1e30)) : 0.0F;
+  for (auto* coordinate : {&x_, &y_, &z_}) coordinate->clear();
+  pieces_.clear();
+  units_.clear();
+  blocks_.clear();
+  first_units_.clear();
+  new_blocks_.clear();
+  latest_block_ = kNone;
+  anything_linked_ = false;
+  if (slots_.size() < kFewestSlots)
+    slots_.assign(kFewestSlots, kNone);
+  else
+    std::fill(slots_.begin(), slots_.end(), kNone);
+}
+
+/// The number of each return's cube along an axis, modulo 2^32: cubes that share one cost time, nothing else.
+/// \param numbers has room for one more than a row
+/// \return bit i is set if return i + 1 has another than return i
+std::uint64_t Voxels::numberCubesOf(const float* coordinates, std::uint64_t which, std::uint32_t* numbers) const {
+  float farthest = 0;
+  for (std::uint64_t left = which; left != 0; left &= left - 1)
+    farthest = std::max(farthest, std::fabs(coordinates[__builtin_ctzll(left)]));
+  if (farthest <= safe_)
+    return HWY_DYNAMIC_DISPATCH(numberCubes)(coordinates, static_cast<float>(cubes_per_metre_), numbers);
+  std::uint64_t changes = 0;
+  for (std::size_t i = 0; i < Row::kColumns; ++i) {
+    const double number = (which >> i & 1U) == 0 ? 0.0
+                                                 : std::clamp(static_cast<double>(coordinates[i]) * cubes_per_metre_,
+                                                              -kMostNumber, kMostNumber);
+    numbers[i] = static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(number)));
+    if (i > 0 && numbers[i] != numbers[i - 1]) changes |= std::uint64_t{1} << (i - 1);
+  }
+  return changes;
+}
+
+void Voxels::add(const Row& row, const MeasuredRow& measured, std::uint64_t which, DisjointSets& subclusters) {
+  if (!tolerance_.joinsAnything()) return;
+  const float* const x = row.x + Row::kMargin;
+  const float* const y = row.y + Row::kMargin;
+  const float* const z = row.z + Row::kMargin;
+  std::uint32_t numbers[3][Row::kColumns + 1] = {};
+  const std::uint64_t changes =
+      numberCubesOf(x, which, numbers[0]) | numberCubesOf(y, which, numbers[1]) | numberCubesOf(z, which, numbers[2]);
+  // A piece goes on where the return before is there, in the same run and in the same cube.
+  const std::uint64_t begins = which & ~(which << 1 & ~measured.starts & ~(changes << 1));
+  const std::uint64_t ends = ~which | begins;
+  std::size_t point = x_.size();
+  for (auto* coordinate : {&x_, &y_, &z_}) coordinate->resize(point + static_cast<std::size_t>(countBits(which)));
+  for (std::uint64_t left = begins; left != 0; left &= left - 1) {
+    const auto begin = static_cast<std::size_t>(__builtin_ctzll(left));
+    const std::uint64_t after = begin == Row::kColumns - 1 ? 0 : ends & ~std::uint64_t{0} << (begin + 1);
+    const std::size_t end = after != 0 ? static_cast<std::size_t>(__builtin_ctzll(after)) : Row::kColumns;
+    const auto piece = static_cast<std::uint32_t>(pieces_.size());
+    pieces_.push_back({static_cast<std::uint32_t>(point), static_cast<std::uint32_t>(end - begin), kNone});
+    Box box = Box::around(x[begin], y[begin], z[begin]);
+    for (std::size_t i = begin; i < end; ++i, ++point) {
+      x_[point] = x[i];
+      y_[point] = y[i];
+      z_[point] = z[i];
+      box.add(Box::around(x[i], y[i], z[i]));
+    }
+    addPiece({numbers[0][begin], numbers[1][begin], numbers[2][begin]}, box, piece, measured.run[begin], subclusters);
+  }
+}
+
+void Voxels::addPiece(const Key& cube, const Box& box, std::uint32_t piece, std::uint32_t element,
+                      DisjointSets& subclusters) {
+  const Key key{cube[0] >> 2, cube[1] >> 2, cube[2] >> 2};
+  if (latest_block_ == kNone || !sameKey(blocks_[latest_block_].key, key)) latest_block_ = makeBlock(key);
+  Block& block = blocks_[latest_block_];
+  if (!block.is_new) {
+    block.is_new = true;
+    new_blocks_.push_back(latest_block_);
+  }
+  std::uint32_t& first = firstUnit(block, (cube[0] & 3U) | (cube[1] & 3U) << 2 | (cube[2] & 3U) << 4);
+  for (std::uint32_t i = first; i != kNone; i = units_[i].next_in_cube) {
+    Unit& unit = units_[i];
+    if (!(Box::squaredSpan(unit.box, box) < tolerance_.squared())) continue;
+    unit.box.add(box);
+    unit.is_new = true;
+    pieces_[unit.last_piece].next_in_unit = piece;
+    unit.last_piece = piece;
+    if (unit.head != element) unit.head = subclusters.merge(unit.head, element);
+    return;
+  }
+  const auto number = static_cast<std::uint32_t>(units_.size());
+  units_.push_back({box, element, piece, piece, first, true});
+  first = number;
+}
+
+std::uint32_t Voxels::findBlock(const Key& key) const {
+  const std::size_t mask = slots_.size() - 1;
+  for (std::size_t slot = hashOf(key) & mask;; slot = (slot + 1) & mask)
+    if (slots_[slot] == kNone || sameKey(blocks_[slots_[slot]].key, key)) return slots_[slot];
+}
+
+std::uint32_t Voxels::makeBlock(const Key& key) {
+  const std::uint32_t found = findBlock(key);
+  if (found != kNone) return found;
+  const auto number = static_cast<std::uint32_t>(blocks_.size());
+  blocks_.push_back({key, 0, 0, 0, false});
+  if (2 * blocks_.size() > slots_.size()) {
+    rehash(2 * slots_.size());
+    return number;
+  }
+  const std::size_t mask = slots_.size() - 1;
+  std::size_t slot = hashOf(key) & mask;
+  while (slots_[slot] != kNone) slot = (slot + 1) & mask;
+  slots_[slot] = number;
+  return number;
+}
+
+void Voxels::rehash(std::size_t slots) {
+  slots_.assign(slots, kNone);
+  const std::size_t mask = slots - 1;
+  for (std::size_t block = 0; block < blocks_.size(); ++block) {
+    std::size_t slot = hashOf(blocks_[block].key) & mask;
+    while (slots_[slot] != kNone) slot = (slot + 1) & mask;
+    slots_[slot] = static_cast<std::uint32_t>(block);
+  }
+}
+
+/// The first unit of a cube, kNone if it is new. The list of a block has one entry for each cube in use, in the
+/// order of their bits; it moves to the end when it outgrows its room.
+std::uint32_t& Voxels::firstUnit(Block& block, std::uint32_t cube) {
+  const std::uint64_t bit = std::uint64_t{1} << cube;
+  const auto rank = countBits(block.occupied & (bit - 1));
+  if ((block.occupied & bit) != 0) return first_units_[block.units + rank];
+  const auto used = countBits(block.occupied);
+  if (used == block.room) {
+    const auto moved = static_cast<std::uint32_t>(first_units_.size());
+    block.room = std::max<std::uint32_t>(4, 2 * block.room);
+    first_units_.resize(first_units_.size() + block.room);
+    std::copy_n(first_units_.begin() + block.units, used, first_units_.begin() + moved);
+    block.units = moved;
+  }
+  block.occupied |= bit;
+  const auto list = first_units_.begin() + block.units;
+  std::copy_backward(list + rank, list + used, list + used + 1);
+  return *(list + rank) = kNone;
+}
+
+void Voxels::absorb(Voxels& other, DisjointSets& subclusters) {
+  const auto points = static_cast<std::uint32_t>(x_.size());
+  const auto pieces = static_cast<std::uint32_t>(pieces_.size());
+  x_.insert(x_.end(), other.x_.begin(), other.x_.end());
+  y_.insert(y_.end(), other.y_.begin(), other.y_.end());
+  z_.insert(z_.end(), other.z_.begin(), other.z_.end());
+  for (Piece piece : other.pieces_) {
+    piece.first_point += points;
+    if (piece.next_in_unit != kNone) piece.next_in_unit += pieces;
+    pieces_.push_back(piece);
+  }
+  for (const Block& block : other.blocks_) {
+    const std::uint32_t own_number = makeBlock(block.key);
+    Block& own = blocks_[own_number];
+    if (!own.is_new) {
+      own.is_new = true;
+      new_blocks_.push_back(own_number);
+    }
+    std::uint32_t rank = 0;
+    for (std::uint64_t left = block.occupied; left != 0; left &= left - 1, ++rank)
+      for (std::uint32_t i = other.first_units_[block.units + rank]; i != kNone;) {
+        Unit unit = other.units_[i];
+        i = unit.next_in_cube;
+        unit.first_piece += pieces;
+        unit.last_piece += pieces;
+        std::uint32_t& first = firstUnit(own, static_cast<std::uint32_t>(__builtin_ctzll(left)));
+        Unit* like = nullptr;
+        for (std::uint32_t j = first; j != kNone && like == nullptr; j = units_[j].next_in_cube)
+          if (Box::squaredSpan(units_[j].box, unit.box) < tolerance_.squared()) like = &units_[j];
+        if (like != nullptr) {
+          like->box.add(unit.box);
+          like->is_new = true;
+          pieces_[like->last_piece].next_in_unit = unit.first_piece;
+          like->last_piece = unit.last_piece;
+          like->head = subclusters.merge(like->head, unit.head);
+        } else {
+          unit.next_in_cube = first;
+          first = static_cast<std::uint32_t>(units_.size());
+          units_.push_back(unit);
+        }
+      }
+  }
+  other.prepare(tolerance_);
+}
+
+void Voxels::link(DisjointSets& subclusters) {
+  for (const std::uint32_t block : new_blocks_) linkBlock(blocks_[block], !anything_linked_, subclusters);
+  for (const std::uint32_t block : new_blocks_) {
+    blocks_[block].is_new = false;
+    const auto used = countBits(blocks_[block].occupied);
+    for (std::uint32_t rank = 0; rank < used; ++rank)
+      for (std::uint32_t i = first_units_[blocks_[block].units + rank]; i != kNone; i = units_[i].next_in_cube)
+        units_[i].is_new = false;
+  }
+  anything_linked_ = anything_linked_ || !new_blocks_.empty();
+  new_blocks_.clear();
+}
+
+/// Compares the new units of a block with all units around them; each pair of new ones once.
+void Voxels::linkBlock(const Block& block, bool all_new, DisjointSets& subclusters) {
+  const auto& masks = all_new ? kNeighbourhood.later : kNeighbourhood.all;
+  struct Near {
+    std::size_t mask;
+    std::uint64_t occupied;
+    std::uint32_t units;
+  };
+  Near near[kNeighbourBlocks];
+  std::size_t count = 0;
+  for (std::size_t i = all_new ? kNeighbourBlocks / 3 : 0; i < kNeighbourBlocks; ++i) {
+    const auto step = [](std::size_t which) { return static_cast<std::uint32_t>(which) - 1U; };
+    const Key key{(block.key[0] + step(i % 3)) & kBlockMask, (block.key[1] + step(i / 3 % 3)) & kBlockMask,
+                  (block.key[2] + step(i / 9)) & kBlockMask};
+    const std::uint32_t number = findBlock(key);
+    if (number != kNone) near[count++] = {i, blocks_[number].occupied, blocks_[number].units};
+  }
+
+  const auto compare = [&](std::uint32_t a_number, std::uint32_t b_number) {
+    Unit& a = units_[a_number];
+    Unit& b = units_[b_number];
+    if (a.head == b.head || (!all_new && b.is_new && b_number > a_number)) return;
+    a.head = subclusters.head(a.head);
+    b.head = subclusters.head(b.head);
+    if (a.head != b.head && haveNeighbours(a, b)) a.head = b.head = subclusters.merge(a.head, b.head);
+  };
+
+  std::uint32_t rank = 0;
+  for (std::uint64_t left = block.occupied; left != 0; left &= left - 1, ++rank) {
+    const auto cube = static_cast<std::size_t>(__builtin_ctzll(left));
+    for (std::uint32_t unit = first_units_[block.units + rank]; unit != kNone; unit = units_[unit].next_in_cube) {
+      if (!units_[unit].is_new) continue;
+      for (std::uint32_t other = all_new ? units_[unit].next_in_cube : first_units_[block.units + rank]; other != kNone;
+           other = units_[other].next_in_cube)
+        compare(unit, other);
+      for (std::size_t i = 0; i < count; ++i) {
+        std::uint64_t around = near[i].occupied & masks[cube][near[i].mask];
+        if (near[i].mask == kNeighbourBlocks / 2) around &= ~(std::uint64_t{1} << cube);
+        for (; around != 0; around &= around - 1) {
+          const std::uint64_t before = (around & -around) - 1;
+          const auto place = countBits(near[i].occupied & before);
+          for (std::uint32_t other = first_units_[near[i].units + place]; other != kNone;
+               other = units_[other].next_in_cube)
+            compare(unit, other);
+        }
+      }
+    }
+  }
+}
+
+/// Whether any return of one unit is a neighbour of any return of the other.
+bool Voxels::haveNeighbours(const Unit& a, const Unit& b) const {
+  const float squared_tolerance = tolerance_.squared();
+  if (!(Box::squaredGap(a.box, b.box) < squared_tolerance)) return false;
+  if (Box::squaredSpan(a.box, b.box) < squared_tolerance) return true;
+  for (std::uint32_t p = a.first_piece; p != kNone; p = pieces_[p].next_in_unit)
+    for (std::uint32_t i = pieces_[p].first_point; i < pieces_[p].first_point + pieces_[p].count; ++i) {
+      if (!(Box::squaredGap(Box::around(x_[i], y_[i], z_[i]), b.box) < squared_tolerance)) continue;
+      for (std::uint32_t q = b.first_piece; q != kNone; q = pieces_[q].next_in_unit) {
+        bool any = false;
+        for (std::uint32_t j = pieces_[q].first_point; j < pieces_[q].first_point + pieces_[q].count; ++j)
+          any |= squaredDistance(x_[i] - x_[j], y_[i] - y_[j], z_[i] - z_[j]) < squared_tolerance;
+        if (any) return true;
+      }
+    }
+  return false;
+}
+
+}  // namespace lisco
+#endif
