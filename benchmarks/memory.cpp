@@ -99,7 +99,7 @@ namespace fs = std::filesystem;
 namespace po = boost::program_options;
 using namespace lisco_apps;
 
-constexpr const char* kSignature = "input,rows,columns,cells,returns,ground_z,tolerance,min_size,clusters,output_bytes";
+constexpr const char* kSignature = "input,rows,columns,cells,returns,ground_z,tolerance,min_size,clusters,index_bytes";
 
 /// What was taken from the heap between two points.
 struct Use {
@@ -117,10 +117,9 @@ Use useOf(Run&& run) {
   return {allocation_count - allocations, live_bytes - live, peak_bytes - live};
 }
 
-/// What the clusters themselves hold, in bytes.
-std::ptrdiff_t bytesOf(const Clusters& clusters) {
-  std::size_t bytes =
-      clusters.capacity() == 0 ? 0 : malloc_usable_size(const_cast<pcl::PointIndices*>(clusters.data()));
+/// What the indices of clusters hold, in bytes.
+std::ptrdiff_t bytesOfIndices(const Clusters& clusters) {
+  std::size_t bytes = 0;
   for (const pcl::PointIndices& cluster : clusters)
     if (cluster.indices.capacity() != 0) bytes += malloc_usable_size(const_cast<pcl::index_t*>(cluster.indices.data()));
   return static_cast<std::ptrdiff_t>(bytes);
@@ -150,11 +149,11 @@ class BaseAlone : public pcl::PCLBase<RivalPoint> {
 struct MemoryResult {
   double tolerance = 0;
   std::size_t clusters = 0;
-  std::ptrdiff_t output = 0;  ///< bytes of the clusters
+  std::ptrdiff_t output = 0;  ///< bytes of the clusters' indices
   Use base;                   ///< of pcl::PCLBase in the first call
   std::ptrdiff_t kept = 0;    ///< that the extraction keeps for the next scan, without PCLBase's
   std::ptrdiff_t most = 0;    ///< that it used at one time, beyond output and PCLBase's
-  std::size_t needed = 0;     ///< allocations of the output
+  std::size_t needed = 0;     ///< allocations of the output, into an empty vector
   // Allocations beyond the output's, and in the first call beyond PCLBase's:
   std::ptrdiff_t first_beyond = 0;
   std::ptrdiff_t second_beyond = 0;  ///< PCLBase's included
@@ -182,6 +181,8 @@ MemoryResult measure(const ComparedScan& scan, double tolerance, unsigned min_si
     extraction->extract(clusters);
   };
   Clusters first, second, again;
+  first.reserve(
+      expected.size());  // outside the count, so that the old arrays of a growing vector are no part of the peak
   const Use creation = useOf([&] { extraction = std::make_unique<pcl::LiscoClusterExtraction<RivalPoint>>(); });
   const Use first_use = useOf([&] { extract(first); });
   const Use second_use = useOf([&] { extract(second); });
@@ -197,11 +198,11 @@ MemoryResult measure(const ComparedScan& scan, double tolerance, unsigned min_si
   const auto beyond = [](std::size_t allocations, std::size_t needed) {
     return static_cast<std::ptrdiff_t>(allocations) - static_cast<std::ptrdiff_t>(needed);
   };
-  result.output = bytesOf(first);
+  result.output = bytesOfIndices(first);
   result.kept = creation.kept + first_use.kept - result.output - result.base.kept;
   result.most = creation.kept + first_use.peak - result.output - result.base.kept;
-  result.needed = allocationsOf(first);
-  result.first_beyond = beyond(creation.allocations + first_use.allocations, result.needed + result.base.allocations);
+  result.needed = allocationsOf(second);
+  result.first_beyond = beyond(creation.allocations + first_use.allocations, first.size() + result.base.allocations);
   result.second_beyond = beyond(second_use.allocations, result.needed);
   result.third_beyond = beyond(third_use.allocations, again.size());
   const auto same = [&expected](const Clusters& clusters) {
@@ -234,7 +235,8 @@ bool parse(int argc, char** argv, Options& options) {
       "  output   allocations of the clusters: one for the indices of each, and those of the vector of clusters, "
       "which\n"
       "           grows from nothing by doubling (1, 2, 4, ...)\n"
-      "  1st      allocations of a new object's first call beyond the output's and PCLBase's\n"
+      "  1st      allocations of a new object's first call beyond the output's and PCLBase's, with room for all "
+      "clusters\n"
       "  2nd      those of its second call, on the same scan, beyond the output's; must be 0\n"
       "  reused   the same if the vector of clusters is cleared and used again, which needs not grow then\n"
       "Bytes are those of the pieces that malloc () has made, which may be a little larger than it was asked for.\n\n"
@@ -271,7 +273,13 @@ bool parse(int argc, char** argv, Options& options) {
 /// \return whether all is as it must be
 bool measureFile(const fs::path& file, const std::string& name, const Options& options, std::string& csv) {
   const float ground_z = options.ground.of(file.stem().string());
-  const ComparedScan scan = prepareScan(*readCloudFile(file), {}, ground_z, false);
+  const Cloud::Ptr cloud = readCloudFile(file);
+  ComparedScan scan;
+  try {
+    scan = prepareScan(*cloud, {}, ground_z, false);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(file.string() + ": " + error.what());
+  }
   const auto cells = static_cast<double>(scan.cloud->size());
   const auto perCell = [cells](std::ptrdiff_t bytes) { return static_cast<double>(bytes) / cells; };
   bool good = true;
@@ -314,7 +322,7 @@ int run(const Options& options) {
       good = measureFile(files[i], names[i], options, csv) && good;
       ++measured;
     } catch (const std::exception& error) {
-      failures.emplace_back(files[i].string() + ": " + error.what());
+      failures.emplace_back(error.what());
     }
   }
   for (const std::string& failure : failures) std::fprintf(stderr, "memory_use: %s\n", failure.c_str());

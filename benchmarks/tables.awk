@@ -16,6 +16,8 @@ table != "mask" {
   clusters[scan, tolerance] = field("reference_clusters")
   mean[key(rival)] = field("mean_ms"); error[key(rival)] = field("confidence99_ms")
   median[key(rival)] = field("median_ms"); cold[key(rival)] = field("cold_median_ms")
+  lower[key(rival)] = field("lower_quartile_ms"); upper[key(rival)] = field("upper_quartile_ms")
+  cells[scan] = field("rows") * field("columns")
   identical[key(rival)] = field("identical")
   objects[scan, tolerance] = field("objects"); whole[scan, tolerance] = field("whole")
   split_[scan, tolerance] = field("split"); merged[scan, tolerance] = field("merged"); missed[scan, tolerance] = field("missed")
@@ -36,14 +38,37 @@ function summary(slow, fast,   i, sum, cold_sum, r, lowest) {
   return sprintf("geometric mean %s, lowest %s; of first runs, with cold memory, %s", short(exp(sum / cases)), short(lowest), short(exp(cold_sum / cases)))
 }
 
+# Half the distance between the quartiles, in percent of the median.
+function spread(s, t, rival) { return sprintf("%.0f%%", 50 * (upper[s, t, rival] - lower[s, t, rival]) / median[s, t, rival]) }
+
 function benchmarks(   i, s, t) {
-  printf "%-20s %8s %5s %8s %9s %9s %9s %10s %10s  %s\n", "scan", "returns", "eps", "clusters", "PCL ms", "grid ms", "Lisco ms", "PCL/Lisco", "grid/Lisco", "identical"
+  printf "%-20s %8s %5s %8s %9s %4s %9s %4s %9s %4s %10s %10s  %s\n", "scan", "returns", "eps", "clusters", "PCL ms", "+-", "grid ms", "+-", "Lisco ms", "+-", "PCL/Lisco", "grid/Lisco", "identical"
   for (i = 1; i <= cases; ++i) {
     s = case_scan[i]; t = case_tolerance[i]
-    printf "%-20s %8d %5.2f %8d %9.2f %9.3f %9.3f %10.1f %10.2f  %s\n", s, returns[s], t, clusters[s, t], median[s, t, "pcl"], median[s, t, "grid"], median[s, t, "lisco"], ratio(median, s, t, "pcl", "lisco"), ratio(median, s, t, "grid", "lisco"), identical[s, t, "lisco"]
+    printf "%-20s %8d %5.2f %8d %9.2f %4s %9.3f %4s %9.3f %4s %10.1f %10.2f  %s\n", s, returns[s], t, clusters[s, t], median[s, t, "pcl"], spread(s, t, "pcl"), median[s, t, "grid"], spread(s, t, "grid"), median[s, t, "lisco"], spread(s, t, "lisco"), ratio(median, s, t, "pcl", "lisco"), ratio(median, s, t, "grid", "lisco"), identical[s, t, "lisco"]
   }
   printf "PCL / Lisco in %d cases: %s\n", cases, summary("pcl", "lisco")
   printf "grid / Lisco in %d cases: %s\n", cases, summary("grid", "lisco")
+}
+
+# Lisco's time over the number of cells. Scans of a series are called SERIES_NUMBER, smallest first; the last column says by how much
+# time grows where the cells double.
+function growth(   i, s, t, series, before, factor, doublings, sum, count, highest) {
+  printf "%-22s %9s %9s %5s %8s %9s %4s %8s  %s\n", "scan", "cells", "returns", "eps", "clusters", "Lisco ms", "+-", "doubling", "identical"
+  for (i = 1; i <= cases; ++i) {
+    s = case_scan[i]; t = case_tolerance[i]
+    factor = "-"
+    if (i > 1 && substr(s, 1, length(series)) == series) {
+      doublings = log(cells[s] / cells[before]) / log(2)
+      factor = exp(log(median[s, t, "lisco"] / median[before, t, "lisco"]) / doublings)
+      sum += log(factor); ++count
+      if (factor > highest) highest = factor
+      factor = sprintf("%.2f", factor)
+    }
+    series = s; sub(/[0-9]+$/, "", series); before = s
+    printf "%-22s %9d %9d %5.2f %8d %9.3f %4s %8s  %s\n", s, cells[s], returns[s], t, clusters[s, t], median[s, t, "lisco"], spread(s, t, "lisco"), factor, identical[s, t, "lisco"]
+  }
+  printf "time per doubling of the cells: geometric mean %.2f, highest %.2f; at most 2.3 is wanted\n", exp(sum / count), highest
 }
 
 # One row per scan, one column per tolerance: PCL's time, Lisco's time, and their ratio.
@@ -141,6 +166,7 @@ function mask(   i, j, s, t, at) {
 
 END {
   if (table == "benchmarks") benchmarks()
+  if (table == "growth") growth()
   if (table == "readme") readme()
   if (table == "times") times()
   if (table == "scored") scored()
