@@ -83,9 +83,12 @@ measure_vehicle() {
 simulate_worst() {
   [ ! -d "$out/worst" ] || return 0
   mkdir "$out/worst" || return 1
-  local name
-  for name in room random sheets singletons poles; do
+  local name gap
+  for name in room random singletons poles; do
     simulate --case "$name" -o "$out/worst/$name.pcd" || return 1
+  done
+  for gap in 0.11 0.41 1.01; do  # just beyond each of the tolerances
+    simulate --case sheets --gap "$gap" -o "$out/worst/sheets_$gap.pcd" || return 1
   done
   simulate --case wall --steps 450 -o "$out/worst/wall.pcd" && simulate --case blocked --steps 225 -o "$out/worst/blocked.pcd"
 }

@@ -55,7 +55,7 @@ Scan scanEachCell(const Sensor& sensor, const Disturbance& disturbance, TargetOf
     ray.direction = sensor.direction(ray.laser, ray.step);
     ray.noise = disturbance.range_noise * CellRandom(disturbance.seed, cell, kForNoise).gaussian();
     const Target target = target_of(ray);
-    if (target.range > 0) scan.cells[cell] = cellAt(ray, {std::max(target.range, kLeastRange), target.object});
+    if (target.range > 0) scan.cells[cell] = cellAt(ray, target);
   }
   return scan;
 }
@@ -91,7 +91,7 @@ Scan scanRoom(const Sensor& sensor, const Disturbance& disturbance) {
 
 Scan scanWall(const Sensor& sensor, const Disturbance& disturbance) {
   return scanEachCell(sensor, disturbance, [](const Ray& ray) {
-    return Target{rangeOfRoundWall(ray.direction, 1) + ray.noise, 1};
+    return Target{std::max(rangeOfRoundWall(ray.direction, 1) + ray.noise, kLeastRange), 1};
   });
 }
 
@@ -107,7 +107,7 @@ Scan scanSheets(const Sensor& sensor, const Disturbance& disturbance, double gap
     // Balls rather than walls: ranges that differ by the gap are at least as far apart in all directions.
     const bool farther = (ray.laser + ray.step) % 2 != 0;
     const double noise = std::fabs(ray.noise);
-    return farther ? Target{kRange + gap + noise, 2} : Target{kRange - noise, 1};
+    return farther ? Target{kRange + gap + noise, 2} : Target{std::max(kRange - noise, kLeastRange), 1};
   });
 }
 
