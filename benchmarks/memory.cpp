@@ -181,8 +181,8 @@ MemoryResult measure(const ComparedScan& scan, double tolerance, unsigned min_si
     extraction->extract(clusters);
   };
   Clusters first, second, again;
-  first.reserve(
-      expected.size());  // outside the count, so that the old arrays of a growing vector are no part of the peak
+  // The old arrays of a vector that grows are to be no part of the peak.
+  first.reserve(expected.size());
   const Use creation = useOf([&] { extraction = std::make_unique<pcl::LiscoClusterExtraction<RivalPoint>>(); });
   const Use first_use = useOf([&] { extract(first); });
   const Use second_use = useOf([&] { extract(second); });
@@ -191,7 +191,7 @@ MemoryResult measure(const ComparedScan& scan, double tolerance, unsigned min_si
   const Use third_use = useOf([&] { extract(again); });
 
   // Whether the extraction did what PCLBase does shows in the indices that it has.
-  if (extraction->getIndices() != nullptr) {
+  if (extraction->getIndices() != nullptr && !extraction->getIndices()->empty()) {
     BaseAlone base;
     result.base = useOf([&] { base.run(problem.cloud); });
   }
