@@ -38,7 +38,7 @@ constexpr std::size_t kMostSteps = 16384;
 // From where on returns are far: where about this many of a flat surface's lie in a square of the tolerance's size. Fewer
 // if the returns of a laser do not form runs: then segments are short, and there are too many in a window.
 constexpr double kReturnsPerSquare = 400.0;
-constexpr double kRoughReturnsPerSquare = 12.0;
+constexpr double kRoughReturnsPerSquare = 60.0;
 // What it costs to look for a segment's neighbours in a sector, in comparisons of registers of places.
 constexpr std::uint32_t kSegmentCost = 2;
 constexpr double kLeastNearEnd = 2.5;  // in units of the tolerance

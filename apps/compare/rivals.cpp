@@ -92,8 +92,12 @@ lisco::Return returnAt(const Problem& problem, pcl::index_t index) {
 class ByVoxelGrid {
  public:
   void extract(const Problem& problem, Clusters& clusters) {
-    returns_.resize(problem.returns->size());
-    for (std::size_t i = 0; i < returns_.size(); ++i) returns_[i] = returnAt(problem, (*problem.returns)[i]);
+    // Like Lisco, and unlike PCL, it is given the cloud as it is and looks for the returns itself.
+    returns_.clear();
+    const RivalCloud& cloud = *problem.cloud;
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      if (lisco::isReturn(cloud[i].x, cloud[i].y, cloud[i].z))
+        returns_.push_back({cloud[i].x, cloud[i].y, cloud[i].z, static_cast<std::uint32_t>(i)});
     const auto& component_of = grid_.cluster(returns_, static_cast<float>(problem.tolerance));
     output_.append(component_of, returns_.size(), problem, clusters);
   }
