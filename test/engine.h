@@ -17,9 +17,21 @@ struct Setting {
   lisco::Parameters parameters;  ///< without the tolerance
 };
 
-/// Both masks, blocks of 1, 3 and 16 columns, patches that close early and late, the finest and the coarsest
-/// hints, a sensor elsewhere, and a table of cells that is far too small.
+/// Blocks of 1, 3, 16 and 64 columns; no strip, and strips of few and of many places; a sensor elsewhere; some
+/// threads (of which small scans need only one).
 const std::vector<Setting>& allSettings();
+
+/// A few of these, which are tried with every level of vector instructions.
+const std::vector<Setting>& settingsForEachLevel();
+
+/// One of lisco::simdLevels(), as long as this lives; then the best again.
+class SimdLevel {
+ public:
+  explicit SimdLevel(const std::string& name);
+  ~SimdLevel();
+  SimdLevel(const SimdLevel&) = delete;
+  SimdLevel& operator=(const SimdLevel&) = delete;
+};
 
 /// The clusters of all columns added so far, in order. Calls update().
 Clustering clustersOf(lisco::ColumnClusterer& clusterer);
@@ -27,7 +39,7 @@ Clustering clustersOf(lisco::ColumnClusterer& clusterer);
 /// Clusters the scan with one setting.
 Clustering cluster(lisco::ColumnClusterer& clusterer, const Scan& scan, float tolerance, const Setting& setting);
 
-/// Holds every setting's outcome against the oracle's and against the verifier.
+/// Holds every setting's outcome, and those of some at each level of vector instructions, against the oracle's and against the verifier.
 /// \return whether all were right; otherwise test failures have been added
 bool expectExact(lisco::ColumnClusterer& clusterer, const Scan& scan, float tolerance);
 
