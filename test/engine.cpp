@@ -4,9 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <map>
 #include <utility>
 
 #include "lisco/simd.h"
+#include "lisco/view_strip.h"
 #include "verifier.h"
 
 namespace lisco_test {
@@ -62,6 +67,49 @@ const std::vector<Setting>& settingsForEachLevel() {
   return settings;
 }
 
+std::uint64_t timesEffort(std::uint64_t count) {
+  const char* const effort = std::getenv("LISCO_TEST_EFFORT");
+  return effort != nullptr ? count * std::strtoull(effort, nullptr, 10) : count;
+}
+
+const std::vector<std::string>& levels() {
+  static const std::vector<std::string> all = lisco::simdLevels();
+  return all;
+}
+
+lisco::ViewHints hintsFor(int steps, float elevation_step, bool clockwise) {
+  lisco::ViewHints hints;
+  hints.steps_per_turn = steps;
+  hints.elevation_step = elevation_step;
+  hints.clockwise = clockwise;
+  return hints;
+}
+
+double nearEndOf(const lisco::ViewHints& hints) {
+  static std::map<int, lisco::ViewStrip> strips;  // to prepare one with other steps takes long
+  lisco::ViewStrip& strip = strips[hints.steps_per_turn];
+  strip.prepare(lisco::Tolerance(1.0F), hints);
+  return static_cast<double>(strip.farRange().near_end);
+}
+
+float elevationStepFor(lisco::ViewHints hints, double near_end) {
+  // Beyond what the steps allow, it goes with the square root of the density.
+  hints.elevation_step = 1e-6F;
+  const double ratio = nearEndOf(hints) / near_end;
+  return static_cast<float>(1e-6 * ratio * ratio);
+}
+
+void feed(lisco::ColumnClusterer& clusterer, Random& random, const Scan& scan) {
+  const double looks = random.chance(0.5) ? 0.1 : 0.0;
+  const std::array<std::size_t, 4> portions{1, 1 + random.below(200), 1 + random.below(200), scan.columns};
+  const std::size_t portion = random.oneOf(portions);
+  for (std::size_t first = 0; first < scan.columns; first += portion) {
+    clusterer.addColumns(std::min(portion, scan.columns - first), scan.lasers,
+                         [&](std::size_t laser, std::size_t column) { return scan.at(laser, first + column); });
+    if (portion > 10 && random.chance(looks)) clusterer.update();
+  }
+}
+
 SimdLevel::SimdLevel(const std::string& name) {
   EXPECT_TRUE(lisco::useSimdLevel(name)) << name;
   EXPECT_EQ(lisco::simdLevel(), name);
@@ -110,8 +158,7 @@ bool expectExact(lisco::ColumnClusterer& clusterer, const Scan& scan, float tole
     all_right = all_right && wrong.empty();
   };
   for (const Setting& setting : allSettings()) expectRight(setting);
-  static const std::vector<std::string> levels = lisco::simdLevels();
-  for (const std::string& name : levels) {
+  for (const std::string& name : levels()) {
     const SimdLevel level(name);
     for (const Setting& setting : settingsForEachLevel()) expectRight(setting);
   }

@@ -2,11 +2,13 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "lisco/column_clusterer.h"
 #include "oracle.h"
+#include "random.h"
 #include "scans.h"
 
 namespace lisco_test {
@@ -24,7 +26,24 @@ const std::vector<Setting>& allSettings();
 /// A few of these, which are tried with every level of vector instructions.
 const std::vector<Setting>& settingsForEachLevel();
 
-/// One of lisco::simdLevels(), as long as this lives; then the best again.
+/// So many, or more for a longer hunt: LISCO_TEST_EFFORT=n in the environment tries n times as many.
+std::uint64_t timesEffort(std::uint64_t count);
+
+lisco::ViewHints hintsFor(int steps, float elevation_step, bool clockwise = false);
+
+/// From where on returns are far, in units of the tolerance; infinite if the hints are of no use.
+double nearEndOf(const lisco::ViewHints& hints);
+
+/// What makes returns far from so many tolerances on, or as near to that as the steps allow.
+float elevationStepFor(lisco::ViewHints hints, double near_end);
+
+/// Adds the scan's columns in portions, with a look at the subclusters now and then.
+void feed(lisco::ColumnClusterer& clusterer, Random& random, const Scan& scan);
+
+/// The levels of vector instructions.
+const std::vector<std::string>& levels();
+
+/// One of the levels, as long as this lives; then the best again.
 class SimdLevel {
  public:
   explicit SimdLevel(const std::string& name);

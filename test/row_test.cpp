@@ -62,9 +62,8 @@ lisco::MeasuredRow measuredCellByCell(const lisco::Row& row, std::size_t columns
 
 /// Measures the row at every level of vector instructions.
 void expectMeasured(const lisco::Row& row, std::size_t columns, float squared_tolerance, const lisco::FarRange& range) {
-  static const std::vector<std::string> levels = lisco::simdLevels();
   const lisco::MeasuredRow right = measuredCellByCell(row, columns, squared_tolerance, range);
-  for (const std::string& name : levels) {
+  for (const std::string& name : levels()) {
     const SimdLevel level(name);
     SCOPED_TRACE(name);
     lisco::Row measured_row = row;
@@ -191,18 +190,17 @@ TEST(Row, WithoutFarReturns) {
 }
 
 TEST(Simd, LevelsCanBeChosen) {
-  const std::vector<std::string> levels = lisco::simdLevels();
-  ASSERT_FALSE(levels.empty());
-  EXPECT_EQ(lisco::simdLevel(), levels.front()) << "the best is in use";
-  for (const std::string& level : levels) {
+  ASSERT_FALSE(levels().empty());
+  EXPECT_EQ(lisco::simdLevel(), levels().front()) << "the best is in use";
+  for (const std::string& level : levels()) {
     EXPECT_TRUE(lisco::useSimdLevel(level));
     EXPECT_EQ(lisco::simdLevel(), level);
-    EXPECT_EQ(lisco::simdLevels(), levels);
+    EXPECT_EQ(lisco::simdLevels(), levels());
   }
   EXPECT_FALSE(lisco::useSimdLevel("no such level"));
-  EXPECT_EQ(lisco::simdLevel(), levels.back());
+  EXPECT_EQ(lisco::simdLevel(), levels().back());
   EXPECT_TRUE(lisco::useSimdLevel({}));
-  EXPECT_EQ(lisco::simdLevel(), levels.front());
+  EXPECT_EQ(lisco::simdLevel(), levels().front());
 }
 
 }  // namespace

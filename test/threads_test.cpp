@@ -7,7 +7,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -19,11 +18,6 @@
 
 namespace lisco_test {
 namespace {
-
-std::uint64_t timesEffort(std::uint64_t count) {
-  const char* const effort = std::getenv("LISCO_TEST_EFFORT");
-  return effort != nullptr ? count * std::strtoull(effort, nullptr, 10) : count;
-}
 
 /// A rotation of at least as many cells as are worth threads, of which few or most are returns.
 Scan largeScan(Random& random) {

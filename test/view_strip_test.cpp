@@ -31,35 +31,6 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr std::uint32_t kFirstPlace = 64;  // of the first return
 
-std::uint64_t timesEffort(std::uint64_t count) {
-  const char* const effort = std::getenv("LISCO_TEST_EFFORT");
-  return effort != nullptr ? count * std::strtoull(effort, nullptr, 10) : count;
-}
-
-lisco::ViewHints hintsFor(int steps, float elevation_step, bool clockwise = false) {
-  lisco::ViewHints hints;
-  hints.steps_per_turn = steps;
-  hints.elevation_step = elevation_step;
-  hints.clockwise = clockwise;
-  return hints;
-}
-
-/// From where on returns are far, in units of the tolerance; infinite if the hints are of no use.
-double nearEndOf(const lisco::ViewHints& hints) {
-  static std::map<int, lisco::ViewStrip> strips;  // to prepare one with other steps takes long
-  lisco::ViewStrip& strip = strips[hints.steps_per_turn];
-  strip.prepare(lisco::Tolerance(1.0F), hints);
-  return static_cast<double>(strip.farRange().near_end);
-}
-
-/// Of the same hints, one that makes returns far from so many tolerances on, or about that.
-float elevationStepFor(lisco::ViewHints hints, double near_end) {
-  // Beyond what the steps allow, it goes with the square root of the density.
-  hints.elevation_step = 1e-6F;
-  const double ratio = nearEndOf(hints) / near_end;
-  return static_cast<float>(1e-6 * ratio * ratio);
-}
-
 /// A strip alone: what it joins it found itself, without any voxels.
 class Probe {
  public:
@@ -787,28 +758,11 @@ lisco::Parameters parametersFor(Random& random, const Rotation& rotation, float 
   return parameters;
 }
 
-/// In portions, with a look at the subclusters now and then.
-void feed(lisco::ColumnClusterer& clusterer, Random& random, const Scan& scan) {
-  const double looks = random.chance(0.5) ? 0.1 : 0.0;
-  const std::array<std::size_t, 4> portions{1, 1 + random.below(200), 1 + random.below(200), scan.columns};
-  const std::size_t portion = random.oneOf(portions);
-  for (std::size_t first = 0; first < scan.columns; first += portion) {
-    clusterer.addColumns(std::min(portion, scan.columns - first), scan.lasers,
-                         [&](std::size_t laser, std::size_t column) { return scan.at(laser, first + column); });
-    if (portion > 10 && random.chance(looks)) clusterer.update();
-  }
-}
-
 constexpr std::array<double, 5> kFarParts{1.0, 0.9, 0.5, 0.5, 0.1};
 
 /// In parts, so that they can run side by side.
 class StripScans : public testing::TestWithParam<std::uint64_t> {};
 INSTANTIATE_TEST_SUITE_P(Seeds, StripScans, testing::Range<std::uint64_t>(1, 4));
-
-const std::vector<std::string>& simdLevels() {
-  static const std::vector<std::string> levels = lisco::simdLevels();
-  return levels;
-}
 
 TEST_P(StripScans, EqualTheEngineWithoutTheStrip) {
   lisco::ColumnClusterer clusterer;
@@ -817,7 +771,7 @@ TEST_P(StripScans, EqualTheEngineWithoutTheStrip) {
   for (std::uint64_t seed = seeds; seed < seeds + timesEffort(40); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
-    const SimdLevel level(random.oneOf(simdLevels()));
+    const SimdLevel level(random.oneOf(levels()));
     const Rotation rotation = randomRotation(random, random.chance(0.5) ? 0.95 : random.between(0.1, 1.0));
     lisco::Parameters parameters = parametersFor(random, rotation, toleranceFor(rotation, random.oneOf(kFarParts)));
     clusterer.begin(parameters);
@@ -837,7 +791,7 @@ TEST_P(StripScans, EqualTheOracle) {
   for (std::uint64_t seed = seeds; seed < seeds + timesEffort(60); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
-    const SimdLevel level(random.oneOf(simdLevels()));
+    const SimdLevel level(random.oneOf(levels()));
     const Rotation rotation = randomRotation(random, random.between(0.01, 0.08));
     const float tolerance = toleranceFor(rotation, random.oneOf(kFarParts));
     clusterer.begin(parametersFor(random, rotation, tolerance));

@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <limits>
 #include <map>
 #include <ostream>
@@ -31,11 +30,6 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kPairs = 3000;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-std::uint64_t timesEffort(std::uint64_t count) {
-  const char* const effort = std::getenv("LISCO_TEST_EFFORT");
-  return effort != nullptr ? count * std::strtoull(effort, nullptr, 10) : count;
-}
 
 struct Vector {
   double x, y, z;
@@ -267,7 +261,6 @@ TEST_P(VoxelPairs, AreJoinedIfTheyAreNeighbours) {
   const auto tolerance = static_cast<float>(GetParam().tolerance);
   Probe probe(tolerance);
   int neighbours = 0;
-  const std::vector<std::string> levels = lisco::simdLevels();
   for (std::uint64_t seed = 1; seed < 1 + timesEffort(kPairs); ++seed) {
     Random random(seed);
     const Vector seen = firstOfPair(random, GetParam());
@@ -276,7 +269,7 @@ TEST_P(VoxelPairs, AreJoinedIfTheyAreNeighbours) {
     if (!isValid(p) || !isValid(q)) continue;
     const bool near = areNeighbours(p, q, tolerance);
     neighbours += near ? 1 : 0;
-    const SimdLevel level(levels[seed % levels.size()]);
+    const SimdLevel level(levels()[seed % levels().size()]);
     SCOPED_TRACE("seed " + std::to_string(seed) + ", " + lisco::simdLevel() + ": " + print(p) + ", " + print(q));
     for (const auto& [one, other] : {std::pair{p, q}, std::pair{q, p}})
       for (const bool linked_between : {false, true}) {
@@ -346,13 +339,12 @@ std::vector<std::vector<Point>> randomRows(Random& random, double side, std::siz
 }
 
 TEST_P(VoxelClouds, EqualTheOracle) {
-  const std::vector<std::string> levels = lisco::simdLevels();
   const std::uint64_t seeds = GetParam() * 1'000'000;
   Probe probe(1.0F);
   for (std::uint64_t seed = seeds; seed < seeds + timesEffort(300); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
-    const SimdLevel level(random.oneOf(levels));
+    const SimdLevel level(random.oneOf(levels()));
     const std::array<float, 5> tolerances{1.0F, 0.3F, 1e-17F, 1e10F, 7e-22F};
     const float tolerance = random.oneOf(tolerances);
     const auto rows = randomRows(random, 0.9999 / std::sqrt(3.0) * static_cast<double>(tolerance), 30);
