@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// Writes a simulated scan of one of the scenes on which Lisco's paper was evaluated.
+// Writes a simulated scan of one of the scenes on which Lisco's paper was evaluated, or one of the worst cases.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -17,6 +17,7 @@
 #include "lisco/version.h"
 #include "options.h"
 #include "output_file.h"
+#include "simulation/cases.h"
 #include "simulation/scanner.h"
 #include "simulation/scenes.h"
 #include "simulation/sensor.h"
@@ -31,8 +32,14 @@ using namespace lisco_simulation;
 /// By what a file of this program is known.
 constexpr const char* kSignature = "# made by lisco_simulate ";
 
+constexpr double kLeastGap = 0.001;  // metres
+constexpr double kMostGap = 100;
+
 struct Options {
-  int scene = 0;
+  int scene = 0;  ///< 0: a case
+  bool vehicle = false;
+  std::string worst_case;  ///< its name; empty: a scene
+  double gap = 0.41;       ///< of some cases, metres
   std::string sensor = sensorNames().front();
   std::size_t lasers = 0;  ///< 0: the sensor's own number
   std::size_t steps = 0;
@@ -44,15 +51,24 @@ struct Options {
 /// \return false if there is nothing to do but to print help or version, which has been done
 bool parse(int argc, char** argv, Options& options) {
   po::options_description shown(
-      "Usage: lisco_simulate --scene N -o SCAN.pcd [options]\n\n"
+      "Usage: lisco_simulate --scene N -o SCAN.pcd [options]\n"
+      "       lisco_simulate --case NAME -o SCAN.pcd [options]\n\n"
       "Simulates one rotation of a LiDAR in one of the five scenes on which Lisco's paper was evaluated:\n"
       "  1  a few objects near the sensor: cars, people, trees, lamp posts, houses\n"
       "  2  the same objects far away\n"
       "  3  many objects near, among them a row of parked cars on each side\n"
       "  4  the same objects far away\n"
       "  5  a closed, crowded room\n"
+      "or one of these cases, each of which makes clustering hard in one way:\n"
+      "  room        a closed, empty room: one cluster\n"
+      "  wall        a round wall 1 m away on all sides\n"
+      "  random      each return at a random range between 1 and 60 m\n"
+      "  sheets      two sheets a gap apart, which neighbouring cells see in turn\n"
+      "  singletons  as many returns as possible that are farther than a gap from each other\n"
+      "  blocked     something on the sensor's cover: all returns within 0.3 m\n"
+      "  poles       a comb of thin vertical poles\n"
       "Writes an organized cloud, a row per laser and a column per step, with fields x y z label; the label\n"
-      "is the number of the object that was hit, 0 the ground. Cells without return are NaN.\n\n"
+      "is the number of the object that was hit, 0 the ground. Cells without return are NaN. Cases have no ground.\n\n"
       "Options");
   std::string scene;
   std::string seed = "1";
@@ -60,11 +76,19 @@ bool parse(int argc, char** argv, Options& options) {
   std::string steps;
   std::string noise = "0.02";
   std::string drop_outs = "0.005";
+  std::string gap = "0.41";
   std::string output;
+  const std::string cases = listOf(caseNames());
   const std::string sensors = listOf(sensorNames()) + " (default " + options.sensor + ")";
   // clang-format off
   shown.add_options()
     ("scene", po::value<std::string>(&scene)->value_name("N"), "1 to 5")
+    ("case", po::value<std::string>(&options.worst_case)->value_name("NAME"), cases.c_str())
+    ("vehicle", po::bool_switch(&options.vehicle),
+     "the sensor also sees the vehicle below it, one more object (scenes 1 to 4): roof, rack, mast and mirrors nearer "
+     "than 1.5 m, from which a default hdl64e has a quarter of its returns")
+    ("gap", po::value<std::string>(&gap)->value_name("M"),
+     "between the two sheets, or between singletons, in metres (default 0.41)")
     ("output,o", po::value<std::string>(&output)->value_name("FILE"), "the scan to be written (PCD)")
     ("seed", po::value<std::string>(&seed)->value_name("N"),
      "what stands where, noise and drop-outs are drawn from it (default 1)")
@@ -79,10 +103,26 @@ bool parse(int argc, char** argv, Options& options) {
   // clang-format on
   po::variables_map given;
   if (!readCommandLine(argc, argv, "lisco_simulate", shown, nullptr, given)) return false;
-  if (given.count("scene") == 0) throw std::runtime_error("--scene is missing; see --help");
-  if (scene.size() != 1 || scene[0] < '1' || scene[0] > '0' + kScenes)
-    throw std::runtime_error("--scene must be 1, 2, 3, 4 or 5, not '" + scene + "'");
-  options.scene = scene[0] - '0';
+  if (given.count("scene") == 0 && given.count("case") == 0)
+    throw std::runtime_error("--scene or --case is missing; see --help");
+  if (given.count("scene") != 0 && given.count("case") != 0)
+    throw std::runtime_error("--scene and --case exclude each other");
+  if (given.count("scene") != 0) {
+    if (scene.size() != 1 || scene[0] < '1' || scene[0] > '0' + kScenes)
+      throw std::runtime_error("--scene must be 1, 2, 3, 4 or 5, not '" + scene + "'");
+    options.scene = scene[0] - '0';
+  } else {
+    const std::vector<std::string> names = caseNames();
+    if (std::find(names.begin(), names.end(), options.worst_case) == names.end())
+      throw std::runtime_error("there is no case '" + options.worst_case + "'; known are " + cases);
+  }
+  if (options.vehicle && (options.scene < 1 || options.scene > 4))
+    throw std::runtime_error("--vehicle needs a street to drive on: --scene 1, 2, 3 or 4");
+  options.gap = numberOf(gap, "--gap");
+  if (options.gap < kLeastGap || options.gap > kMostGap)
+    throw std::runtime_error("--gap must be from 0.001 to 100 metres, not '" + gap + "'");
+  if (given.count("gap") != 0 && (options.scene != 0 || !caseHasGap(options.worst_case)))
+    throw std::runtime_error("--gap is of --case sheets and --case singletons only");
   if (output.empty()) throw std::runtime_error("--output is missing; see --help");
   options.output = output;
   if (options.output.extension() != ".pcd")
@@ -129,9 +169,14 @@ std::string pcdOf(const Scan& scan, const std::string& comment) {
 /// The arguments that give the same scan again, but for the name of the file.
 std::string argumentsOf(const Options& options, const Sensor& sensor) {
   std::ostringstream arguments;
-  arguments << "--scene " << options.scene << " --seed " << options.seed << " --sensor " << options.sensor
-            << " --lasers " << sensor.lasers() << " --steps " << sensor.steps << " --noise "
-            << options.disturbance.range_noise << " --drop-outs " << options.disturbance.drop_outs;
+  if (options.scene != 0)
+    arguments << "--scene " << options.scene << (options.vehicle ? " --vehicle" : "");
+  else
+    arguments << "--case " << options.worst_case;
+  if (options.scene == 0 && caseHasGap(options.worst_case)) arguments << " --gap " << options.gap;
+  arguments << " --seed " << options.seed << " --sensor " << options.sensor << " --lasers " << sensor.lasers()
+            << " --steps " << sensor.steps << " --noise " << options.disturbance.range_noise << " --drop-outs "
+            << options.disturbance.drop_outs;
   return arguments.str();
 }
 
@@ -147,19 +192,25 @@ std::string kindsOf(const Scene& scene) {
   return list;
 }
 
-void printSummary(const Options& options, const Sensor& sensor, const Scene& scene, const Scan& scan) {
+void printSensor(const Options& options, const Scan& scan) {
+  std::printf("  sensor    %s, %zu lasers x %zu steps = %zu cells\n", options.sensor.c_str(), scan.lasers, scan.steps,
+              scan.cells.size());
+  std::printf("  returns   %zu", scan.returns());
+}
+
+void printScene(const Options& options, const Sensor& sensor, const Scene& scene, const Scan& scan) {
   static constexpr const char* kDescriptions[kScenes] = {"a few objects near the sensor", "a few objects far away",
                                                          "many objects near the sensor", "many objects far away",
                                                          "a closed, crowded room"};
   const auto ground_z = static_cast<double>(scene.ground_z);
   std::printf("scene %d of the paper: %s (seed %u)\n", options.scene, kDescriptions[options.scene - 1], options.seed);
   std::printf("  objects   %zu: %s\n", scene.objects.size(), kindsOf(scene).c_str());
-  std::printf("  sensor    %s, %zu lasers x %zu steps = %zu cells\n", options.sensor.c_str(), scan.lasers, scan.steps,
-              scan.cells.size());
-  std::printf("  returns   %zu, %zu above the ground (z >= %g m)", scan.returns(), scan.returnsAbove(scene.ground_z),
-              ground_z);
+  printSensor(options, scan);
+  std::printf(", %zu above the ground (z >= %g m)", scan.returnsAbove(scene.ground_z), ground_z);
   const Sensor paper = makeSensor(sensorNames().front());
-  if (sensor.name == paper.name && sensor.lasers() == paper.lasers() && sensor.steps == paper.steps)
+  if (options.vehicle)
+    std::printf("; %zu nearer than %g m", scan.returnsWithin(kVehicleRange), kVehicleRange);
+  else if (sensor.name == paper.name && sensor.lasers() == paper.lasers() && sensor.steps == paper.steps)
     std::printf("; the paper's scene gave %zu", kReturnsInPaper[options.scene - 1]);
   std::printf("\n  written   %s; cluster it with --ground-z %g\n", options.output.c_str(), ground_z);
 }
@@ -167,13 +218,23 @@ void printSummary(const Options& options, const Sensor& sensor, const Scene& sce
 int simulate(const Options& options) {
   checkMayWrite(options.output, kSignature);  // before the work
   const Sensor sensor = sensorFor(options);
-  const Scene scene = makeScene(options.scene, options.seed);
-  const Scan rotation = scan(scene, sensor, options.disturbance);
   std::ostringstream comment;
-  comment << kSignature << LISCO_VERSION << ": " << argumentsOf(options, sensor)
-          << "; remove the ground with --ground-z " << scene.ground_z;
+  comment << kSignature << LISCO_VERSION << ": " << argumentsOf(options, sensor);
+  if (options.scene == 0) {
+    const Scan rotation = scanCase(options.worst_case, sensor, options.disturbance, options.gap);
+    writeOwnFile(options.output, pcdOf(rotation, comment.str()), kSignature);
+    std::printf("case %s: %s (seed %u)\n", options.worst_case.c_str(), describeCase(options.worst_case).c_str(),
+                options.seed);
+    printSensor(options, rotation);
+    std::printf("\n  written   %s\n", options.output.c_str());
+    return 0;
+  }
+  Scene scene = makeScene(options.scene, options.seed);
+  if (options.vehicle) addVehicle(scene, options.seed);
+  const Scan rotation = scan(scene, sensor, options.disturbance);
+  comment << "; remove the ground with --ground-z " << scene.ground_z;
   writeOwnFile(options.output, pcdOf(rotation, comment.str()), kSignature);
-  printSummary(options, sensor, scene, rotation);
+  printScene(options, sensor, scene, rotation);
   return 0;
 }
 

@@ -38,9 +38,11 @@ report() {
   }
 }
 
-# table NAME CSV: one of the tables of tables.awk.
+# table NAME CSV...: one of the tables of tables.awk.
 table() {
-  awk -v table="$1" -f "$root/benchmarks/tables.awk" "$2"
+  local name=$1
+  shift
+  awk -v table="$name" -f "$root/benchmarks/tables.awk" "$@"
 }
 
 # replace_section FILE NAME: replaces what stands in FILE between the lines `<!-- NAME -->` and `<!-- end -->` by stdin.

@@ -16,6 +16,7 @@ void ColumnClusterer::begin(const Parameters& parameters) {
     reading.source_index.clear();
     reading.runs.clear();
     reading.rows.clear();
+    reading.returns = 0;
     reading.voxels.prepare(tolerance_);
   }
   readings_.front().source_index.reserve(parameters.expected_returns / parameters_.threads);
@@ -28,7 +29,7 @@ void ColumnClusterer::begin(const Parameters& parameters) {
 
 std::size_t ColumnClusterer::returnCount() const {
   std::size_t count = 0;
-  for (const Reading& reading : readings_) count += reading.source_index.size();
+  for (const Reading& reading : readings_) count += reading.returns;
   return count;
 }
 
@@ -93,21 +94,24 @@ void ColumnClusterer::readRow(Reading& reading, std::size_t thread, Row& row, st
   if (measured.returns == 0) return;
 
   const auto first_run = static_cast<std::uint32_t>(reading.runs.size());
+  const auto first_cell = static_cast<std::uint32_t>(reading.source_index.size());
+  const std::size_t last_run = first_run + static_cast<std::size_t>(__builtin_popcountll(measured.starts));
+  subclusters_.grow(reading.first_element + last_run);
+  reading.runs.resize(last_run);
+  reading.source_index.insert(reading.source_index.end(), row.source_index, row.source_index + columns);
+  reading.returns += static_cast<std::size_t>(__builtin_popcountll(measured.returns));
   const std::uint64_t ends = ~measured.returns | measured.starts;
-  subclusters_.grow(reading.first_element + reading.runs.size() + Row::kColumns);
-  for (std::uint64_t starts = measured.starts; starts != 0; starts &= starts - 1) {
-    const auto begin = static_cast<std::size_t>(__builtin_ctzll(starts));
+  std::uint32_t number = first_run;
+  for (std::uint64_t starts = measured.starts; starts != 0; starts &= starts - 1, ++number) {
+    const auto begin = static_cast<std::uint32_t>(__builtin_ctzll(starts));
     const std::uint64_t after = begin == Row::kColumns - 1 ? 0 : ends & ~std::uint64_t{0} << (begin + 1);
-    const std::size_t end = after != 0 ? static_cast<std::size_t>(__builtin_ctzll(after)) : Row::kColumns;
-    const std::uint32_t element = reading.first_element + static_cast<std::uint32_t>(reading.runs.size());
+    const std::uint32_t end = after != 0 ? static_cast<std::uint32_t>(__builtin_ctzll(after)) : Row::kColumns;
+    const std::uint32_t element = reading.first_element + number;
     subclusters_.create(element);
-    std::fill(measured.run + begin, measured.run + end, element);
-    reading.runs.push_back(
-        {static_cast<std::uint32_t>(reading.source_index.size()), static_cast<std::uint32_t>(end - begin), 0});
-    reading.source_index.insert(reading.source_index.end(), row.source_index + begin, row.source_index + end);
+    for (std::uint32_t i = begin; i < end; ++i) measured.run[i] = element;
+    reading.runs[number] = {first_cell + begin, end - begin, 0};
   }
-  reading.rows.push_back(
-      {static_cast<std::uint32_t>(laser), first_run, static_cast<std::uint32_t>(reading.runs.size()) - first_run});
+  reading.rows.push_back({static_cast<std::uint32_t>(laser), first_run, number - first_run});
 
   std::uint64_t loose = 0;
   if (measured.far != 0) {

@@ -74,7 +74,7 @@ void pcl::detail::LiscoCloudClusterer::collect(const Indices* indices, const PCL
     const std::uint32_t cluster = cluster_of_subcluster_[subcluster];
     if (cluster == kNoCluster) return;
     Indices& members = clusters[first_cluster + cluster].indices;
-    members.insert(members.end(), cells, cells + count);
+    members.insert(members.end(), cells, cells + count);  // there is room
   });
 }
 

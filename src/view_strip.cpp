@@ -35,9 +35,14 @@ constexpr std::size_t kMostSteps = 16384;
 
 // From where on returns are far: where about this many of a flat surface's lie in a square of the tolerance's size.
 #ifndef LISCO_RPS
-#define LISCO_RPS 150.0
+#define LISCO_RPS 400.0
 #endif
 constexpr double kReturnsPerSquare = LISCO_RPS;
+#ifndef LISCO_SC
+#define LISCO_SC 2
+#endif
+// What it costs to look for a segment's neighbours in a sector, in comparisons of registers of places.
+constexpr std::uint32_t kSegmentCost = LISCO_SC;
 constexpr double kLeastNearEnd = 2.5;  // in units of the tolerance
 
 /// An upper bound on asin (ratio), 0 <= ratio < 1.
@@ -189,21 +194,22 @@ void linkSamePlaces(const StripData& strip, std::size_t begin, std::size_t end, 
       continue;
     const std::size_t upper = strip.at(laser, 0);
     const std::size_t lower = strip.at(laser + 1, 0);
+    // Pairs of the same two runs need one merge.
+    std::uint32_t above = ~std::uint32_t{0};
+    std::uint32_t below = ~std::uint32_t{0};
     for (std::size_t k = begin; k < end; k += kLanes) {
       const auto apart = [&](const std::vector<float>& coordinate) {
         return hn::Sub(hn::LoadU(kFloats, &coordinate[upper + k]), hn::LoadU(kFloats, &coordinate[lower + k]));
       };
-      FloatMask joined = areNeighbours(apart(strip.x), apart(strip.y), apart(strip.z), r2);
-      std::uint32_t left = bitsOf(joined);
-      while (left != 0) {  // pairs of the same two runs need one merge
-        const auto i = static_cast<std::size_t>(__builtin_ctz(left));
-        const std::uint32_t above = strip.element[upper + k + i];
-        const std::uint32_t below = strip.element[lower + k + i];
-        subclusters.merge(above, below);
-        left &= left - 1;
-        if (left == 0) break;
+      std::uint32_t left = bitsOf(areNeighbours(apart(strip.x), apart(strip.y), apart(strip.z), r2));
+      while (left != 0) {
         left &= bitsOf(hn::Or(differ(&strip.element[upper + k], hn::Set(kWords, above)),
                               differ(&strip.element[lower + k], hn::Set(kWords, below))));
+        if (left == 0) break;
+        const auto i = static_cast<std::size_t>(__builtin_ctz(left));
+        above = strip.element[upper + k + i];
+        below = strip.element[lower + k + i];
+        subclusters.merge(above, below);
       }
     }
   }
@@ -216,6 +222,7 @@ void cutSector(const StripData& strip, std::int64_t number, std::size_t later, S
   const std::size_t lasers = strip.lasers.size();
   const std::int64_t first_place = number * static_cast<std::int64_t>(StripData::kSector);
   const float offset = static_cast<float>(first_place + static_cast<std::int64_t>(later));
+  constexpr std::uint32_t kWorthVectors = 6;  // returns
   std::uint32_t count = 0;
   for (std::size_t laser = 0; laser < lasers; ++laser) {
     sector.begin[laser] = count;
@@ -246,11 +253,35 @@ void cutSector(const StripData& strip, std::int64_t number, std::size_t later, S
       float farthest = rho[first];
       float lowest = strip.z[cell + first];
       float highest = lowest;
-      for (std::uint32_t i = first + 1; i < end; ++i) {
-        nearest = std::min(nearest, rho[i]);
-        farthest = std::max(farthest, rho[i]);
-        lowest = std::min(lowest, strip.z[cell + i]);
-        highest = std::max(highest, strip.z[cell + i]);
+      if (end - first > kWorthVectors) {
+        FloatVector low_rho = hn::Set(kFloats, nearest);
+        FloatVector high_rho = low_rho;
+        FloatVector low_z = hn::Set(kFloats, lowest);
+        FloatVector high_z = low_z;
+        const std::uint64_t lanes = ((std::uint64_t{1} << end) - 1) & ~((std::uint64_t{1} << first) - 1);
+        for (std::size_t k = 0; k < StripData::kSector; k += kLanes) {
+          const std::uint64_t here = lanes >> k;
+          std::uint8_t bytes[8];
+          std::memcpy(bytes, &here, sizeof bytes);
+          const FloatMask inside = hn::LoadMaskBits(kFloats, bytes);
+          const FloatVector rho_here = hn::LoadU(kFloats, rho + k);
+          const FloatVector z_here = hn::LoadU(kFloats, &strip.z[cell + k]);
+          low_rho = hn::IfThenElse(inside, hn::Min(low_rho, rho_here), low_rho);
+          high_rho = hn::IfThenElse(inside, hn::Max(high_rho, rho_here), high_rho);
+          low_z = hn::IfThenElse(inside, hn::Min(low_z, z_here), low_z);
+          high_z = hn::IfThenElse(inside, hn::Max(high_z, z_here), high_z);
+        }
+        nearest = hn::GetLane(hn::MinOfLanes(kFloats, low_rho));
+        farthest = hn::GetLane(hn::MaxOfLanes(kFloats, high_rho));
+        lowest = hn::GetLane(hn::MinOfLanes(kFloats, low_z));
+        highest = hn::GetLane(hn::MaxOfLanes(kFloats, high_z));
+      } else {
+        for (std::uint32_t i = first + 1; i < end; ++i) {
+          nearest = std::min(nearest, rho[i]);
+          farthest = std::max(farthest, rho[i]);
+          lowest = std::min(lowest, strip.z[cell + i]);
+          highest = std::max(highest, strip.z[cell + i]);
+        }
       }
       sector.nearest[count] = nearest;
       sector.farthest[count] = farthest;
@@ -294,18 +325,29 @@ bool haveNeighbours(const StripData& strip, std::size_t a, std::size_t a_count, 
 class Windows {
  public:
   Windows(const StripData& strip, StripData::Linking& linking, DisjointSets& subclusters)
-      : strip_(strip), linking_(linking), subclusters_(subclusters) {}
+      : strip_(strip),
+        linking_(linking),
+        subclusters_(subclusters),
+        places_per_radian_(1.00001F / strip.radians_per_place) {}
 
   /// Links a sector with itself and with those before it.
   void linkSector(std::int64_t number) {
     StripData::Sector& sector = linking_.sectors[static_cast<std::size_t>(number) % StripData::kSectorsKept];
     cutSector(strip_, number, 0, sector, subclusters_);
-    forEachSegment(sector, [&](std::uint32_t segment, std::int64_t before) {
-      const std::int64_t sectors = (before + 15) / 16;
-      for (std::int64_t other = std::max<std::int64_t>(number - sectors, 0); other < number; ++other)
-        search(sector, segment, cut(other), ~0U);
-      search(sector, segment, sector, segment);
-    });
+    const std::size_t lasers = strip_.lasers.size();
+    for (std::size_t laser = 0; laser < lasers; ++laser) prepareMask(sector, laser);
+    for (std::size_t laser = 0; laser < lasers; ++laser) {
+      if (sector.begin[laser] == sector.begin[laser + 1]) continue;
+      if (linking_.masks[laser].by_places)
+        comparePlaces(number, laser);
+      else
+        forEachSegment(sector, laser, [&](Window& window) {
+          const std::int64_t sectors = (window.before + 15) / 16;
+          for (std::int64_t other = std::max<std::int64_t>(number - sectors, 0); other < number; ++other)
+            search(window, cut(other), ~0U);
+          search(window, sector, window.segment);
+        });
+    }
   }
 
   /// Links what lies around the beginning with what lies a turn later.
@@ -315,98 +357,168 @@ class Windows {
     for (std::int64_t number = 0; number * 16 + turn - kMostReach < static_cast<std::int64_t>(end); ++number) {
       StripData::Sector& sector = linking_.beyond;
       cutSector(strip_, number, strip_.steps, sector, subclusters_);
-      forEachSegment(sector, [&](std::uint32_t segment, std::int64_t before) {
-        const std::int64_t from = std::max<std::int64_t>(0, number * 16 + turn - before) / 16;
-        const std::int64_t to = std::min(last, (number * 16 + 15 + turn + before) / 16);
-        for (std::int64_t other = from; other <= to; ++other) search(sector, segment, cut(other), ~0U);
-      });
+      for (std::size_t laser = 0; laser < strip_.lasers.size(); ++laser) {
+        prepareMask(sector, laser);
+        forEachSegment(sector, laser, [&](Window& window) {
+          const std::int64_t from = std::max<std::int64_t>(0, number * 16 + turn - window.before) / 16;
+          const std::int64_t to = std::min(last, (number * 16 + 15 + turn + window.before) / 16);
+          for (std::int64_t other = from; other <= to; ++other) search(window, cut(other), ~0U);
+        });
+      }
     }
   }
 
  private:
+  /// A segment and its mask.
+  struct Window {
+    std::uint32_t segment;
+    std::uint32_t head;
+    std::int64_t before;  ///< places that it reaches over
+    std::size_t first_laser, last_laser;
+    std::size_t cell, count;
+    float nearest, farthest, lowest, highest, first, last;
+  };
+
   StripData::Sector& cut(std::int64_t number) {
     StripData::Sector& sector = linking_.sectors[static_cast<std::size_t>(number) % StripData::kSectorsKept];
     if (sector.number != number) cutSector(strip_, number, 0, sector, subclusters_);
     return sector;
   }
 
-  /// Calls visit (segment, places that its mask reaches over), after first_laser_ and last_laser_ are set.
+  /// Finds the mask of a laser's returns in a sector, and what is cheaper: to compare its segments or its places.
+  void prepareMask(const StripData::Sector& sector, std::size_t laser) {
+    const std::uint32_t begin = sector.begin[laser];
+    const std::uint32_t end = sector.begin[laser + 1];
+    if (begin == end) return;
+    float nearest = sector.nearest[begin];
+    for (std::uint32_t segment = begin + 1; segment < end; ++segment)
+      nearest = std::min(nearest, sector.nearest[segment]);
+    const float angle = asinBound(strip_.reach / nearest);
+    StripData::Mask& mask = linking_.masks[laser];
+    mask.before = std::min(kMostReach, static_cast<int>(angle * places_per_radian_ + (2 * kDeviation + 0.02F)));
+    reachLasers(laser, angle, mask);
+    const auto registers = static_cast<std::uint32_t>(StripData::kSector / kLanes);
+    const std::uint32_t by_places =
+        (mask.last_laser - mask.first_laser + 1) * static_cast<std::uint32_t>(mask.before) * registers;
+    const std::uint32_t by_segments = (end - begin) * static_cast<std::uint32_t>((mask.before + 15) / 16 + 1);
+    mask.by_places = by_places < kSegmentCost * by_segments;
+  }
+
+  /// Compares a laser's places in a sector with all places that its mask shows, up to its own, sixteen at a time. Between
+  /// two lasers of the sector, one of which is compared by segments, those of both are the lower one's task.
+  void comparePlaces(std::int64_t sector, std::size_t laser) {
+    const StripData::Mask& mask = linking_.masks[laser];
+    const std::int64_t place = sector * static_cast<std::int64_t>(StripData::kSector);
+    const std::size_t own = strip_.at(laser, place);
+    for (std::uint32_t other = mask.first_laser; other <= mask.last_laser; ++other) {
+      const std::size_t same = strip_.at(other, place);
+      const bool both_ways = other < laser && !linking_.masks[other].by_places;
+      const int first = both_ways ? -mask.before : other > laser + 1 ? 0 : 1;  // the next laser's: linkSamePlaces
+      for (int k = first; k <= mask.before; ++k)
+        comparePlacesWith(own, same - static_cast<std::size_t>(static_cast<std::int64_t>(k)));
+    }
+  }
+
+  HWY_INLINE void comparePlacesWith(std::size_t own, std::size_t other) {
+    const FloatVector r2 = hn::Set(kFloats, strip_.tolerance.squared());
+    for (std::size_t k = 0; k < StripData::kSector; k += kLanes) {
+      const auto apart = [&](const std::vector<float>& coordinate) {
+        return hn::Sub(hn::LoadU(kFloats, &coordinate[own + k]), hn::LoadU(kFloats, &coordinate[other + k]));
+      };
+      const FloatMask near = areNeighbours(apart(strip_.x), apart(strip_.y), apart(strip_.z), r2);
+      const FloatMask unlike = differ(&strip_.element[own + k], hn::LoadU(kWords, &strip_.element[other + k]));
+      for (std::uint32_t left = bitsOf(hn::And(near, unlike)); left != 0; left &= left - 1) {
+        const auto i = k + static_cast<std::size_t>(__builtin_ctz(left));
+        const std::uint32_t a = strip_.element[own + i];
+        const std::uint32_t b = strip_.element[other + i];
+        if (a == last_a_ && b == last_b_) continue;
+        last_a_ = a;
+        last_b_ = b;
+        subclusters_.merge(a, b);
+      }
+    }
+  }
+
+  /// Calls visit with the window of each of a laser's segments. It may change the segment's head.
   template <typename Visit>
-  void forEachSegment(const StripData::Sector& sector, Visit&& visit) {
-    const std::size_t lasers = strip_.lasers.size();
-    for (std::size_t laser = 0; laser < lasers; ++laser) {
-      const std::uint32_t begin = sector.begin[laser];
-      const std::uint32_t end = sector.begin[laser + 1];
-      if (begin == end) continue;
-      float nearest = sector.nearest[begin];
-      for (std::uint32_t segment = begin + 1; segment < end; ++segment)
-        nearest = std::min(nearest, sector.nearest[segment]);
-      const float angle = asinBound(strip_.reach / nearest);
-      before_ = static_cast<float>(
-          std::min(kMostReach, static_cast<int>(angle / strip_.radians_per_place + (2 * kDeviation + 0.02F))));
-      reachLasers(laser, angle);
-      for (std::uint32_t segment = begin; segment < end; ++segment) visit(segment, static_cast<std::int64_t>(before_));
+  void forEachSegment(StripData::Sector& sector, std::size_t laser, Visit&& visit) {
+    const StripData::Mask& mask = linking_.masks[laser];
+    const auto places = static_cast<float>(mask.before);
+    Window window{};
+    window.before = mask.before;
+    window.first_laser = mask.first_laser;
+    window.last_laser = mask.last_laser;
+    for (std::uint32_t i = sector.begin[laser]; i < sector.begin[laser + 1]; ++i) {
+      const float reach = strip_.reach + 1e-6F * sector.farthest[i];
+      window.segment = i;
+      window.head = subclusters_.head(sector.head[i]);
+      window.cell = sector.cell[i];
+      window.count = sector.count[i];
+      window.nearest = sector.nearest[i] - reach;
+      window.farthest = sector.farthest[i] + reach;
+      window.lowest = sector.lowest[i] - reach;
+      window.highest = sector.highest[i] + reach;
+      window.first = sector.first[i] - places;
+      window.last = sector.last[i] + places;
+      visit(window);
+      sector.head[i] = window.head;
     }
   }
 
   /// Sets the lasers whose elevations come within the angle of this one's.
-  void reachLasers(std::size_t laser, float angle) {
+  void reachLasers(std::size_t laser, float angle, StripData::Mask& mask) {
     const float top = strip_.highest[laser] + angle + kAngleRounding;
     const float bottom = strip_.lowest[laser] - angle - kAngleRounding;
     const auto last_of_all = strip_.lasers.size() - 1;
-    std::size_t first = laser - std::min<std::size_t>(laser, linking_.above[laser]);
+    std::size_t first = laser - std::min<std::size_t>(laser, mask.above);
     while (first > 0 && strip_.lowest_above[first - 1] <= top) --first;
     while (first < laser && strip_.lowest_above[first] > top) ++first;
-    std::size_t last = std::min<std::size_t>(last_of_all, laser + linking_.below[laser]);
+    std::size_t last = std::min<std::size_t>(last_of_all, laser + mask.below);
     while (last < last_of_all && strip_.highest_below[last + 1] >= bottom) ++last;
     while (last > laser && strip_.highest_below[last] < bottom) --last;
-    linking_.above[laser] = static_cast<std::uint32_t>(laser - first);
-    linking_.below[laser] = static_cast<std::uint32_t>(last - laser);
-    first_laser_ = first;
-    last_laser_ = last;
+    mask.above = static_cast<std::uint32_t>(laser - first);
+    mask.below = static_cast<std::uint32_t>(last - laser);
+    mask.first_laser = static_cast<std::uint32_t>(first);
+    mask.last_laser = static_cast<std::uint32_t>(last);
   }
 
-  /// Compares a segment with those of a sector that its mask shows.
+  /// Compares a segment with those of a sector that its window shows.
   /// \param limit only with those before this one
-  void search(StripData::Sector& own, std::uint32_t segment, StripData::Sector& other, std::uint32_t limit) {
-    const std::uint32_t begin = other.begin[first_laser_];
-    const std::uint32_t end = std::min(limit, other.begin[last_laser_ + 1]);
-    if (begin >= end) return;
-    const float reach = strip_.reach + 1e-6F * own.farthest[segment];
-    const FloatVector nearest = hn::Set(kFloats, own.nearest[segment] - reach);
-    const FloatVector farthest = hn::Set(kFloats, own.farthest[segment] + reach);
-    const FloatVector lowest = hn::Set(kFloats, own.lowest[segment] - reach);
-    const FloatVector highest = hn::Set(kFloats, own.highest[segment] + reach);
-    const FloatVector first = hn::Set(kFloats, own.first[segment] - before_);
-    const FloatVector last = hn::Set(kFloats, own.last[segment] + before_);
-    std::uint32_t head = subclusters_.head(own.head[segment]);
+  HWY_INLINE void search(Window& window, StripData::Sector& other, std::uint32_t limit) {
+    const std::uint32_t begin = other.begin[window.first_laser];
+    const std::uint32_t end = std::min(limit, other.begin[window.last_laser + 1]);
     for (std::uint32_t i = begin; i < end; i += std::uint32_t{kLanes}) {
-      const auto load = [&](const std::vector<float>& bound) { return hn::LoadU(kFloats, &bound[i]); };
-      const FloatMask range = hn::And(hn::Le(load(other.nearest), farthest), hn::Ge(load(other.farthest), nearest));
-      const FloatMask height = hn::And(hn::Le(load(other.lowest), highest), hn::Ge(load(other.highest), lowest));
-      const FloatMask places = hn::And(hn::Le(load(other.first), last), hn::Ge(load(other.last), first));
-      const FloatMask unlike = differ(&other.head[i], hn::Set(kWords, head));
-      std::uint32_t left = bitsOf(hn::And(hn::And(range, height), hn::And(places, unlike)));
+      // Most of what is around belongs together already.
+      const FloatMask unlike = differ(&other.head[i], hn::Set(kWords, window.head));
+      std::uint32_t left = bitsOf(unlike);
       if (end - i < kLanes) left &= (1U << (end - i)) - 1;
+      if (left == 0) continue;
+      const auto load = [&](const std::vector<float>& bound) { return hn::LoadU(kFloats, &bound[i]); };
+      const auto all = [](float value) { return hn::Set(kFloats, value); };
+      const FloatMask range =
+          hn::And(hn::Le(load(other.nearest), all(window.farthest)), hn::Ge(load(other.farthest), all(window.nearest)));
+      const FloatMask height =
+          hn::And(hn::Le(load(other.lowest), all(window.highest)), hn::Ge(load(other.highest), all(window.lowest)));
+      const FloatMask places =
+          hn::And(hn::Le(load(other.first), all(window.last)), hn::Ge(load(other.last), all(window.first)));
+      left &= bitsOf(hn::And(range, hn::And(height, places)));
       for (; left != 0; left &= left - 1) {
         const std::uint32_t candidate = i + static_cast<std::uint32_t>(__builtin_ctz(left));
         const std::uint32_t other_head = subclusters_.head(other.head[candidate]);
         other.head[candidate] = other_head;
-        if (other_head == head) continue;
-        if (haveNeighbours(strip_, own.cell[segment], own.count[segment], other.cell[candidate],
-                           other.count[candidate]))
-          other.head[candidate] = head = subclusters_.merge(head, other_head);
+        if (other_head == window.head) continue;
+        if (haveNeighbours(strip_, window.cell, window.count, other.cell[candidate], other.count[candidate]))
+          other.head[candidate] = window.head = subclusters_.merge(window.head, other_head);
       }
     }
-    own.head[segment] = head;
   }
 
   const StripData& strip_;
   StripData::Linking& linking_;
   DisjointSets& subclusters_;
-  float before_ = 0;
-  std::size_t first_laser_ = 0;
-  std::size_t last_laser_ = 0;
+  float places_per_radian_;
+  std::uint32_t last_a_ = ~std::uint32_t{0};  ///< the last two that were joined
+  std::uint32_t last_b_ = ~std::uint32_t{0};
 };
 
 void linkPlaces(const StripData& strip, std::size_t begin, std::size_t end, StripData::Linking& linking,
@@ -505,8 +617,7 @@ void ViewStrip::addLasers(std::size_t count) {
             x.begin() + static_cast<std::ptrdiff_t>(count * stride + kMargin), kNan);
   const std::size_t segments = count * kSector + kSector;  // vectors are read a little behind the last
   for (Linking& one : linking) {
-    one.above.assign(count, 0);
-    one.below.assign(count, 0);
+    one.masks.assign(count, Mask());
     const auto prepareSector = [&](Sector& sector) {
       sector.number = kNoSector;
       for (auto* bound :

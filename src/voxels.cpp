@@ -12,21 +12,53 @@
 
 #include "lanes-inl.h"
 
+#ifndef LISCO_CUBE_NUMBERS
+#define LISCO_CUBE_NUMBERS
+namespace lisco {
+namespace {
+
+/// Of a row's returns, along each axis; the first place is empty. Modulo 2^32: cubes that share numbers cost time,
+/// nothing else.
+struct CubeNumbers {
+  std::uint32_t of[3][1 + Row::kColumns];
+};
+
+// Up to here, numbers computed in float are good enough; see kSide.
+constexpr float kSafeNumbers = 1 << 20;
+
+}  // namespace
+}  // namespace lisco
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace lisco {
 namespace HWY_NAMESPACE {
 
-/// The number of each return's cube along an axis. \return bit i is set if return i + 1 has another than return i
-std::uint64_t numberCubes(const float* coordinates, float per_metre, std::uint32_t* numbers) {
+/// The numbers of each return's cube along the axes.
+/// \param which bit i: return i
+/// \param changes bit i is set if return i lies in another cube than return i - 1
+/// \return whether all are at most kSafeNumbers; if not, they are of no use
+bool numberCubes(const Row& row, std::uint64_t which, float per_metre, CubeNumbers& numbers, std::uint64_t& changes) {
   const hn::RebindToSigned<Floats> signed_words;
+  const FloatVector scale = hn::Set(kFloats, per_metre);
+  FloatVector farthest = hn::Zero(kFloats);
+  const float* const coordinates[3] = {row.x + Row::kMargin, row.y + Row::kMargin, row.z + Row::kMargin};
+  changes = 0;
   for (std::size_t k = 0; k < Row::kColumns; k += kLanes) {
-    const FloatVector number = hn::Mul(hn::LoadU(kFloats, coordinates + k), hn::Set(kFloats, per_metre));
-    hn::StoreU(hn::BitCast(kWords, hn::ConvertTo(signed_words, hn::Floor(number))), kWords, numbers + k);
+    if ((which >> k & ((std::uint64_t{1} << kLanes) - 1)) == 0) continue;
+    const FloatVector x = hn::LoadU(kFloats, coordinates[0] + k);
+    const FloatMask returned = hn::Eq(x, x);
+    FloatMask changed = hn::Lt(farthest, farthest);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const FloatVector number = hn::Mul(hn::LoadU(kFloats, coordinates[axis] + k), scale);
+      farthest = hn::Max(farthest, hn::IfThenElseZero(returned, hn::Abs(number)));
+      std::uint32_t* const own = numbers.of[axis] + 1 + k;
+      hn::StoreU(hn::BitCast(kWords, hn::ConvertTo(signed_words, hn::Floor(number))), kWords, own);
+      changed = hn::Or(changed, differ(own, hn::LoadU(kWords, own - 1)));
+    }
+    changes |= std::uint64_t{bitsOf(changed)} << k;
   }
-  std::uint64_t changes = 0;
-  for (std::size_t k = 0; k < Row::kColumns; k += kLanes)
-    changes |= std::uint64_t{bitsOf(differ(numbers + k, hn::LoadU(kWords, numbers + k + 1)))} << k;
-  return changes;
+  return hn::GetLane(hn::MaxOfLanes(kFloats, farthest)) <= kSafeNumbers;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -42,8 +74,7 @@ HWY_EXPORT(numberCubes);
 // A little less than eps / sqrt (3). Rounding moves a return by less than an eighth of a cube, so that
 // neighbours, which are 1.7323 sides apart at most, lie in cubes whose numbers differ by 2 at most.
 constexpr double kSide = 0.9999 / 1.7320508075688772;
-constexpr float kSafeNumbers = 1 << 20;             // up to here, numbers computed in float are that good
-constexpr double kMostNumber = 2251799813685248.0;  // 2^51: and here, those computed in double
+constexpr double kMostNumber = 2251799813685248.0;  // 2^51: up to here, numbers computed in double are that good
 constexpr std::uint32_t kBlockMask = (std::uint32_t{1} << 30) - 1;
 constexpr std::size_t kFewestSlots = 256;
 constexpr std::size_t kNeighbourBlocks = 27;
@@ -96,8 +127,7 @@ bool sameKey(const std::array<std::uint32_t, 3>& a, const std::array<std::uint32
 void Voxels::prepare(const Tolerance& tolerance) {
   tolerance_ = tolerance;
   cubes_per_metre_ = 1.0 / (kSide * std::max(tolerance.reach(), 1e-22));
-  const double safe = static_cast<double>(kSafeNumbers) / cubes_per_metre_ * 0.999;
-  safe_ = cubes_per_metre_ < 1e30 ? static_cast<float>(std::min(safe, 1e30)) : 0.0F;
+  safe_ = cubes_per_metre_ > 1e-30 && cubes_per_metre_ < 1e30;
   for (auto* coordinate : {&x_, &y_, &z_}) coordinate->clear();
   pieces_.clear();
   units_.clear();
@@ -112,36 +142,28 @@ void Voxels::prepare(const Tolerance& tolerance) {
     std::fill(slots_.begin(), slots_.end(), kNone);
 }
 
-/// The number of each return's cube along an axis, modulo 2^32: cubes that share one cost time, nothing else.
-/// \param numbers has room for one more than a row
-/// \return bit i is set if return i + 1 has another than return i
-std::uint64_t Voxels::numberCubesOf(const float* coordinates, std::uint64_t which, std::uint32_t* numbers) const {
-  float farthest = 0;
-  for (std::uint64_t left = which; left != 0; left &= left - 1)
-    farthest = std::max(farthest, std::fabs(coordinates[__builtin_ctzll(left)]));
-  if (farthest <= safe_)
-    return HWY_DYNAMIC_DISPATCH(numberCubes)(coordinates, static_cast<float>(cubes_per_metre_), numbers);
-  std::uint64_t changes = 0;
-  for (std::size_t i = 0; i < Row::kColumns; ++i) {
-    const double number = (which >> i & 1U) == 0 ? 0.0
-                                                 : std::clamp(static_cast<double>(coordinates[i]) * cubes_per_metre_,
-                                                              -kMostNumber, kMostNumber);
-    numbers[i] = static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(number)));
-    if (i > 0 && numbers[i] != numbers[i - 1]) changes |= std::uint64_t{1} << (i - 1);
-  }
-  return changes;
-}
-
 void Voxels::add(const Row& row, const MeasuredRow& measured, std::uint64_t which, DisjointSets& subclusters) {
   if (!tolerance_.joinsAnything()) return;
   const float* const x = row.x + Row::kMargin;
   const float* const y = row.y + Row::kMargin;
   const float* const z = row.z + Row::kMargin;
-  std::uint32_t numbers[3][Row::kColumns + 1] = {};
-  const std::uint64_t changes =
-      numberCubesOf(x, which, numbers[0]) | numberCubesOf(y, which, numbers[1]) | numberCubesOf(z, which, numbers[2]);
+  CubeNumbers numbers;
+  std::uint64_t changes = 0;
+  if (!safe_ ||
+      !HWY_DYNAMIC_DISPATCH(numberCubes)(row, which, static_cast<float>(cubes_per_metre_), numbers, changes)) {
+    for (std::uint64_t left = which; left != 0; left &= left - 1) {
+      const auto i = static_cast<std::size_t>(__builtin_ctzll(left));
+      const float point[3] = {x[i], y[i], z[i]};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double number =
+            std::clamp(static_cast<double>(point[axis]) * cubes_per_metre_, -kMostNumber, kMostNumber);
+        numbers.of[axis][1 + i] = static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(number)));
+      }
+    }
+    changes = ~std::uint64_t{0};
+  }
   // A piece goes on where the return before is there, in the same run and in the same cube.
-  const std::uint64_t begins = which & ~(which << 1 & ~measured.starts & ~(changes << 1));
+  const std::uint64_t begins = which & ~(which << 1 & ~measured.starts & ~changes);
   const std::uint64_t ends = ~which | begins;
   std::size_t point = x_.size();
   for (auto* coordinate : {&x_, &y_, &z_}) coordinate->resize(point + static_cast<std::size_t>(countBits(which)));
@@ -158,7 +180,8 @@ void Voxels::add(const Row& row, const MeasuredRow& measured, std::uint64_t whic
       z_[point] = z[i];
       box.add(Box::around(x[i], y[i], z[i]));
     }
-    addPiece({numbers[0][begin], numbers[1][begin], numbers[2][begin]}, box, piece, measured.run[begin], subclusters);
+    addPiece({numbers.of[0][1 + begin], numbers.of[1][1 + begin], numbers.of[2][1 + begin]}, box, piece,
+             measured.run[begin], subclusters);
   }
 }
 

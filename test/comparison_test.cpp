@@ -467,6 +467,11 @@ TEST(Timing, MeanMedianLeastMost) {
   EXPECT_DOUBLE_EQ(median({6, 1, 2}), 2);
   EXPECT_DOUBLE_EQ(median({6, 1, 2, 4}), 3);
   EXPECT_DOUBLE_EQ(median({5}), 5);
+  EXPECT_DOUBLE_EQ(quantile({5, 1, 4, 2, 3}, 0.25), 2);
+  EXPECT_DOUBLE_EQ(quantile({5, 1, 4, 2, 3}, 0.75), 4);
+  EXPECT_DOUBLE_EQ(quantile({2, 1}, 0.25), 1.25);
+  EXPECT_DOUBLE_EQ(quantile({2, 1}, 1), 2);
+  EXPECT_DOUBLE_EQ(quantile({7}, 0.75), 7);
   EXPECT_DOUBLE_EQ(timesOf({4, 1, 2}).least(), 1);
   EXPECT_DOUBLE_EQ(timesOf({1, 4, 2}).most(), 4);
 }
@@ -911,6 +916,8 @@ TEST(Report, CsvHoldsWhatWasFound) {
              {"median_ms", "20"},
              {"cold_median_ms", "40"},
              {"min_ms", "10"},
+             {"lower_quartile_ms", "15"},
+             {"upper_quartile_ms", "25"},
              {"max_ms", "30"},
              {"ratio", "1"},
              {"objects", ""},

@@ -416,6 +416,48 @@ TEST(Scenes, RoomIsClosed) {
   }
 }
 
+class EachStreet : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Number, EachStreet, testing::Range(1, 5));
+
+TEST_P(EachStreet, HasAQuarterOfItsReturnsOnItsOwnVehicle) {
+  for (unsigned seed = 1; seed <= std::min(kSeeds, 5U); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Scene bare = makeScene(GetParam(), seed);
+    Scene scene = bare;
+    addVehicle(scene, seed);
+    ASSERT_EQ(scene.objects.size(), bare.objects.size() + 1);
+    EXPECT_EQ(scene.objects.back().kind, "vehicle");
+    const auto vehicle = static_cast<std::uint32_t>(scene.objects.size());
+    Disturbance disturbance;
+    disturbance.seed = seed;
+    const Scan rotation = scan(scene, makeSensor("hdl64e"), disturbance);
+    const auto returns = static_cast<double>(rotation.returns());
+    EXPECT_NEAR(static_cast<double>(rotation.returnsWithin(1.5)) / returns, 0.25, 0.01);
+    // Nearer than the usual tolerances, by themselves and by the rest of the vehicle.
+    std::size_t before = 0;
+    for (const double range : {0.3, 0.7, 1.0, 1.5}) {
+      const std::size_t within = rotation.returnsWithin(range);
+      EXPECT_GT(static_cast<double>(within - before), 0.01 * returns) << range << " m";
+      before = within;
+    }
+    EXPECT_EQ(scan(bare, makeSensor("hdl64e"), disturbance).returnsWithin(1.5), 0U);
+    for (const Cell& cell : rotation.cells) {
+      const float range = std::hypot(std::hypot(cell.x, cell.y), cell.z);
+      ASSERT_EQ(cell.object == vehicle, range < 1.6F) << range;
+    }
+  }
+}
+
+TEST_P(EachStreet, HasTheSameVehicleForTheSameSeed) {
+  const auto bytes = [] {
+    Scene scene = makeScene(GetParam(), 2);
+    addVehicle(scene, 2);
+    const Scan rotation = scan(scene, makeSensor("vlp16"), {2});
+    return std::string(reinterpret_cast<const char*>(rotation.cells.data()), rotation.cells.size() * sizeof(Cell));
+  };
+  EXPECT_TRUE(bytes() == bytes());
+}
+
 /// The clusters of a scan without ground: of each return its cluster's head, and the object it lies on.
 struct Clustered {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> head_and_object;

@@ -82,6 +82,8 @@ nlohmann::ordered_json jsonOf(const CaseResult& result, const RivalResult& entry
   json["mean_ms"] = entry.times->mean();
   json["confidence99_ms"] = finiteOrNull(entry.times->confidence99());
   json["median_ms"] = median(entry.times->runs);
+  json["lower_quartile_ms"] = quantile(entry.times->runs, 0.25);
+  json["upper_quartile_ms"] = quantile(entry.times->runs, 0.75);
   json["ratio"] = finiteOrNull(orNan(result.ratio(entry)));
   json["cold_median_ms"] = median(entry.times->cold);
   json["times_ms"] = entry.times->runs;
@@ -200,7 +202,8 @@ std::string summaryOf(const std::vector<InputResult>& inputs, const CompareSetti
 std::string csvOf(const std::vector<InputResult>& inputs, const CompareSettings& settings) {
   std::string text = std::string(kCsvSignature) +
                      ",min_size,reference_clusters,rival,clusters,identical,mislabelled,runs,mean_ms,confidence99_ms,"
-                     "median_ms,cold_median_ms,min_ms,max_ms,ratio,objects,whole,split,merged,missed,failure\n";
+                     "median_ms,cold_median_ms,min_ms,lower_quartile_ms,upper_quartile_ms,max_ms,ratio,objects,whole,"
+                     "split,merged,missed,failure\n";
   const auto number = [](double value) { return std::isfinite(value) ? formatted("%.6g", value) : std::string(); };
   for (const InputResult& input : inputs)
     for (const CaseResult& result : input.cases)
@@ -220,9 +223,10 @@ std::string csvOf(const std::vector<InputResult>& inputs, const CompareSettings&
           text += formatted(",%zu", entry.times->runs.size()) + "," + number(entry.times->mean()) + "," +
                   number(entry.times->confidence99()) + "," + number(median(entry.times->runs)) + "," +
                   number(median(entry.times->cold)) + "," + number(entry.times->least()) + "," +
+                  number(quantile(entry.times->runs, 0.25)) + "," + number(quantile(entry.times->runs, 0.75)) + "," +
                   number(entry.times->most()) + "," + number(orNan(result.ratio(entry)));
         else
-          text += ",0,,,,,,,";
+          text += ",0,,,,,,,,,";
         if (result.objects)
           text += formatted(",%zu,%zu,%zu,%zu,%zu", result.objects->objects, result.objects->whole,
                             result.objects->split, result.objects->merged, result.objects->missed);

@@ -9,6 +9,8 @@
 namespace lisco_apps {
 
 double median(std::vector<double> values);
+/// The value below which a share of the values lies, interpolated between the two nearest ones. \param share 0 to 1
+double quantile(std::vector<double> values, double share);
 
 /// Times of one rival, milliseconds.
 struct Times {

@@ -52,6 +52,29 @@ Thing sensorCar() {
   return {{"sensor car", solids}, 2 * kHalf};
 }
 
+Thing vehicleTop(double drop) {
+  constexpr double kFront = 0.9;
+  constexpr double kBack = -1.1;
+  constexpr double kSide = 0.7;
+  std::vector<Solid> solids = {Solid::box({kBack, -kSide, -drop - 0.05}, {kFront, kSide, -drop})};
+  // Each bar stands on the roof with both ends.
+  constexpr double kBar = 0.02;
+  constexpr double kBarSide = 0.6;
+  for (const double x : {-0.55, 0.5}) {
+    const double z = -0.5 * drop;
+    solids.push_back(Solid::cylinder({x, -kBarSide, z}, {x, kBarSide, z}, kBar));
+    for (const double y : {-kBarSide, kBarSide}) solids.push_back(Solid::cylinder({x, y, -drop}, {x, y, z}, kBar));
+  }
+  solids.push_back(Solid::cylinder({-0.2, 0.12, -drop}, {-0.2, 0.12, 0.4}, 0.025));  // an aerial's mast
+  for (const double side : {-1.0, 1.0}) {
+    const double inner = side * 0.84;
+    const double outer = side * 1.0;
+    solids.push_back(
+        Solid::box({0.6, std::min(inner, outer), -drop - 0.3}, {0.68, std::max(inner, outer), -drop - 0.05}));
+  }
+  return {{"vehicle", solids}, kFront - kBack};
+}
+
 Thing person(Random& random) {
   const double scale = random.between(1.58, 1.90) / 1.8;
   const double stride = random.between(0, 0.22);

@@ -19,6 +19,9 @@ struct Thing {
 Thing car(Random& random);
 /// The short black car that carries the sensor: nothing of it rises into the view of an HDL-64E 1.8 m up.
 Thing sensorCar();
+/// What a sensor on a rack sees of the vehicle below: the roof, two bars of the rack, a mast, and a mirror on each side.
+/// The sensor is at (0, 0, 0), not the floor. \param drop height of the sensor above the roof, > 0
+Thing vehicleTop(double drop);
 /// Somebody who stands or walks: legs, torso, arms, head.
 Thing person(Random& random);
 /// A lamp post with an arm along y, high above all heads.

@@ -123,6 +123,12 @@ std::size_t Scan::returnsAbove(float ground_z) const {
       std::count_if(cells.begin(), cells.end(), [ground_z](const Cell& cell) { return cell.z >= ground_z; }));
 }
 
+std::size_t Scan::returnsWithin(double range) const {
+  return static_cast<std::size_t>(std::count_if(cells.begin(), cells.end(), [range](const Cell& cell) {
+    return length({static_cast<double>(cell.x), static_cast<double>(cell.y), static_cast<double>(cell.z)}) < range;
+  }));
+}
+
 Scan scan(const Scene& scene, const Sensor& sensor, const Disturbance& disturbance) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   constexpr double kLeastRange = 0.01;  // metres: whatever the noise, a return has a direction

@@ -48,6 +48,8 @@ struct Scan {
   std::size_t returns() const;
   /// Returns with z >= ground_z.
   std::size_t returnsAbove(float ground_z) const;
+  /// Returns nearer to the sensor than so many metres.
+  std::size_t returnsWithin(double range) const;
 };
 
 /// Casts one ray per cell and takes what it meets first.

@@ -209,4 +209,23 @@ Scene makeScene(int number, unsigned seed) {
   return best;
 }
 
+void addVehicle(Scene& scene, unsigned seed) {
+  const Sensor sensor = makeSensor(sensorNames().front());
+  Disturbance disturbance;
+  disturbance.seed = seed;
+  scene.objects.emplace_back();
+  // The higher the sensor stands above the roof, the fewer rays the roof stops.
+  double low = 0.1;
+  double high = 0.5;
+  for (int halving = 0; halving < 16; ++halving) {
+    const double drop = (low + high) / 2;
+    scene.objects.back() = vehicleTop(drop).object;
+    const Scan rotation = scan(scene, sensor, disturbance);
+    const double share =
+        static_cast<double>(rotation.returnsWithin(kVehicleRange)) / static_cast<double>(rotation.returns());
+    if (std::fabs(share - kVehicleShare) < 0.001) break;
+    (share > kVehicleShare ? low : high) = drop;
+  }
+}
+
 }  // namespace lisco_simulation

@@ -33,4 +33,14 @@ Scene makeScene(int number, unsigned seed);
 /// The same with the distance given instead of fitted. \param distance metres, >= 0
 Scene layOutScene(int number, unsigned seed, double distance);
 
+/// What is nearer to the sensor than this is its own vehicle, metres.
+constexpr double kVehicleRange = 1.5;
+/// The part of all returns, the ground's included, that lie on the sensor's own vehicle.
+constexpr double kVehicleShare = 0.25;
+
+/// Adds the vehicle that carries the sensor as the last object, all of it nearer than kVehicleRange: on many vehicles the
+/// sensor stands so low that it sees the roof, a rack, a mast. Only how high the sensor stands above the roof is fitted,
+/// so that kVehicleShare of the returns of a default HDL-64E's default scan with this seed are nearer than kVehicleRange.
+void addVehicle(Scene& scene, unsigned seed);
+
 }  // namespace lisco_simulation

@@ -88,7 +88,7 @@ class ColumnClusterer {
 
  private:
   struct Run {
-    std::uint32_t first_return;  ///< its returns follow each other
+    std::uint32_t first_cell;  ///< its cells follow each other
     std::uint32_t count;
     std::uint32_t subcluster;  ///< by the last update()
   };
@@ -100,8 +100,9 @@ class ColumnClusterer {
   };
   /// What one thread has read.
   struct Reading {
-    std::uint32_t first_element = 0;  ///< run i is element first_element + i
-    std::vector<std::uint32_t> source_index;
+    std::uint32_t first_element = 0;          ///< run i is element first_element + i
+    std::vector<std::uint32_t> source_index;  ///< of each cell of the rows with returns
+    std::size_t returns = 0;
     std::vector<Run> runs;
     std::vector<RowRuns> rows;
     Voxels voxels;
@@ -210,7 +211,7 @@ void ColumnClusterer::forEachRun(Visit&& visit) {
     const Reading& reading = readings_[place.reading];
     const RowRuns& row = reading.rows[place.row];
     for (std::uint32_t run = row.first_run; run < row.first_run + row.count; ++run)
-      visit(reading.source_index.data() + reading.runs[run].first_return,
+      visit(reading.source_index.data() + reading.runs[run].first_cell,
             static_cast<std::size_t>(reading.runs[run].count), reading.runs[run].subcluster);
   }
 }

@@ -54,11 +54,18 @@ struct StripData {
     std::vector<std::uint8_t> count;       ///< of returns
     std::vector<std::uint32_t> begin;      ///< of each laser's segments, and the end
   };
+  /// The mask of one laser's returns in a sector.
+  struct Mask {
+    int before = 0;  ///< places that it reaches over
+    std::uint32_t first_laser = 0, last_laser = 0;
+    std::uint32_t above = 0, below = 0;  ///< the same lasers, counted from this one: where the next search begins
+    bool by_places = false;              ///< what is cheaper: to compare places, or segments
+  };
   /// What a thread keeps while it links.
   struct Linking {
     std::array<Sector, kSectorsKept> sectors;
-    Sector beyond;                            ///< a sector around the beginning, seen as if a turn later
-    std::vector<std::uint32_t> above, below;  ///< lasers reached by the last segments of each
+    Sector beyond;            ///< a sector around the beginning, seen as if a turn later
+    std::vector<Mask> masks;  ///< of each laser in the sector at hand
   };
 
   /// A return as it lies seen from the strip's start, turning with time.

@@ -66,13 +66,12 @@ class Voxels {
   void rehash(std::size_t slots);
   std::uint32_t& firstUnit(Block& block, std::uint32_t cube);
   void addPiece(const Key& cube, const Box& box, std::uint32_t piece, std::uint32_t element, DisjointSets& subclusters);
-  std::uint64_t numberCubesOf(const float* coordinates, std::uint64_t which, std::uint32_t* numbers) const;
   void linkBlock(const Block& block, bool all_new, DisjointSets& subclusters);
   bool haveNeighbours(const Unit& a, const Unit& b) const;
 
   Tolerance tolerance_;
   double cubes_per_metre_ = 1;
-  float safe_ = 0;  ///< up to this coordinate, cubes are numbered in float
+  bool safe_ = false;  ///< cubes may be numbered in float
   std::vector<float> x_, y_, z_;
   std::vector<Piece> pieces_;
   std::vector<Unit> units_;

@@ -306,7 +306,7 @@ TEST_F(LiscoCompare, OnlyChecksIfTold) {
   for (std::size_t i = 1; i < kTitles.size(); ++i)
     EXPECT_TRUE(tableSays(outcome.out, kTitles[i], kNotTimed + "  identical")) << outcome.out;
   EXPECT_EQ(outcome.out.find("runs of each"), std::string::npos);
-  EXPECT_EQ(countOf(",yes,0,0,,,,,,,,,,,,,\n", textOf(folder_ / "walls.csv")), 6U) << textOf(folder_ / "walls.csv");
+  EXPECT_EQ(countOf(",yes,0,0,,,,,,,,,,,,,,,\n", textOf(folder_ / "walls.csv")), 6U) << textOf(folder_ / "walls.csv");
 }
 
 TEST_F(LiscoCompare, ComparesUnorganizedReturns) {

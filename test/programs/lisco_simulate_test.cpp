@@ -31,6 +31,18 @@ class LiscoSimulate : public ProgramTest {
     const std::size_t begin = text.find_last_not_of("0123456789", end - 1) + 1;
     return begin < end ? std::stol(text.substr(begin, end - begin)) : -1;
   }
+
+  /// A file has a first line from which it can be made again.
+  /// \param first the option with which its arguments begin
+  void expectMadeAgain(const std::string& file, const std::string& first) const {
+    const std::string text = textOf(folder_ / file);
+    const std::string line = text.substr(0, text.find('\n'));
+    EXPECT_EQ(line.rfind("# made by lisco_simulate ", 0), 0U) << line;
+    const std::size_t arguments = line.find(first);
+    ASSERT_NE(arguments, std::string::npos) << line;
+    ASSERT_EQ(run(line.substr(arguments, line.find(';') - arguments) + " -o again.pcd").status, 0) << line;
+    EXPECT_TRUE(text == textOf(folder_ / "again.pcd"));
+  }
 };
 
 TEST_F(LiscoSimulate, WritesTheFiveScenesOfThePaper) {
@@ -91,15 +103,9 @@ TEST_F(LiscoSimulate, WritesTheObjectOfEveryReturn) {
   EXPECT_GE(static_cast<long>(labels.size()), objects * 3 / 4);
   EXPECT_LE(*labels.rbegin(), static_cast<std::uint32_t>(objects));
 
-  // A first line from which the file can be made again.
   const std::string text = textOf(folder_ / "scan.pcd");
-  const std::string line = text.substr(0, text.find('\n'));
-  EXPECT_EQ(line.rfind("# made by lisco_simulate ", 0), 0U) << line;
-  const std::size_t arguments = line.find("--scene");
-  ASSERT_NE(arguments, std::string::npos) << line;
-  EXPECT_NE(line.find("--ground-z -1.6"), std::string::npos) << line;
-  ASSERT_EQ(run(line.substr(arguments, line.find(';') - arguments) + " -o again.pcd").status, 0);
-  EXPECT_TRUE(text == textOf(folder_ / "again.pcd"));
+  EXPECT_LT(text.find("--ground-z -1.6"), text.find('\n'));
+  expectMadeAgain("scan.pcd", "--scene");
 }
 
 TEST_F(LiscoSimulate, HasTheSameScanForTheSameSeedOnly) {
@@ -150,10 +156,54 @@ TEST_F(LiscoSimulate, DisturbsAsAsked) {
   EXPECT_NEAR(std::sqrt(squares / returns), 0.3, 0.01);
 }
 
+TEST_F(LiscoSimulate, SeesItsOwnVehicleIfAsked) {
+  const Outcome outcome = run("--scene 3 --vehicle -o scan.pcd");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("1 x vehicle"), std::string::npos) << outcome.out;
+  const auto cloud = lisco_apps::readCloudFile(folder_ / "scan.pcd");
+  long returns = 0;
+  long near = 0;
+  for (const auto& point : *cloud) {
+    returns += std::isnan(point.x) ? 0 : 1;
+    near += point.getVector3fMap().norm() < 1.5F ? 1 : 0;
+  }
+  EXPECT_NEAR(static_cast<double>(near) / static_cast<double>(returns), 0.25, 0.01);
+  EXPECT_EQ(numberBefore(outcome.out, " nearer than 1.5 m"), near) << outcome.out;
+  expectMadeAgain("scan.pcd", "--scene");
+
+  ASSERT_EQ(run("--scene 3 -o bare.pcd").status, 0);
+  EXPECT_FALSE(textOf(folder_ / "bare.pcd") == textOf(folder_ / "scan.pcd"));
+}
+
+TEST_F(LiscoSimulate, WritesTheWorstCases) {
+  for (const char* name : {"room", "wall", "random", "sheets", "singletons", "blocked", "poles"}) {
+    SCOPED_TRACE(name);
+    const Outcome outcome = run(std::string("--case ") + name + " --sensor vlp16 --lasers 20 --seed 3 -o scan.pcd");
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_EQ(outcome.out.rfind(std::string("case ") + name + ": ", 0), 0U) << outcome.out;
+    EXPECT_EQ(outcome.out.find("ground"), std::string::npos) << outcome.out;
+    const auto cloud = lisco_apps::readCloudFile(folder_ / "scan.pcd");
+    EXPECT_EQ(cloud->height, 20U);
+    EXPECT_EQ(cloud->width, 1808U);
+    long returns = 0;
+    for (const auto& point : *cloud) returns += std::isnan(point.x) ? 0 : 1;
+    EXPECT_GT(returns, 5000);
+    EXPECT_NE(outcome.out.find("returns   " + std::to_string(returns) + "\n"), std::string::npos) << outcome.out;
+    expectMadeAgain("scan.pcd", "--case");
+  }
+  // The gap is made use of, and stands in the file.
+  ASSERT_EQ(run("--case sheets --gap 0.25 -o near.pcd").status, 0);
+  ASSERT_EQ(run("--case sheets -o far.pcd").status, 0);
+  EXPECT_FALSE(textOf(folder_ / "near.pcd") == textOf(folder_ / "far.pcd"));
+  expectMadeAgain("near.pcd", "--case");
+}
+
 TEST_F(LiscoSimulate, HelpsAndNamesItsVersion) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.status, 0);
-  for (const char* word : {"Usage: lisco_simulate", "--scene", "--sensor", "os1-128", "--drop-outs"})
+  for (const char* word : {"Usage: lisco_simulate", "--scene", "--case", "singletons", "--gap", "--vehicle", "--sensor",
+                           "os1-128", "--drop-outs"})
     EXPECT_NE(help.out.find(word), std::string::npos) << word;
   const Outcome version = run("--version");
   EXPECT_EQ(version.status, 0);
@@ -165,6 +215,16 @@ TEST_F(LiscoSimulate, RefusesWhatItDoesNotUnderstand) {
   expectRefusal("-o scan.pcd", {"--scene"});
   for (const char* scene : {"0", "6", "abc", "1x", "-1", "''"})
     expectRefusal(std::string("-o scan.pcd --scene=") + scene, {"--scene"});
+  expectRefusal("-o scan.pcd --scene 1 --case room", {"--scene", "--case"});
+  for (const char* name : {"rooms", "1", "Room"})
+    expectRefusal(std::string("-o scan.pcd --case=") + name, {"no case", "room", "poles"});
+  expectRefusal("--scene 5 --vehicle -o scan.pcd", {"--vehicle"});
+  expectRefusal("--case room --vehicle -o scan.pcd", {"--vehicle"});
+  for (const char* gap : {"0", "-1", "nan", "wide", "101"})
+    expectRefusal(std::string("--case sheets -o scan.pcd --gap=") + gap, {"--gap"});
+  expectRefusal("--case room --gap 0.5 -o scan.pcd", {"--gap", "sheets"});
+  expectRefusal("--scene 1 --gap 0.5 -o scan.pcd", {"--gap", "sheets"});
+  expectRefusal("--case room", {"--output"});
   expectRefusal("--scene 1", {"--output"});
   expectRefusal("--scene 1 -o ''", {"--output"});
   expectRefusal("--scene 1 -o scan.pcd --sensor hdl65", {"hdl65", "hdl64e", "os1-128"});

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "cases.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+#include <unordered_map>
+
+#include "random.h"
+#include "solid.h"
+
+namespace lisco_simulation {
+namespace {
+
+/// What the random numbers of a cell are for; none of the scanner's purposes.
+enum Purpose : std::uint64_t { kForRange = 1000, kForNoise, kForDropOut };
+
+constexpr double kLeastRange = 0.01;  // metres: whatever the noise, a return has a direction
+constexpr double kFarBelow = -1e6;    // metres; a floor that no ray meets within a sensor's range
+
+struct Target {
+  double range = 0;  ///< metres, <= 0: none
+  std::uint32_t object = 0;
+};
+
+/// What a case may look at, cell by cell.
+struct Ray {
+  std::size_t laser, step, cell;
+  Vector direction;
+  double noise;  ///< metres
+};
+
+Cell cellAt(const Ray& ray, const Target& target) {
+  const Vector place = target.range * ray.direction;
+  return {static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z), target.object};
+}
+
+Cell noReturn() {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  return {kNan, kNan, kNan, 0};
+}
+
+/// \param target_of gives the target of a ray as the sensor measures it, noise included
+template <typename TargetOf>
+Scan scanEachCell(const Sensor& sensor, const Disturbance& disturbance, TargetOf&& target_of) {
+  Scan scan{sensor.lasers(), sensor.steps, {}};
+  scan.cells.assign(scan.lasers * scan.steps, noReturn());
+  for (std::size_t cell = 0; cell < scan.cells.size(); ++cell) {
+    if (CellRandom(disturbance.seed, cell, kForDropOut).unit() < disturbance.drop_outs) continue;
+    Ray ray{cell / scan.steps, cell % scan.steps, cell, {}, 0};
+    ray.direction = sensor.direction(ray.laser, ray.step);
+    ray.noise = disturbance.range_noise * CellRandom(disturbance.seed, cell, kForNoise).gaussian();
+    const Target target = target_of(ray);
+    if (target.range > 0) scan.cells[cell] = cellAt(ray, target);
+  }
+  return scan;
+}
+
+/// The range at which a ray meets a round wall about the sensor.
+double rangeOfRoundWall(const Vector& direction, double radius) {
+  return radius / std::hypot(direction.x, direction.y);
+}
+
+std::uint32_t numberOf(std::size_t cell) {
+  return static_cast<std::uint32_t>(cell + 1);
+}
+
+Scan scanRoom(const Sensor& sensor, const Disturbance& disturbance) {
+  constexpr double kLength = 4;  // halves
+  constexpr double kWidth = 3;
+  constexpr double kFloor = -1.8;
+  constexpr double kCeiling = 1.2;
+  constexpr double kThick = 0.3;
+  const double length = kLength + kThick;
+  const double width = kWidth + kThick;
+  Scene scene;
+  scene.floor_z = kFarBelow;
+  scene.objects.push_back({"room",
+                           {Solid::box({kLength, -width, kFloor}, {length, width, kCeiling}),
+                            Solid::box({-length, -width, kFloor}, {-kLength, width, kCeiling}),
+                            Solid::box({-length, kWidth, kFloor}, {length, width, kCeiling}),
+                            Solid::box({-length, -width, kFloor}, {length, -kWidth, kCeiling}),
+                            Solid::box({-length, -width, kFloor - kThick}, {length, width, kFloor}),
+                            Solid::box({-length, -width, kCeiling}, {length, width, kCeiling + kThick})}});
+  return scan(scene, sensor, disturbance);
+}
+
+Scan scanWall(const Sensor& sensor, const Disturbance& disturbance) {
+  return scanEachCell(sensor, disturbance, [](const Ray& ray) {
+    return Target{std::max(rangeOfRoundWall(ray.direction, 1) + ray.noise, kLeastRange), 1};
+  });
+}
+
+Scan scanRandom(const Sensor& sensor, const Disturbance& disturbance) {
+  return scanEachCell(sensor, disturbance, [&](const Ray& ray) {
+    return Target{1 + 59 * CellRandom(disturbance.seed, ray.cell, kForRange).unit(), numberOf(ray.cell)};
+  });
+}
+
+Scan scanSheets(const Sensor& sensor, const Disturbance& disturbance, double gap) {
+  constexpr double kRange = 5;
+  return scanEachCell(sensor, disturbance, [&](const Ray& ray) {
+    // Balls rather than walls: ranges that differ by the gap are at least as far apart in all directions.
+    const bool farther = (ray.laser + ray.step) % 2 != 0;
+    const double noise = std::fabs(ray.noise);
+    return farther ? Target{kRange + gap + noise, 2} : Target{std::max(kRange - noise, kLeastRange), 1};
+  });
+}
+
+Scan scanBlocked(const Sensor& sensor, const Disturbance& disturbance) {
+  constexpr double kRange = 0.15;
+  constexpr double kMost = 0.29;
+  return scanEachCell(sensor, disturbance, [&](const Ray& ray) {
+    return Target{std::min(std::max(kRange + ray.noise, kLeastRange), kMost), 1};
+  });
+}
+
+/// Places of which each is farther than some gap from every other one.
+class Apart {
+ public:
+  explicit Apart(double gap) : gap_(gap) {}
+
+  /// \return false, and nothing is added, if the place is too near to another one
+  bool add(const Cell& cell) {
+    const Key key = keyOf(cell);
+    for (int x = -1; x <= 1; ++x)
+      for (int y = -1; y <= 1; ++y)
+        for (int z = -1; z <= 1; ++z) {
+          // Far-away cubes may share a number.
+          const auto [first, last] = places_.equal_range(numberOf({key.x + x, key.y + y, key.z + z}));
+          for (auto other = first; other != last; ++other)
+            if (distance(other->second, cell) <= gap_) return false;
+        }
+    places_.emplace(numberOf(key), cell);
+    return true;
+  }
+
+ private:
+  struct Key {
+    std::int64_t x, y, z;
+  };
+
+  Key keyOf(const Cell& cell) const {
+    const auto along = [this](float value) {
+      return static_cast<std::int64_t>(std::floor(static_cast<double>(value) / gap_));
+    };
+    return {along(cell.x), along(cell.y), along(cell.z)};
+  }
+  static std::uint64_t numberOf(const Key& key) {
+    constexpr std::int64_t kPerAxis = std::int64_t{1} << 21;
+    const auto part = [](std::int64_t value) { return static_cast<std::uint64_t>(value) % kPerAxis; };
+    return (part(key.x) * kPerAxis + part(key.y)) * kPerAxis + part(key.z);
+  }
+  static double distance(const Cell& a, const Cell& b) {
+    return length({static_cast<double>(a.x) - static_cast<double>(b.x),
+                   static_cast<double>(a.y) - static_cast<double>(b.y),
+                   static_cast<double>(a.z) - static_cast<double>(b.z)});
+  }
+
+  double gap_;
+  std::unordered_multimap<std::uint64_t, Cell> places_;
+};
+
+Scan scanSingletons(const Sensor& sensor, const Disturbance& disturbance, double gap) {
+  constexpr int kTrials = 8;
+  constexpr double kLeast = 2;
+  Apart apart(gap);
+  return scanEachCell(sensor, disturbance, [&](const Ray& ray) {
+    CellRandom random(disturbance.seed, ray.cell, kForRange);
+    for (int trial = 0; trial < kTrials; ++trial) {
+      const Target target{kLeast + (sensor.max_range - kLeast) * random.unit(), numberOf(ray.cell)};
+      if (apart.add(cellAt(ray, target))) return target;
+    }
+    return Target{};
+  });
+}
+
+Scan scanPoles(const Sensor& sensor, const Disturbance& disturbance) {
+  constexpr double kPitch = 0.65;   // from pole to pole of a ring, metres
+  constexpr double kSlender = 250;  // range by radius: as wide as a step or two
+  constexpr double kRings[] = {3, 4.5, 6.75, 10, 15};
+  constexpr double kSteepest = 0.6;  // tangent of an elevation above and below those of all sensors
+  Scene scene;
+  scene.floor_z = kFarBelow;
+  for (const double range : kRings) {
+    const int poles = static_cast<int>(2 * kPi * range / kPitch);
+    for (int pole = 0; pole < poles; ++pole) {
+      const double angle = 2 * kPi * pole / poles;
+      const Vector foot{range * std::cos(angle), range * std::sin(angle), -kSteepest * range};
+      const Vector top{foot.x, foot.y, kSteepest * range};
+      scene.objects.push_back({"pole", {Solid::cylinder(foot, top, range / kSlender)}});
+    }
+  }
+  return scan(scene, sensor, disturbance);
+}
+
+struct Case {
+  const char* name;
+  const char* description;
+  Scan (*scan)(const Sensor& sensor, const Disturbance& disturbance, double gap);
+  bool has_gap = false;
+};
+
+/// A case that needs no gap.
+template <Scan (*scan)(const Sensor&, const Disturbance&)>
+Scan withoutGap(const Sensor& sensor, const Disturbance& disturbance, double /*gap*/) {
+  return scan(sensor, disturbance);
+}
+
+constexpr Case kCases[] = {{"room", "a closed, empty room", withoutGap<scanRoom>},
+                           {"wall", "a wall 1 m away all around", withoutGap<scanWall>},
+                           {"random", "random ranges between 1 and 60 m", withoutGap<scanRandom>},
+                           {"sheets", "two interleaved sheets just over a gap apart", scanSheets, true},
+                           {"singletons", "returns farther than a gap from each other", scanSingletons, true},
+                           {"blocked", "a blocked sensor, all returns within 0.3 m", withoutGap<scanBlocked>},
+                           {"poles", "a comb of thin vertical poles", withoutGap<scanPoles>}};
+
+const Case& caseOf(const std::string& name) {
+  const auto* const found =
+      std::find_if(std::begin(kCases), std::end(kCases), [&](const Case& c) { return c.name == name; });
+  if (found == std::end(kCases)) throw std::invalid_argument("no case is called '" + name + "'");
+  return *found;
+}
+
+}  // namespace
+
+std::vector<std::string> caseNames() {
+  std::vector<std::string> names;
+  for (const Case& each : kCases) names.emplace_back(each.name);
+  return names;
+}
+
+std::string describeCase(const std::string& name) {
+  return caseOf(name).description;
+}
+
+bool caseHasGap(const std::string& name) {
+  return caseOf(name).has_gap;
+}
+
+Scan scanCase(const std::string& name, const Sensor& sensor, const Disturbance& disturbance, double gap) {
+  return caseOf(name).scan(sensor, disturbance, gap);
+}
+
+}  // namespace lisco_simulation

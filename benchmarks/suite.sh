@@ -1,0 +1,148 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Runs all benchmarks, or the SECTIONs that are named, and rewrites their tables in doc/benchmarks.md (those of real scans in
+# README.md too). A section that fails, as by clusters that are not PCL's, keeps its old table; the others go on, and the
+# suite exits with 1. Takes about a quarter of an hour on two cores.
+#
+#   benchmarks/suite.sh [--runs N] [SECTION...]     --runs: timed runs of each rival (default 5)
+#
+# Sections: real vehicle worst growth memory
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+. "$root/benchmarks/tools.sh"
+
+all_sections=(real vehicle worst growth memory)
+runs=5
+sections=()
+while [ $# -gt 0 ]; do
+  case $1 in
+    --runs)
+      runs=${2:?--runs needs a number}
+      shift 2
+      ;;
+    *)
+      if [[ " ${all_sections[*]} " != *" $1 "* ]]; then
+        echo "suite.sh: there is no section '$1'; known are ${all_sections[*]}" >&2
+        exit 2
+      fi
+      sections+=("$1")
+      shift
+      ;;
+  esac
+done
+[ ${#sections[@]} -gt 0 ] || sections=("${all_sections[@]}")
+
+build_benchmarks
+find_real_scans
+document=$root/doc/benchmarks.md
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+
+simulate() { "$build/apps/lisco_simulate" "$@" >/dev/null; }
+
+# compare NAME ARGUMENT...: compares; its tables go to $out/NAME.txt and NAME.csv.
+compare() {
+  local name=$1
+  shift
+  report "$out/$name.txt" "$build/apps/lisco_compare" --max-seconds 5 --csv "$out/$name.csv" "$@"
+}
+
+# publish TABLE SECTION NAME...: what `compare NAME` has found, as a table of tables.awk below the head that says on what machine.
+publish() {
+  local table=$1 section=$2 name=$3
+  shift 2
+  local csvs=("${@/#/$out/}")
+  csvs=("${csvs[@]/%/.csv}")
+  {
+    head -n 3 "$out/$name.txt" && table "$table" "${csvs[@]}"
+  } >"$out/$name.table" && code_block <"$out/$name.table" | replace_section "$document" "$section" && cat "$out/$name.table"
+}
+
+# Each of these measures one section. They run as a condition, in which bash ignores `set -e`: hence the && all over.
+
+rivals=(--rivals "pcl,grid,lisco" --must-agree "grid,lisco")
+
+measure_real() {
+  "$root/benchmarks/real_scans.sh" --runs "$runs"
+}
+
+# The paper's streets from a sensor that sees its own vehicle.
+simulate_vehicle() {
+  [ ! -d "$out/vehicle" ] || return 0
+  mkdir "$out/vehicle" || return 1
+  local scene
+  for scene in 1 2 3 4; do
+    simulate --scene "$scene" --vehicle -o "$out/vehicle/scene${scene}_hdl64e.pcd" &&
+      simulate --scene "$scene" --vehicle --sensor os1-128 -o "$out/vehicle/scene${scene}_os1-128.pcd" || return 1
+  done
+}
+
+measure_vehicle() {
+  simulate_vehicle &&
+    compare vehicle "${rivals[@]}" --runs "$runs" --tolerance 0.1,0.3,0.4,0.7,1 --ground-z -1.6 "$out/vehicle" &&
+    publish benchmarks "vehicle" vehicle
+}
+
+# Where most returns are neighbours of each other, PCL's time grows with their square: there the sensor turns in fewer steps.
+simulate_worst() {
+  [ ! -d "$out/worst" ] || return 0
+  mkdir "$out/worst" || return 1
+  local name gap
+  for name in room random singletons poles; do
+    simulate --case "$name" -o "$out/worst/$name.pcd" || return 1
+  done
+  for gap in 0.11 0.41 1.01; do  # just beyond each of the tolerances
+    simulate --case sheets --gap "$gap" -o "$out/worst/sheets_$gap.pcd" || return 1
+  done
+  simulate --case wall --steps 450 -o "$out/worst/wall.pcd" && simulate --case blocked --steps 225 -o "$out/worst/blocked.pcd"
+}
+
+measure_worst() {
+  simulate_worst && compare worst "${rivals[@]}" --runs "$runs" --tolerance 0.1,0.4,1 "$out/worst" &&
+    publish benchmarks "worst cases" worst
+}
+
+# Twice the lasers, twice the steps, and twice both. Lisco alone is timed, in many runs and two passes, so that what disturbs the machine
+# for some seconds does not look like growth.
+measure_growth() {
+  mkdir "$out/growth" || return 1
+  local scene lasers steps size
+  for scene in 3 5; do
+    for lasers in 016 032 064 128; do
+      simulate --scene "$scene" --lasers "$((10#$lasers))" --steps 2048 -o "$out/growth/scene${scene}_lasers_$lasers.pcd" || return 1
+    done
+    for steps in 0512 1024 2048 4096; do
+      simulate --scene "$scene" --lasers 64 --steps "$((10#$steps))" -o "$out/growth/scene${scene}_steps_$steps.pcd" || return 1
+    done
+    for size in 1 2 4; do
+      simulate --scene "$scene" --lasers $((32 * size)) --steps $((1024 * size)) -o "$out/growth/scene${scene}_both_$size.pcd" ||
+        return 1
+    done
+  done
+  local pass
+  for pass in 1 2; do
+    compare "growth$pass" --rivals lisco --runs $((20 * runs)) --tolerance 0.4 --ground-z -1.6 "$out/growth" || return 1
+  done
+  publish growth "growth" growth1 growth2
+}
+
+measure_memory() {
+  simulate_vehicle && simulate_worst &&
+    report "$out/memory.txt" "$build/benchmarks/memory_use" --tolerance 0.1,0.4,1 "${ground[@]}" \
+      --ground-z scene3_hdl64e=-1.6 --ground-z scene3_os1-128=-1.6 "${rotating[@]}" "$out"/vehicle/scene3_*.pcd &&
+    report "$out/memory_worst.txt" "$build/benchmarks/memory_use" --tolerance 0.4 "$out/worst" &&
+    { cat "$out/memory.txt" && tail -n +5 "$out/memory_worst.txt"; } >"$out/memory.table" &&
+    code_block <"$out/memory.table" | replace_section "$document" "memory" && cat "$out/memory.table"
+}
+
+# More sections: a function measure_NAME here, NAME in `all_sections` and in the head of this file, and in doc/benchmarks.md a place
+# for the table. The places `threads` and `stages` are there already.
+
+failed=()
+for section in "${sections[@]}"; do
+  "measure_$section" || failed+=("$section")
+done
+if [ ${#failed[@]} -gt 0 ]; then
+  echo "failed, and left as they were: ${failed[*]}" >&2
+  exit 1
+fi
