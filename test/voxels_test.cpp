@@ -390,6 +390,41 @@ TEST_P(VoxelClouds, OfSomeReturnsOfEachRow) {
   }
 }
 
+// Along an axis, as far apart as neighbours can be, where numbers computed in float begin to be too coarse.
+TEST(Voxels, WhereNumbersAreRounded) {
+  Probe probe(1.0F);
+  int apart = 0;
+  for (std::uint64_t seed = 1; seed < 1 + timesEffort(30000); ++seed) {
+    Random random(seed);
+    const auto tolerance = static_cast<float>(random.between(0.5, 2.0));
+    const double side = 0.9999 / std::sqrt(3.0) * static_cast<double>(tolerance);
+    const auto one = static_cast<float>((random.chance(0.5) ? 1.0 : -1.0) * side * random.magnitude(0x1p18, 0x1p25));
+    float other = one;
+    for (float next = one; areNeighbours({one, 0, 0}, {next, 0, 0}, tolerance);
+         next = std::nextafter(next, std::numeric_limits<float>::infinity()))
+      other = next;
+    if (other == one) continue;
+    ++apart;
+    const auto aside = static_cast<float>(random.between(-3.0, 3.0));
+    std::array<Point, 2> points{{{one, aside, 1.0F}, {other, aside, 1.0F}}};
+    if (seed % 3 > 0)
+      for (Point& point : points) std::swap(point.x, seed % 3 == 1 ? point.y : point.z);
+    SCOPED_TRACE("seed " + std::to_string(seed) + ": " + print(points[0]) + ", " + print(points[1]));
+    const SimdLevel level(random.oneOf(levels()));
+    probe.begin(tolerance);
+    for (const Point& point : points) {
+      // Beside another return that makes the whole row's numbers double; or not.
+      if (random.chance(0.3))
+        probe.addRow({point, {0, 0, 0}, {1e9F + static_cast<float>(seed), 0, 0}}, random.chance(0.5) ? 5 : 1);
+      else
+        probe.add(point);
+    }
+    probe.link();
+    ASSERT_EQ(probe.wrong(tolerance), "");
+  }
+  EXPECT_GT(apart, 10000);
+}
+
 // So far out that neighbouring floats, some of them alike, are many cubes apart, and numbers wrap.
 TEST(Voxels, WhereNumbersWrap) {
   Probe probe(1.0F);
