@@ -125,7 +125,7 @@ void ColumnClusterer::readRow(Reading& reading, std::size_t thread, Row& row, st
 void ColumnClusterer::update() {
   if (staged_columns_ > 0) clusterBlock();
   subclusters_.share(threads_ > 1);
-  if (strip_.inUse()) strip_.linkAll(subclusters_);
+  if (strip_.inUse()) strip_.linkAll(subclusters_, threads_);
   subclusters_.share(false);
   Voxels& voxels = readings_.front().voxels;
   for (std::size_t thread = 1; thread < threads_; ++thread) voxels.absorb(readings_[thread].voxels, subclusters_);

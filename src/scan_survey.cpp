@@ -25,7 +25,7 @@ Direction directionOf(const Return& point, const std::array<float, 3>& origin) {
   return {std::atan2(y, x), std::atan2(z, std::hypot(x, y))};
 }
 
-float median(std::vector<double>& values, float if_empty) {
+float median(Sample<double>& values, float if_empty) {
   if (values.empty()) return if_empty;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -63,13 +63,13 @@ Parameters ScanSurvey::judge(const std::array<float, 3>& sensor, bool organized)
   }
   const auto& origin = parameters.view.origin;
 
-  std::vector<double> elevation_steps;
+  Sample<double> elevation_steps;
   for (const Pair& pair : along_column_)
     elevation_steps.push_back(std::fabs(directionOf(pair.a, origin).elevation - directionOf(pair.b, origin).elevation));
   parameters.view.elevation_step = median(elevation_steps, parameters.view.elevation_step);
 
   // Over many columns, steps are measured more finely, and so is the direction of the turn.
-  std::vector<double> turns;
+  Sample<double> turns;
   for (const FurtherPair& pair : further_)
     turns.push_back(
         std::remainder(directionOf(pair.b, origin).azimuth - directionOf(pair.a, origin).azimuth, 2.0 * kPi) /
@@ -81,7 +81,7 @@ Parameters ScanSurvey::judge(const std::array<float, 3>& sensor, bool organized)
   parameters.view.clockwise = step < 0;
 
   constexpr double kFew = 0.2;
-  std::vector<double> distances;
+  Sample<double> distances;
   for (const Pair& pair : along_row_)
     distances.push_back(std::hypot(static_cast<double>(pair.a.x) - static_cast<double>(origin[0]),
                                    static_cast<double>(pair.a.y) - static_cast<double>(origin[1])));

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "lisco/parallel.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "view_strip.cpp"
 #include <hwy/foreach_target.h>  // must come before highway.h
@@ -719,13 +721,23 @@ void ViewStrip::link(DisjointSets& subclusters) {
   }
 }
 
-void ViewStrip::linkAll(DisjointSets& subclusters) {
+void ViewStrip::linkAll(DisjointSets& subclusters, std::size_t threads) {
   if (!started) return;
   link(subclusters);
   const std::size_t last = end();
-  if (last > linked) HWY_DYNAMIC_DISPATCH(linkPlaces)(*this, linked, last, linking.front(), subclusters);
+  if (last > linked) {
+    // Each thread has a part of the turn; what reaches into the part before is found from the later one.
+    const std::size_t sectors = (last - linked + kSector - 1) / kSector;
+    const std::size_t parts = std::clamp<std::size_t>(threads, 1, sectors);
+    const auto firstOf = [&](std::size_t part) { return linked + sectors * part / parts * kSector; };
+    inParallel(parts, [&](std::size_t part) {
+      HWY_DYNAMIC_DISPATCH(linkPlaces)
+      (*this, firstOf(part), std::min(last, firstOf(part + 1)), linking[part], subclusters);
+    });
+  }
   HWY_DYNAMIC_DISPATCH(linkSeam)(*this, last, linking.front(), subclusters);
-  for (Sector& sector : linking.front().sectors) sector.number = kNoSector;  // more may come there, or have come late
+  for (Linking& one : linking)
+    for (Sector& sector : one.sectors) sector.number = kNoSector;  // more may come there, or has come late
   bool full = false;
   for (Placing& one : placing) {
     for (const Loose& late : one.late) search(late, subclusters);

@@ -202,7 +202,7 @@ TEST_P(WindowScans, EqualTheOracle) {
     parameters.view = pairs.hints;
     const std::array<std::size_t, 6> blocks{64, 64, 1, 3, 16, 1 + random.below(64)};
     parameters.block_columns = random.oneOf(blocks);
-    parameters.threads = random.chance(0.3) ? random.below(5) : 1;
+    parameters.threads = random.chance(0.4) ? random.below(5) : 1;
     clusterer.begin(parameters);
     feed(clusterer, random, pairs.scan);
     std::vector<Point> returns;

@@ -4,12 +4,32 @@
 
 #include <array>
 #include <cstddef>
-#include <vector>
 
 #include "lisco/column_clusterer.h"
 #include "lisco/return.h"
 
 namespace lisco {
+
+/// A few things, so that none of the heap's memory is needed. What comes after kMost of them is ignored.
+template <typename T>
+class Sample {
+ public:
+  static constexpr std::size_t kMost = 512;
+
+  void push_back(const T& one) {
+    if (size_ < kMost) all_[size_++] = one;
+  }
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  T* begin() { return all_.data(); }
+  T* end() { return begin() + size_; }
+  const T* begin() const { return all_.data(); }
+  const T* end() const { return begin() + size_; }
+
+ private:
+  std::array<T, kMost> all_;
+  std::size_t size_ = 0;
+};
 
 /// A few pairs of adjacent cells, by which a whole cloud is judged before it is clustered.
 class ScanSurvey {
@@ -35,8 +55,8 @@ class ScanSurvey {
     Return a, b;
     std::size_t columns;
   };
-  std::vector<Pair> along_row_, along_column_;
-  std::vector<FurtherPair> further_;
+  Sample<Pair> along_row_, along_column_;
+  Sample<FurtherPair> further_;
 };
 
 /// Looks at about a hundred cells of an organized cloud (lasers > 1) or of an unorganized one (lasers == 1).

@@ -150,7 +150,8 @@ class ViewStrip : private StripData {
   /// Compares what has come since the last call, as far as all lasers have passed it.
   void link(DisjointSets& subclusters);
   /// Compares all that has not been compared, the seam included. More returns may follow.
-  void linkAll(DisjointSets& subclusters);
+  /// \param threads not more than prepare () was told
+  void linkAll(DisjointSets& subclusters, std::size_t threads = 1);
 
  private:
   void updateElevations();
