@@ -23,6 +23,10 @@ std::size_t allThreads() {
 }
 
 void inParallel(std::size_t threads, void (*work)(void* context, std::size_t thread), void* context) {
+  if (threads == 1) {
+    work(context, 0);
+    return;
+  }
   std::vector<std::exception_ptr> failures(threads);
   const auto run = [&](std::size_t thread) {
     try {

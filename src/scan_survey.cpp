@@ -63,6 +63,15 @@ Parameters ScanSurvey::judge(const std::array<float, 3>& sensor, bool organized)
   }
   const auto& origin = parameters.view.origin;
 
+  const auto rangeOf = [&origin](const Return& point) {
+    return std::hypot(static_cast<double>(point.x) - static_cast<double>(origin[0]),
+                      static_cast<double>(point.y) - static_cast<double>(origin[1]),
+                      static_cast<double>(point.z) - static_cast<double>(origin[2]));
+  };
+  Sample<double> jumps;
+  for (const Pair& pair : along_row_) jumps.push_back(std::fabs(rangeOf(pair.a) - rangeOf(pair.b)));
+  parameters.view.roughness = median(jumps, 0.0F);
+
   Sample<double> elevation_steps;
   for (const Pair& pair : along_column_)
     elevation_steps.push_back(std::fabs(directionOf(pair.a, origin).elevation - directionOf(pair.b, origin).elevation));

@@ -35,16 +35,12 @@ constexpr std::size_t kPlacedPerLoose = 32;
 constexpr std::size_t kFewestSteps = 512;  // so that all places are less than two turns, and the seam is one
 constexpr std::size_t kMostSteps = 16384;
 
-// From where on returns are far: where about this many of a flat surface's lie in a square of the tolerance's size.
-#ifndef LISCO_RPS
-#define LISCO_RPS 400.0
-#endif
-constexpr double kReturnsPerSquare = LISCO_RPS;
-#ifndef LISCO_SC
-#define LISCO_SC 2
-#endif
+// From where on returns are far: where about this many of a flat surface's lie in a square of the tolerance's size. Fewer
+// if the returns of a laser do not form runs: then segments are short, and there are too many in a window.
+constexpr double kReturnsPerSquare = 400.0;
+constexpr double kRoughReturnsPerSquare = 12.0;
 // What it costs to look for a segment's neighbours in a sector, in comparisons of registers of places.
-constexpr std::uint32_t kSegmentCost = LISCO_SC;
+constexpr std::uint32_t kSegmentCost = 2;
 constexpr double kLeastNearEnd = 2.5;  // in units of the tolerance
 
 /// An upper bound on asin (ratio), 0 <= ratio < 1.
@@ -397,7 +393,8 @@ class Windows {
       nearest = std::min(nearest, sector.nearest[segment]);
     const float angle = asinBound(strip_.reach / nearest);
     StripData::Mask& mask = linking_.masks[laser];
-    mask.before = std::min(kMostReach, static_cast<int>(angle * places_per_radian_ + (2 * kDeviation + 0.02F)));
+    mask.nearest = nearest;
+    mask.before = placesWithin(angle);
     reachLasers(laser, angle, mask);
     const auto registers = static_cast<std::uint32_t>(StripData::kSector / kLanes);
     const std::uint32_t by_places =
@@ -445,13 +442,15 @@ class Windows {
   template <typename Visit>
   void forEachSegment(StripData::Sector& sector, std::size_t laser, Visit&& visit) {
     const StripData::Mask& mask = linking_.masks[laser];
-    const auto places = static_cast<float>(mask.before);
+    constexpr float kWorthNarrowing = 1.25F;
     Window window{};
-    window.before = mask.before;
-    window.first_laser = mask.first_laser;
-    window.last_laser = mask.last_laser;
     for (std::uint32_t i = sector.begin[laser]; i < sector.begin[laser + 1]; ++i) {
       const float reach = strip_.reach + 1e-6F * sector.farthest[i];
+      window.before = mask.before;
+      window.first_laser = mask.first_laser;
+      window.last_laser = mask.last_laser;
+      if (sector.nearest[i] > kWorthNarrowing * mask.nearest) narrow(laser, sector.nearest[i], window);
+      const auto places = static_cast<float>(window.before);
       window.segment = i;
       window.head = subclusters_.head(sector.head[i]);
       window.cell = sector.cell[i];
@@ -465,6 +464,20 @@ class Windows {
       visit(window);
       sector.head[i] = window.head;
     }
+  }
+
+  int placesWithin(float angle) const {
+    return std::min(kMostReach, static_cast<int>(angle * places_per_radian_ + (2 * kDeviation + 0.02F)));
+  }
+
+  /// Narrows the window of a segment that is further away than others of its laser, for which the mask was made.
+  void narrow(std::size_t laser, float nearest, Window& window) const {
+    const float angle = asinBound(strip_.reach / nearest);
+    window.before = placesWithin(angle);
+    const float top = strip_.highest[laser] + angle + kAngleRounding;
+    const float bottom = strip_.lowest[laser] - angle - kAngleRounding;
+    while (window.first_laser < laser && strip_.lowest_above[window.first_laser] > top) ++window.first_laser;
+    while (window.last_laser > laser && strip_.highest_below[window.last_laser] < bottom) --window.last_laser;
   }
 
   /// Sets the lasers whose elevations come within the angle of this one's.
@@ -565,7 +578,9 @@ void ViewStrip::prepare(const Tolerance& new_tolerance, const ViewHints& hints, 
   const double turn_steps = std::clamp<double>(hints.steps_per_turn, 0, 1e9);
   const auto new_steps = static_cast<std::size_t>(turn_steps);
   const double step = 2 * kPi / std::max(turn_steps, 1.0);
-  const double spacing = std::sqrt(kReturnsPerSquare * step * static_cast<double>(hints.elevation_step));
+  const bool rough = static_cast<double>(hints.roughness) > tolerance.reach();
+  const double spacing = std::sqrt((rough ? kRoughReturnsPerSquare : kReturnsPerSquare) * step *
+                                   static_cast<double>(hints.elevation_step));
   // As near as that, but not so near that a mask has more than kMostReach places.
   const double near_end =
       tolerance.reach() * std::max({1 / spacing, kLeastNearEnd, 1 / std::sin((kMostReach - 3) * step)});

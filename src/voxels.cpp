@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "voxels.cpp"
@@ -61,6 +62,23 @@ bool numberCubes(const Row& row, std::uint64_t which, float per_metre, CubeNumbe
   return hn::GetLane(hn::MaxOfLanes(kFloats, farthest)) <= kSafeNumbers;
 }
 
+/// Whether any two points of two lists are neighbours.
+bool anyNeighbours(const VoxelPoints& a, VoxelPoints& b, float squared_tolerance) {
+  const FloatVector r2 = hn::Set(kFloats, squared_tolerance);
+  for (std::size_t i = b.count; i % kLanes != 0; ++i) b.x[i] = std::numeric_limits<float>::quiet_NaN();
+  for (std::size_t i = 0; i < a.count; ++i) {
+    const FloatVector x = hn::Set(kFloats, a.x[i]);
+    const FloatVector y = hn::Set(kFloats, a.y[i]);
+    const FloatVector z = hn::Set(kFloats, a.z[i]);
+    FloatMask any = hn::Lt(r2, hn::Zero(kFloats));
+    for (std::size_t k = 0; k < b.count; k += kLanes)
+      any = hn::Or(any, areNeighbours(hn::Sub(x, hn::LoadU(kFloats, b.x + k)), hn::Sub(y, hn::LoadU(kFloats, b.y + k)),
+                                      hn::Sub(z, hn::LoadU(kFloats, b.z + k)), r2));
+    if (!hn::AllFalse(kFloats, any)) return true;
+  }
+  return false;
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace lisco
 HWY_AFTER_NAMESPACE();
@@ -70,6 +88,7 @@ namespace lisco {
 namespace {
 
 HWY_EXPORT(numberCubes);
+HWY_EXPORT(anyNeighbours);
 
 // A little less than eps / sqrt (3). Rounding moves a return by less than an eighth of a cube, so that
 // neighbours, which are 1.7323 sides apart at most, lie in cubes whose numbers differ by 2 at most.
@@ -370,21 +389,38 @@ void Voxels::linkBlock(const Block& block, bool all_new, DisjointSets& subcluste
   }
 }
 
+/// Gathers the points of a unit, from the cursor on, that may be neighbours of something in a box.
+void Voxels::gather(Cursor& cursor, const Box& box, VoxelPoints& points) const {
+  const float squared_tolerance = tolerance_.squared();
+  points.count = 0;
+  for (; cursor.piece != kNone && points.count < VoxelPoints::kMost; ++cursor.point) {
+    if (cursor.point == pieces_[cursor.piece].count) {
+      cursor = {pieces_[cursor.piece].next_in_unit, ~std::uint32_t{0}};
+      continue;
+    }
+    const std::size_t i = pieces_[cursor.piece].first_point + cursor.point;
+    points.x[points.count] = x_[i];
+    points.y[points.count] = y_[i];
+    points.z[points.count] = z_[i];
+    points.count += Box::squaredGap(Box::around(x_[i], y_[i], z_[i]), box) < squared_tolerance ? 1 : 0;
+  }
+}
+
 /// Whether any return of one unit is a neighbour of any return of the other.
 bool Voxels::haveNeighbours(const Unit& a, const Unit& b) const {
   const float squared_tolerance = tolerance_.squared();
   if (!(Box::squaredGap(a.box, b.box) < squared_tolerance)) return false;
   if (Box::squaredSpan(a.box, b.box) < squared_tolerance) return true;
-  for (std::uint32_t p = a.first_piece; p != kNone; p = pieces_[p].next_in_unit)
-    for (std::uint32_t i = pieces_[p].first_point; i < pieces_[p].first_point + pieces_[p].count; ++i) {
-      if (!(Box::squaredGap(Box::around(x_[i], y_[i], z_[i]), b.box) < squared_tolerance)) continue;
-      for (std::uint32_t q = b.first_piece; q != kNone; q = pieces_[q].next_in_unit) {
-        bool any = false;
-        for (std::uint32_t j = pieces_[q].first_point; j < pieces_[q].first_point + pieces_[q].count; ++j)
-          any |= squaredDistance(x_[i] - x_[j], y_[i] - y_[j], z_[i] - z_[j]) < squared_tolerance;
-        if (any) return true;
-      }
+  VoxelPoints some_of_a;
+  VoxelPoints some_of_b;
+  for (Cursor at_a{a.first_piece, 0}; at_a.piece != kNone;) {
+    gather(at_a, b.box, some_of_a);
+    if (some_of_a.count == 0) continue;
+    for (Cursor at_b{b.first_piece, 0}; at_b.piece != kNone;) {
+      gather(at_b, a.box, some_of_b);
+      if (HWY_DYNAMIC_DISPATCH(anyNeighbours)(some_of_a, some_of_b, squared_tolerance)) return true;
     }
+  }
   return false;
 }
 

@@ -56,7 +56,8 @@ struct StripData {
   };
   /// The mask of one laser's returns in a sector.
   struct Mask {
-    int before = 0;  ///< places that it reaches over
+    float nearest = 0;  ///< horizontal distance, metres
+    int before = 0;     ///< places that it reaches over
     std::uint32_t first_laser = 0, last_laser = 0;
     std::uint32_t above = 0, below = 0;  ///< the same lasers, counted from this one: where the next search begins
     bool by_places = false;              ///< what is cheaper: to compare places, or segments

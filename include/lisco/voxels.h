@@ -14,6 +14,13 @@
 
 namespace lisco {
 
+/// A few points side by side.
+struct VoxelPoints {
+  static constexpr std::size_t kMost = 64;
+  float x[kMost], y[kMost], z[kMost];
+  std::size_t count = 0;
+};
+
 /// Cubes of space for returns that have no place in a view: those near the sensor, seen under so wide a mask that
 /// angles tell nothing, and all those of a cloud that no single place has seen.
 ///
@@ -53,6 +60,11 @@ class Voxels {
     std::uint32_t next_in_cube;
     bool is_new;  ///< something in it has not been compared yet
   };
+  /// A point of a unit.
+  struct Cursor {
+    std::uint32_t piece;
+    std::uint32_t point;
+  };
   struct Block {
     Key key;
     std::uint32_t units;     ///< where the list of its cubes' first units begins
@@ -67,6 +79,7 @@ class Voxels {
   std::uint32_t& firstUnit(Block& block, std::uint32_t cube);
   void addPiece(const Key& cube, const Box& box, std::uint32_t piece, std::uint32_t element, DisjointSets& subclusters);
   void linkBlock(const Block& block, bool all_new, DisjointSets& subclusters);
+  void gather(Cursor& cursor, const Box& box, VoxelPoints& points) const;
   bool haveNeighbours(const Unit& a, const Unit& b) const;
 
   Tolerance tolerance_;
