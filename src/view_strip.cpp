@@ -752,13 +752,18 @@ void ViewStrip::linkAll(DisjointSets& subclusters, std::size_t threads) {
   }
   HWY_DYNAMIC_DISPATCH(linkSeam)(*this, last, linking.front(), subclusters);
   for (Linking& one : linking)
-    for (Sector& sector : one.sectors)  // more may come there
-      if (sector.number >= static_cast<std::int64_t>(linked / kSector)) sector.number = kNoSector;
+    for (Sector& sector : one.sectors) sector.number = kNoSector;  // more may come there, or has come late
+  bool full = false;
   for (Placing& one : placing) {
     for (const Loose& late : one.late) search(late, subclusters);
     one.late.clear();
     for (const Loose& loose : one.loose) search(loose, subclusters);
-    if (one.full) one.loose.clear();  // nothing comes after them
+    full = full || one.full;
+  }
+  if (!full) return;
+  for (Placing& one : placing) {  // no more are placed by anyone, so nothing comes after the loose ones
+    one.full = true;
+    one.loose.clear();
   }
 }
 

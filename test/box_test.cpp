@@ -5,13 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <vector>
 
-#include "lisco/shelf.h"
 #include "oracle.h"
 #include "random.h"
 
@@ -78,37 +74,6 @@ TEST(Box, OfSinglePointsIsTheirDistance) {
     ASSERT_EQ(Box::squaredGap(a, b), squaredDistance(p, q));
     ASSERT_EQ(Box::squaredSpan(a, b), squaredDistance(p, q));
   }
-}
-
-// Four boxes at once say what each says alone, bit for bit: a vector unit must not round otherwise.
-TEST(Shelf, DecidesAsItsBoxesDo) {
-  Random random(3);
-  const std::array<double, 5> scales{1.0, 1e30, 1.5e38, 1e-20, 1e-38};
-  int near = 0;
-  for (int i = 0; i < 20000; ++i) {
-    const double scale = random.oneOf(scales);
-    lisco::Shelf shelf = lisco::Shelf::empty(7);
-    EXPECT_EQ(shelf.next_in_tile, 7U);
-    const std::size_t count = random.below(lisco::Shelf::kPlaces + 1);
-    std::vector<Group> groups;
-    for (std::uint32_t place = 0; place < count; ++place) {
-      groups.push_back(randomGroup(random, scale));
-      shelf.add(100 + place, groups.back().box);
-    }
-    EXPECT_EQ(shelf.full(), count == lisco::Shelf::kPlaces);
-    const Group group = randomGroup(random, scale);
-    float squared = static_cast<float>(random.unit() * scale * scale);
-    if (count > 0 && random.chance(0.7)) squared = Box::squaredGap(random.oneOf(groups).box, group.box);
-    if (random.chance(0.3)) squared = std::nextafter(squared, std::numeric_limits<float>::infinity());
-    const std::uint32_t places = shelf.placesNear(group.box, squared);
-    for (std::uint32_t place = 0; place < lisco::Shelf::kPlaces; ++place) {
-      const bool expected = place < count && Box::squaredGap(groups[place].box, group.box) < squared;
-      ASSERT_EQ((places >> place & 1U) != 0, expected) << i;
-      near += expected ? 1 : 0;
-    }
-    ASSERT_LT(places, 16U);
-  }
-  EXPECT_GT(near, 1000);
 }
 
 }  // namespace

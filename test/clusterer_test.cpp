@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <string>
 
@@ -21,14 +20,11 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// Calls check(random, clusterer) for many seeds, with one and the same clusterer: nothing of a scan may leak
-/// into the next. Ends at the first seed that fails. LISCO_TEST_EFFORT=n in the environment tries n times as
-/// many seeds, for a longer hunt.
+/// into the next. Ends at the first seed that fails.
 template <typename Check>
 void forSeeds(std::uint64_t first, std::uint64_t count, Check&& check) {
-  const char* const effort = std::getenv("LISCO_TEST_EFFORT");
-  if (effort != nullptr) count *= std::strtoull(effort, nullptr, 10);
   lisco::ColumnClusterer clusterer;
-  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+  for (std::uint64_t seed = first; seed < first + timesEffort(count); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     check(random, clusterer);

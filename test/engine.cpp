@@ -4,74 +4,137 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <map>
+#include <utility>
 
+#include "lisco/simd.h"
+#include "lisco/view_strip.h"
 #include "verifier.h"
 
 namespace lisco_test {
 
 const std::vector<Setting>& allSettings() {
   static const std::vector<Setting> settings = [] {
-    using Mask = lisco::Parameters::Mask;
-    constexpr std::size_t kForever = std::numeric_limits<std::size_t>::max();
     std::vector<Setting> all;
-    const auto add = [&all](const std::string& name, Mask mask, std::size_t block, std::size_t open) {
+    const auto add = [&all](const std::string& name, std::size_t block, std::size_t threads = 1) {
       lisco::Parameters parameters;
-      parameters.mask = mask;
       parameters.block_columns = block;
-      parameters.open_columns = open;
+      parameters.threads = threads;
       parameters.expected_returns = 200;
-      all.push_back({name + (mask == Mask::kView ? ", view" : ", grid"), parameters});
+      all.push_back({name, parameters});
       return &all.back().parameters;
     };
-    for (const Mask mask : {Mask::kView, Mask::kGrid}) {
-      add("default", mask, 64, 16);
-      add("blocks of 16", mask, 16, 16);
-      add("each column at once", mask, 1, 1);
-      add("blocks of 3", mask, 3, 16);
-      add("open to the end", mask, 64, kForever);
-      add("column by column, open to the end", mask, 1, kForever);
-    }
-    lisco::ViewHints& finest = add("finest tiles", Mask::kView, 3, 1)->view;
-    finest.azimuth_step = 0.0F;
-    finest.elevation_step = 0.0F;
-    lisco::ViewHints& coarsest = add("coarsest tiles", Mask::kView, 16, 16)->view;
-    coarsest.azimuth_step = 10.0F;
-    coarsest.elevation_step = 10.0F;
+    add("no view", 64);
+    add("no view, blocks of 16", 16);
+    add("no view, blocks of 3", 3);
+    add("no view, each column at once", 1);
+    add("no view, no room", 64)->expected_returns = 0;
+    add("no view, sensor elsewhere", 16)->view.origin = {3.0F, -20.0F, 1.5F};
+    add("no view, two threads", 64, 2);
     const auto strip = [&add](const std::string& name, int steps, float elevation_step, bool clockwise,
-                              std::size_t block) {
-      lisco::ViewHints& view = add(name, Mask::kView, block, 16)->view;
-      view.steps_per_turn = steps;
-      view.elevation_step = elevation_step;
-      view.clockwise = clockwise;
+                              std::size_t block, std::size_t threads = 1) {
+      lisco::Parameters* const parameters = add(name, block, threads);
+      parameters->view.steps_per_turn = steps;
+      parameters->view.elevation_step = elevation_step;
+      parameters->view.clockwise = clockwise;
+      return parameters;
     };
     strip("strip of few places", 512, 0.5F, false, 64);
     strip("strip of few places, clockwise", 600, 0.1F, true, 16);
     strip("strip column by column", 512, 0.3F, false, 1);
+    strip("strip in blocks of 3", 512, 0.3F, true, 3);
     strip("strip of many places", 2000, 0.02F, true, 64);
     strip("strip of very many places", 16384, 0.01F, false, 5);
-    strip("strip, sensor elsewhere", 360, 0.05F, false, 64);
-    all.back().parameters.view.origin = {-3.0F, 2.0F, -1.0F};
-    add("sensor elsewhere", Mask::kView, 16, 16)->view.origin = {3.0F, -20.0F, 1.5F};
-    add("few slots", Mask::kGrid, 16, 16)->expected_returns = 0;
+    strip("strip, sensor elsewhere", 720, 0.1F, false, 64)->view.origin = {-3.0F, 2.0F, -1.0F};
+    strip("strip, three threads", 512, 0.3F, false, 64, 3);
+    strip("strip, all threads", 512, 0.3F, false, 16, 0);
     return all;
   }();
   return settings;
 }
 
+const std::vector<Setting>& settingsForEachLevel() {
+  static const std::vector<Setting> settings = [] {
+    std::vector<Setting> some;
+    for (const Setting& setting : allSettings())
+      if (setting.name == "no view" || setting.name == "strip of few places" || setting.name == "strip in blocks of 3")
+        some.push_back(setting);
+    return some;
+  }();
+  return settings;
+}
+
+std::uint64_t timesEffort(std::uint64_t count) {
+  const char* const effort = std::getenv("LISCO_TEST_EFFORT");
+  return effort != nullptr ? count * std::strtoull(effort, nullptr, 10) : count;
+}
+
+const std::vector<std::string>& levels() {
+  static const std::vector<std::string> all = lisco::simdLevels();
+  return all;
+}
+
+lisco::ViewHints hintsFor(int steps, float elevation_step, bool clockwise) {
+  lisco::ViewHints hints;
+  hints.steps_per_turn = steps;
+  hints.elevation_step = elevation_step;
+  hints.clockwise = clockwise;
+  return hints;
+}
+
+double nearEndOf(const lisco::ViewHints& hints) {
+  static std::map<int, lisco::ViewStrip> strips;  // to prepare one with other steps takes long
+  lisco::ViewStrip& strip = strips[hints.steps_per_turn];
+  strip.prepare(lisco::Tolerance(1.0F), hints);
+  return static_cast<double>(strip.farRange().near_end);
+}
+
+float elevationStepFor(lisco::ViewHints hints, double near_end) {
+  // Beyond what the steps allow, it goes with the square root of the density.
+  hints.elevation_step = 1e-6F;
+  const double ratio = nearEndOf(hints) / near_end;
+  return static_cast<float>(1e-6 * ratio * ratio);
+}
+
+void feed(lisco::ColumnClusterer& clusterer, Random& random, const Scan& scan) {
+  const double looks = random.chance(0.5) ? 0.1 : 0.0;
+  const std::array<std::size_t, 4> portions{1, 1 + random.below(200), 1 + random.below(200), scan.columns};
+  const std::size_t portion = random.oneOf(portions);
+  for (std::size_t first = 0; first < scan.columns; first += portion) {
+    clusterer.addColumns(std::min(portion, scan.columns - first), scan.lasers,
+                         [&](std::size_t laser, std::size_t column) { return scan.at(laser, first + column); });
+    if (portion > 10 && random.chance(looks)) clusterer.update();
+  }
+}
+
+SimdLevel::SimdLevel(const std::string& name) {
+  EXPECT_TRUE(lisco::useSimdLevel(name)) << name;
+  EXPECT_EQ(lisco::simdLevel(), name);
+}
+
+SimdLevel::~SimdLevel() {
+  EXPECT_TRUE(lisco::useSimdLevel({}));
+}
+
 Clustering clustersOf(lisco::ColumnClusterer& clusterer) {
   clusterer.update();
-  std::map<std::uint32_t, Cluster> by_head;
-  clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t head) {
-    EXPECT_LT(head, clusterer.headLimit());
+  Clustering clusters(clusterer.subclusterCount());
+  std::size_t returns = 0;
+  clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster) {
+    ASSERT_LT(subcluster, clusters.size());
     EXPECT_GT(count, 0U);
-    Cluster& group = by_head[head];
-    group.members.insert(group.members.end(), source_indices, source_indices + count);
-    group.claimed_size = clusterer.weight(head);
+    std::vector<std::uint32_t>& members = clusters[subcluster].members;
+    members.insert(members.end(), source_indices, source_indices + count);
+    returns += count;
   });
-  Clustering clusters;
-  for (auto& [head, group] : by_head) clusters.push_back(std::move(group));
+  EXPECT_EQ(returns, clusterer.returnCount());
+  for (std::uint32_t i = 0; i < clusters.size(); ++i) {
+    EXPECT_FALSE(clusters[i].members.empty()) << "subcluster " << i << " holds no return";
+    clusters[i].claimed_size = clusterer.sizeOf(i);
+  }
   return inOrder(std::move(clusters));
 }
 
@@ -88,12 +151,16 @@ bool expectExact(lisco::ColumnClusterer& clusterer, const Scan& scan, float tole
   const std::vector<Point> points = scan.points();
   const Clustering right = trueClusters(points, tolerance);
   bool all_right = true;
-  for (const Setting& setting : allSettings()) {
-    const Clustering found = cluster(clusterer, scan, tolerance, setting);
-    const std::string wrong = difference(right, found);
-    EXPECT_EQ(wrong, "") << setting.name << ", tolerance " << std::hexfloat << tolerance << std::defaultfloat << " = "
-                         << tolerance << ", " << scan.lasers << " x " << scan.columns;
+  const auto expectRight = [&](const Setting& setting) {
+    const std::string wrong = difference(right, cluster(clusterer, scan, tolerance, setting));
+    EXPECT_EQ(wrong, "") << setting.name << ", " << lisco::simdLevel() << ", tolerance " << std::hexfloat << tolerance
+                         << std::defaultfloat << " = " << tolerance << ", " << scan.lasers << " x " << scan.columns;
     all_right = all_right && wrong.empty();
+  };
+  for (const Setting& setting : allSettings()) expectRight(setting);
+  for (const std::string& name : levels()) {
+    const SimdLevel level(name);
+    for (const Setting& setting : settingsForEachLevel()) expectRight(setting);
   }
   const std::vector<std::string> violated =
       violations(points, cluster(clusterer, scan, tolerance, allSettings().front()), tolerance);

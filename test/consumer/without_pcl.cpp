@@ -19,9 +19,9 @@ int main() {
   }
   clusterer.update();
   bool right = clusterer.returnCount() == 6;
-  clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t head) {
+  clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster) {
     for (std::size_t i = 1; i < count; ++i) right = right && source_indices[i] % 2 == source_indices[0] % 2;
-    right = right && clusterer.weight(head) == 3;
+    right = right && clusterer.sizeOf(subcluster) == 3;
   });
   std::printf("lisco %s: %s\n", LISCO_VERSION, right ? "two subclusters, as expected" : "not as expected");
   return right ? 0 : 1;

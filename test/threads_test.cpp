@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+// The engine's threads: rotations large enough for them, whose subclusters are those of one thread.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "engine.h"
+#include "lisco/parallel.h"
+#include "random.h"
+#include "scans.h"
+
+namespace lisco_test {
+namespace {
+
+/// A rotation of at least as many cells as are worth threads, of which few or most are returns.
+Scan largeScan(Random& random) {
+  const std::array<std::size_t, 6> laser_choices{2, 3, 5, 16, 32, 64};
+  const std::size_t lasers = random.oneOf(laser_choices);
+  const std::size_t columns = 8192 / lasers + random.below(300);
+  const double kept = random.chance(0.7) ? random.between(0.02, 0.2) : 1.0;
+  const double lag = random.chance(0.5) ? random.between(0.0, 30.0) : 0.0;
+  const double start = random.between(0.0, 6.28);
+  const bool clockwise = random.chance(0.5);
+  const double turns = random.chance(0.7) ? 1.0 : random.between(0.5, 1.5);
+  Scan scan(columns, lasers);
+  for (std::size_t laser = 0; laser < lasers; ++laser)
+    for (std::size_t column = 0; column < columns; ++column) {
+      if (!random.chance(kept)) continue;
+      const double azimuth = start + (clockwise ? -6.283185307179586 : 6.283185307179586) * turns *
+                                         (static_cast<double>(column) + lag * static_cast<double>(laser % 4)) /
+                                         static_cast<double>(columns);
+      const double elevation = 0.2 - 0.5 * static_cast<double>(laser) / static_cast<double>(lasers);
+      double rho = 4.0 + 3.0 * std::sin(5.0 * azimuth) + random.magnitude(0.01, 3.0);
+      if (elevation < -0.01) rho = std::min(rho, -1.8 / elevation);
+      scan.set(laser, column,
+               {static_cast<float>(rho * std::cos(azimuth)), static_cast<float>(rho * std::sin(azimuth)),
+                static_cast<float>(rho * std::tan(elevation))});
+    }
+  return scan;
+}
+
+lisco::Parameters parametersFor(Random& random, const Scan& scan, std::size_t threads) {
+  lisco::Parameters parameters;
+  parameters.tolerance = static_cast<float>(random.magnitude(0.05, 0.7));
+  parameters.threads = threads;
+  if (random.chance(0.7)) {
+    parameters.view.steps_per_turn = static_cast<int>(std::clamp<std::size_t>(scan.columns, 512, 16384));
+    parameters.view.elevation_step = static_cast<float>(random.magnitude(0.005, 0.3));
+    parameters.view.clockwise = random.chance(0.5);
+  }
+  return parameters;
+}
+
+constexpr std::array<std::size_t, 7> kThreads{2, 3, 8, 0, 5, 100, 2};
+
+Clustering clustered(lisco::ColumnClusterer& clusterer, const lisco::Parameters& parameters, const Scan& scan) {
+  clusterer.begin(parameters);
+  clusterer.addColumns(scan.columns, scan.lasers,
+                       [&](std::size_t laser, std::size_t column) { return scan.at(laser, column); });
+  return clustersOf(clusterer);
+}
+
+/// The runs, in the order in which they are visited.
+std::vector<std::uint32_t> visited(lisco::ColumnClusterer& clusterer) {
+  std::vector<std::uint32_t> all;
+  clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t) {
+    all.insert(all.end(), source_indices, source_indices + count);
+  });
+  return all;
+}
+
+// One object with changing numbers of threads, more than there are lasers among them.
+TEST(Threads, GiveTheSubclustersOfOneThread) {
+  lisco::ColumnClusterer alone;
+  lisco::ColumnClusterer together;
+  for (std::uint64_t seed = 1; seed < 1 + timesEffort(60); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const Scan scan = largeScan(random);
+    lisco::Parameters parameters = parametersFor(random, scan, 1);
+    const Clustering right = clustered(alone, parameters, scan);
+    parameters.threads = random.oneOf(kThreads);
+    ASSERT_EQ(difference(right, clustered(together, parameters, scan)), "") << parameters.threads << " threads";
+    ASSERT_EQ(together.returnCount(), alone.returnCount());
+    const std::vector<std::uint32_t> order = visited(together);
+    ASSERT_EQ(order, visited(alone));
+    ASSERT_TRUE(std::is_sorted(order.begin(), order.end())) << "not laser by laser";
+    together.update();
+    ASSERT_EQ(difference(right, clustersOf(together)), "") << "updated once more";
+  }
+}
+
+TEST(Threads, EqualTheOracle) {
+  lisco::ColumnClusterer clusterer;
+  for (std::uint64_t seed = 1000; seed < 1000 + timesEffort(40); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    Scan scan = largeScan(random);
+    for (lisco::Return& cell : scan.cells)
+      if (random.chance(0.6)) cell = {0, 0, 0, cell.source_index};
+    std::vector<Point> returns;
+    std::vector<std::uint32_t> number(scan.cells.size());
+    for (const lisco::Return& cell : scan.cells) {
+      number[cell.source_index] = static_cast<std::uint32_t>(returns.size());
+      if (isValid({cell.x, cell.y, cell.z})) returns.push_back({cell.x, cell.y, cell.z});
+    }
+    const lisco::Parameters parameters = parametersFor(random, scan, random.oneOf(kThreads));
+    Clustering found = clustered(clusterer, parameters, scan);
+    for (Cluster& cluster : found)
+      for (std::uint32_t& member : cluster.members) member = number[member];
+    ASSERT_EQ(difference(trueClusters(returns, parameters.tolerance), found), "");
+  }
+}
+
+// Columns that come after those that were read together, also of more lasers, and looks in between.
+TEST(Threads, MoreColumnsMayFollow) {
+  lisco::ColumnClusterer alone;
+  lisco::ColumnClusterer together;
+  for (std::uint64_t seed = 2000; seed < 2000 + timesEffort(60); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const Scan first = largeScan(random);
+    const Scan second = largeScan(random);
+    lisco::Parameters parameters = parametersFor(random, first, random.oneOf(kThreads));
+    parameters.block_columns = random.chance(0.5) ? 64 : 1 + random.below(64);
+    const bool look_between = random.chance(0.5);
+    const bool whole = random.chance(0.4);
+    const double looks = random.chance(0.5) ? 0.02 : 0.0;
+    std::vector<Clustering> clusterings;
+    for (lisco::ColumnClusterer* clusterer : {&alone, &together}) {
+      Random own(seed);
+      if (clusterer == &alone)
+        parameters.threads = 1;
+      else
+        parameters.threads = own.oneOf(kThreads);
+      clusterer->begin(parameters);
+      clusterer->addColumns(first.columns, first.lasers,
+                            [&](std::size_t laser, std::size_t column) { return first.at(laser, column); });
+      if (look_between && clusterer == &together) clusterer->update();
+      for (std::size_t column = 0; column < second.columns;) {
+        const std::size_t count = whole ? second.columns : std::min(second.columns - column, 1 + own.below(100));
+        clusterer->addColumns(count, second.lasers, [&](std::size_t laser, std::size_t c) {
+          lisco::Return cell = second.at(laser, column + c);
+          cell.source_index += static_cast<std::uint32_t>(first.cells.size());
+          return cell;
+        });
+        column += count;
+        if (own.chance(looks) && clusterer == &together) clusterer->update();
+      }
+      clusterings.push_back(clustersOf(*clusterer));
+    }
+    ASSERT_EQ(difference(clusterings[0], clusterings[1]), "");
+    ASSERT_EQ(visited(together), visited(alone));
+  }
+}
+
+// So many returns that found their places taken that no more are placed, by one thread or by all.
+TEST(Threads, ManyLooseReturns) {
+  lisco::ColumnClusterer alone;
+  lisco::ColumnClusterer together;
+  for (std::uint64_t seed = 3000; seed < 3000 + timesEffort(12); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    constexpr std::size_t kLasers = 4;
+    Scan scan(6000, kLasers);
+    Scan later(1000, kLasers);
+    const std::size_t standing = random.below(kLasers);
+    for (Scan* one : {&scan, &later})
+      for (std::size_t laser = 0; laser < kLasers; ++laser)
+        for (std::size_t column = 0; column < one->columns; ++column) {
+          // One laser sees the same directions again and again.
+          const bool stands = laser == standing && one == &scan;
+          if (!stands && random.chance(one == &scan ? 0.95 : 0.5)) continue;
+          const double turn = static_cast<double>(stands ? column % 300 : column % 1000) / 1000.0;
+          const double azimuth = 6.283185307179586 * turn;
+          const double rho = random.between(9.0, 11.0);
+          one->set(laser, column,
+                   {static_cast<float>(rho * std::cos(azimuth)), static_cast<float>(rho * std::sin(azimuth)),
+                    static_cast<float>(0.1 * static_cast<double>(laser))});
+        }
+    lisco::Parameters parameters;
+    parameters.tolerance = 0.1F;
+    parameters.view.steps_per_turn = 1000;
+    parameters.view.elevation_step = 0.1F;
+    const bool look_between = random.chance(0.7);
+    std::vector<Clustering> clusterings;
+    for (lisco::ColumnClusterer* clusterer : {&alone, &together}) {
+      parameters.threads = clusterer == &alone ? 1 : random.oneOf(kThreads);
+      if (clusterer == &alone)
+        parameters.view.steps_per_turn = 0;
+      else
+        parameters.view.steps_per_turn = 1000;
+      clusterer->begin(parameters);
+      clusterer->addColumns(scan.columns, kLasers,
+                            [&](std::size_t laser, std::size_t column) { return scan.at(laser, column); });
+      if (look_between) clusterer->update();
+      clusterer->addColumns(later.columns, kLasers, [&](std::size_t laser, std::size_t column) {
+        lisco::Return cell = later.at(laser, column);
+        cell.source_index += static_cast<std::uint32_t>(scan.cells.size());
+        return cell;
+      });
+      clusterings.push_back(clustersOf(*clusterer));
+    }
+    ASSERT_EQ(difference(clusterings[0], clusterings[1]), "");
+  }
+}
+
+TEST(Threads, EachIsCalledOnce) {
+  EXPECT_GE(lisco::allThreads(), 1U);
+  for (const std::size_t threads : {0, 1, 2, 3, 17}) {
+    std::vector<std::atomic<int>> calls(threads);
+    lisco::inParallel(threads, [&](std::size_t thread) { ++calls.at(thread); });
+    for (const std::atomic<int>& count : calls) EXPECT_EQ(count, 1);
+  }
+}
+
+TEST(Threads, WhatOneThrowsIsThrown) {
+  std::atomic<int> finished{0};
+  EXPECT_THROW(lisco::inParallel(3,
+                                 [&](std::size_t thread) {
+                                   if (thread == 1) throw std::runtime_error("one");
+                                   ++finished;
+                                 }),
+               std::runtime_error);
+  EXPECT_EQ(finished, 2);
+}
+
+}  // namespace
+}  // namespace lisco_test
