@@ -21,7 +21,8 @@ void ColumnClusterer::begin(const Parameters& parameters) {
   }
   readings_.front().source_index.reserve(parameters.expected_returns / parameters_.threads);
   strip_.prepare(tolerance_, parameters_.view, parameters_.threads);
-  subclusters_.reset(0);
+  if (forests_.size() < parameters_.threads) forests_.resize(parameters_.threads);
+  forests_.front().reset(0);
   subcluster_sizes_.clear();
   staged_columns_ = 0;
   column_ = 0;
@@ -39,12 +40,20 @@ bool ColumnClusterer::readsInParallel(std::size_t columns, std::size_t lasers) c
          columns * lasers >= kWorthThreads;
 }
 
-/// Gives each thread some lasers, and elements for as many runs as they can have.
+/// Gives each thread some lasers, of about the same weight, and elements for as many runs as they can have.
 void ColumnClusterer::prepareReadings(std::size_t columns, std::size_t lasers) {
   threads_ = std::min(parameters_.threads, lasers);
-  subclusters_.reset(lasers * columns + Row::kColumns);
-  for (std::size_t thread = 0; thread < threads_; ++thread)
-    readings_[thread].first_element = static_cast<std::uint32_t>(lasers * thread / threads_ * columns);
+  forests_.front().reset(lasers * columns + Row::kColumns);
+  std::uint64_t all = 0;
+  for (const std::uint32_t weight : weights_) all += weight;
+  std::uint64_t sum = 0;
+  std::size_t laser = 0;
+  for (std::size_t thread = 0; thread < threads_; ++thread) {
+    readings_[thread].first_laser = laser;
+    readings_[thread].first_element = static_cast<std::uint32_t>(laser * columns);
+    while (laser < lasers && (thread + 1 == threads_ || sum < all * (thread + 1) / threads_)) sum += weights_[laser++];
+    readings_[thread].end_laser = laser;
+  }
   if (strip_.inUse()) strip_.addLasers(lasers);
 }
 
@@ -82,7 +91,7 @@ void ColumnClusterer::clusterBlock() {
 /// Links what all lasers have passed.
 void ColumnClusterer::finishBlock(std::size_t columns) {
   column_ += static_cast<std::uint32_t>(columns);
-  if (strip_.inUse()) strip_.link(subclusters_);
+  if (strip_.inUse()) strip_.link(forests_.front());
 }
 
 /// Chains the returns of one laser into runs: each a neighbour of the one before. Far ones go to their places in the
@@ -96,7 +105,7 @@ void ColumnClusterer::readRow(Reading& reading, std::size_t thread, Row& row, st
   const auto first_run = static_cast<std::uint32_t>(reading.runs.size());
   const auto first_cell = static_cast<std::uint32_t>(reading.source_index.size());
   const std::size_t last_run = first_run + static_cast<std::size_t>(__builtin_popcountll(measured.starts));
-  subclusters_.grow(reading.first_element + last_run);
+  forests_.front().grow(reading.first_element + last_run);
   reading.runs.resize(last_run);
   reading.source_index.insert(reading.source_index.end(), row.source_index, row.source_index + columns);
   reading.returns += static_cast<std::size_t>(__builtin_popcountll(measured.returns));
@@ -107,7 +116,7 @@ void ColumnClusterer::readRow(Reading& reading, std::size_t thread, Row& row, st
     const std::uint64_t after = begin == Row::kColumns - 1 ? 0 : ends & ~std::uint64_t{0} << (begin + 1);
     const std::uint32_t end = after != 0 ? static_cast<std::uint32_t>(__builtin_ctzll(after)) : Row::kColumns;
     const std::uint32_t element = reading.first_element + number;
-    subclusters_.create(element);
+    forests_.front().create(element);
     for (std::uint32_t i = begin; i < end; ++i) measured.run[i] = element;
     reading.runs[number] = {first_cell + begin, end - begin, 0};
   }
@@ -119,17 +128,37 @@ void ColumnClusterer::readRow(Reading& reading, std::size_t thread, Row& row, st
     loose = strip_.place(row, measured, laser, first_column, thread);
   }
   const std::uint64_t near = measured.returns & (~measured.only_far | loose);
-  if (near != 0) reading.voxels.add(row, measured, near, subclusters_);
+  if (near != 0) reading.voxels.add(row, measured, near, forests_.front());
+}
+
+void ColumnClusterer::linkStrip() {
+  const auto forEachReading = [this](auto&& visit) {
+    for (std::size_t thread = 0; thread < threads_; ++thread) {
+      const std::uint32_t first = readings_[thread].first_element;
+      visit(first, first + static_cast<std::uint32_t>(readings_[thread].runs.size()));
+    }
+  };
+  if (threads_ > 1)
+    inParallel(threads_, [&](std::size_t thread) {
+      if (thread == 0) return;
+      forests_[thread].reset(forests_.front().room());
+      forEachReading([&](std::uint32_t first, std::uint32_t last) {
+        for (std::uint32_t element = first; element < last; ++element) forests_[thread].create(element);
+      });
+    });
+  strip_.linkAll(forests_.data(), threads_);
+  for (std::size_t thread = 1; thread < threads_; ++thread)
+    forEachReading(
+        [&](std::uint32_t first, std::uint32_t last) { forests_.front().absorb(forests_[thread], first, last); });
 }
 
 void ColumnClusterer::update() {
   if (staged_columns_ > 0) clusterBlock();
-  subclusters_.share(threads_ > 1);
-  if (strip_.inUse()) strip_.linkAll(subclusters_, threads_);
-  subclusters_.share(false);
+  DisjointSets& subclusters = forests_.front();
+  if (strip_.inUse()) linkStrip();
   Voxels& voxels = readings_.front().voxels;
-  for (std::size_t thread = 1; thread < threads_; ++thread) voxels.absorb(readings_[thread].voxels, subclusters_);
-  voxels.link(subclusters_);
+  for (std::size_t thread = 1; thread < threads_; ++thread) voxels.absorb(readings_[thread].voxels, subclusters);
+  voxels.link(subclusters);
 
   // A head is the first element of its set.
   subcluster_sizes_.clear();
@@ -138,7 +167,7 @@ void ColumnClusterer::update() {
     for (std::size_t i = 0; i < reading.runs.size(); ++i) {
       Run& run = reading.runs[i];
       const std::uint32_t element = reading.first_element + static_cast<std::uint32_t>(i);
-      const std::uint32_t head = subclusters_.head(element);
+      const std::uint32_t head = subclusters.head(element);
       if (head == element) {
         run.subcluster = static_cast<std::uint32_t>(subcluster_sizes_.size());
         subcluster_sizes_.push_back(run.count);

@@ -84,8 +84,11 @@ Parameters ScanSurvey::judge(const std::array<float, 3>& sensor, bool organized)
         std::remainder(directionOf(pair.b, origin).azimuth - directionOf(pair.a, origin).azimuth, 2.0 * kPi) /
         static_cast<double>(pair.columns));
   const auto step = static_cast<double>(median(turns, 0.0F));
+  Sample<double> deviations;
+  for (const double turn : turns) deviations.push_back(std::fabs(turn - step));
   constexpr double kLeastStep = 1e-4;
-  if (std::fabs(step) > kLeastStep)
+  constexpr double kMostDeviation = 0.5;  // of a step, typically: else the columns are no steps of a turn
+  if (std::fabs(step) > kLeastStep && static_cast<double>(median(deviations, 0.0F)) < kMostDeviation * std::fabs(step))
     parameters.view.steps_per_turn = static_cast<int>(std::lround(2.0 * kPi / std::fabs(step)));
   parameters.view.clockwise = step < 0;
 

@@ -3,6 +3,7 @@
 #include "lisco/view_strip.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -719,9 +720,8 @@ void ViewStrip::updateElevations() {
   for (std::size_t i = count; i-- > 0;) highest_below[i] = bound = std::max(bound, highest[i]);
 }
 
-void ViewStrip::link(DisjointSets& subclusters) {
-  if (!started) return;
-  updateElevations();
+/// The end of the sectors that all lasers have passed.
+std::size_t ViewStrip::passed() const {
   std::int64_t front = std::numeric_limits<std::int64_t>::max();
   std::uint32_t column = 0;
   for (const Laser& laser : lasers)
@@ -729,27 +729,36 @@ void ViewStrip::link(DisjointSets& subclusters) {
   for (const Laser& laser : lasers)
     if (laser.next_place != kNowhere) front = std::min(front, laser.next_place + (column - laser.next_column));
   front = std::clamp<std::int64_t>(front, 0, static_cast<std::int64_t>(places));
-  const std::size_t complete = static_cast<std::size_t>(front) / kSector * kSector;
-  if (complete > linked) {
-    HWY_DYNAMIC_DISPATCH(linkPlaces)(*this, linked, complete, linking.front(), subclusters);
-    linked = complete;
-  }
+  return static_cast<std::size_t>(front) / kSector * kSector;
 }
 
-void ViewStrip::linkAll(DisjointSets& subclusters, std::size_t threads) {
+void ViewStrip::link(DisjointSets& subclusters) {
   if (!started) return;
-  link(subclusters);
+  updateElevations();
+  const std::size_t complete = passed();
+  if (complete <= linked) return;
+  HWY_DYNAMIC_DISPATCH(linkPlaces)(*this, linked, complete, linking.front(), subclusters);
+  linked = complete;
+}
+
+void ViewStrip::linkAll(DisjointSets* forests, std::size_t threads) {
+  DisjointSets& subclusters = forests[0];
+  if (!started) return;
+  updateElevations();
   const std::size_t last = end();
   if (last > linked) {
-    // Each thread has a part of the turn; what reaches into the part before is found from the later one.
+    // Threads take parts of the turn as they come; what reaches into the part before is found from the later one.
+    constexpr std::size_t kPartsPerThread = 4;
     const std::size_t sectors = (last - linked + kSector - 1) / kSector;
-    const std::size_t parts = std::clamp<std::size_t>(threads, 1, sectors);
+    const std::size_t parts = threads > 1 ? std::min(kPartsPerThread * threads, sectors) : 1;
     const auto firstOf = [&](std::size_t part) { return linked + sectors * part / parts * kSector; };
-    inParallel(parts, [&](std::size_t part) {
-      HWY_DYNAMIC_DISPATCH(linkPlaces)
-      (*this, firstOf(part), std::min(last, firstOf(part + 1)), linking[part], subclusters);
+    std::atomic<std::size_t> next{0};
+    inParallel(std::min(threads, parts), [&](std::size_t thread) {
+      for (std::size_t part = next++; part < parts; part = next++) HWY_DYNAMIC_DISPATCH(linkPlaces)
+      (*this, firstOf(part), std::min(last, firstOf(part + 1)), linking[thread], forests[thread]);
     });
   }
+  linked = std::max(linked, passed());
   HWY_DYNAMIC_DISPATCH(linkSeam)(*this, last, linking.front(), subclusters);
   for (Linking& one : linking)
     for (Sector& sector : one.sectors) sector.number = kNoSector;  // more may come there, or has come late

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -74,7 +74,6 @@ TEST(DisjointSets, ResetForgetsEverything) {
   sets.create(0);
   sets.create(1);
   sets.merge(0, 1);
-  sets.share(true);
   sets.reset(2);
   sets.create(0);
   sets.create(1);
@@ -83,68 +82,52 @@ TEST(DisjointSets, ResetForgetsEverything) {
 
 // Against a table of every element's set.
 TEST(DisjointSets, AsATableSaysAfterManyMerges) {
-  for (const bool shared : {false, true}) {
-    Random random(1);
-    lisco::DisjointSets sets;
-    std::vector<std::uint32_t> head_of(400);
-    std::iota(head_of.begin(), head_of.end(), 0U);
-    sets.reset(head_of.size());
-    for (const std::uint32_t element : head_of) sets.create(element);
-    sets.share(shared);
-    for (int step = 0; step < 1000; ++step) {
-      const auto a = static_cast<std::uint32_t>(random.below(head_of.size()));
-      const auto b = static_cast<std::uint32_t>(random.below(head_of.size()));
-      ASSERT_EQ(sets.head(a), head_of[a]);
-      ASSERT_EQ(sets.head(b), head_of[b]);
-      if (random.chance(0.6)) continue;
-      const std::uint32_t head = std::min(head_of[a], head_of[b]);
-      const std::uint32_t other = std::max(head_of[a], head_of[b]);
-      ASSERT_EQ(sets.merge(a, b), head);
-      std::replace(head_of.begin(), head_of.end(), other, head);
-    }
+  Random random(1);
+  lisco::DisjointSets sets;
+  std::vector<std::uint32_t> head_of(400);
+  std::iota(head_of.begin(), head_of.end(), 0U);
+  sets.reset(head_of.size());
+  for (const std::uint32_t element : head_of) sets.create(element);
+  for (int step = 0; step < 1000; ++step) {
+    const auto a = static_cast<std::uint32_t>(random.below(head_of.size()));
+    const auto b = static_cast<std::uint32_t>(random.below(head_of.size()));
+    ASSERT_EQ(sets.head(a), head_of[a]);
+    ASSERT_EQ(sets.head(b), head_of[b]);
+    if (random.chance(0.6)) continue;
+    const std::uint32_t head = std::min(head_of[a], head_of[b]);
+    const std::uint32_t other = std::max(head_of[a], head_of[b]);
+    ASSERT_EQ(sets.merge(a, b), head);
+    std::replace(head_of.begin(), head_of.end(), other, head);
   }
 }
 
-// Whatever the order in which threads come to merge, the sets and their heads are the same.
-TEST(DisjointSets, SharedByThreads) {
+// Merges dealt out to several forests, and absorbed by the first, give the sets of one that did all.
+TEST(DisjointSets, AbsorbsWhatOthersHaveJoined) {
   constexpr std::uint32_t kElements = 3000;
-  constexpr std::size_t kThreads = 4;
+  std::array<lisco::DisjointSets, 4> forests;
   lisco::DisjointSets alone;
-  lisco::DisjointSets shared;
   for (std::uint64_t seed = 1; seed < 60; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> merges(kElements);
     const bool long_chains = random.chance(0.5);
-    for (std::uint32_t i = 0; i < merges.size(); ++i) {
+    alone.reset(kElements);
+    for (std::uint32_t element = 0; element < kElements; ++element) alone.create(element);
+    for (lisco::DisjointSets& forest : forests) {
+      forest.reset(kElements);
+      for (std::uint32_t element = 0; element < kElements; ++element) forest.create(element);
+    }
+    for (std::uint32_t i = 0; i < kElements / 2; ++i) {
       const auto a = static_cast<std::uint32_t>(random.below(kElements));
-      merges[i] = long_chains ? std::pair{std::max(i, 1U) - 1, i}
-                              : std::pair{a, static_cast<std::uint32_t>(random.below(kElements))};
+      const auto b = long_chains ? std::max(a, 1U) - 1 : static_cast<std::uint32_t>(random.below(kElements));
+      alone.merge(a, b);
+      forests[random.below(forests.size())].merge(a, b);
     }
-    random.shuffle(merges);
-    if (random.chance(0.5)) merges.resize(merges.size() / 2);
-    for (lisco::DisjointSets* sets : {&alone, &shared}) {
-      sets->reset(kElements);
-      for (std::uint32_t element = 0; element < kElements; ++element) sets->create(element);
+    for (std::size_t i = 1; i < forests.size(); ++i) {
+      forests[0].absorb(forests[i], 0, kElements / 3);  // in parts, as the engine does
+      forests[0].absorb(forests[i], kElements / 3, kElements);
     }
-    for (const auto& [a, b] : merges) alone.merge(a, b);
-    shared.share(true);
-    std::vector<std::string> wrong(kThreads);
-    std::vector<std::thread> threads;
-    for (std::size_t thread = 0; thread < kThreads; ++thread)
-      threads.emplace_back([&, thread] {
-        // Each merges all, from another beginning.
-        for (std::size_t i = 0; i < merges.size(); ++i) {
-          const auto& [a, b] = merges[(i + thread * merges.size() / kThreads) % merges.size()];
-          if (shared.merge(a, b) > std::min(a, b)) wrong[thread] = "a head is no smallest element";
-          if (shared.head(a) > a) wrong[thread] = "a head is above its element";
-        }
-      });
-    for (std::thread& thread : threads) thread.join();
-    shared.share(false);
-    for (const std::string& message : wrong) ASSERT_EQ(message, "");
     for (std::uint32_t element = 0; element < kElements; ++element)
-      ASSERT_EQ(shared.head(element), alone.head(element)) << element;
+      ASSERT_EQ(forests[0].head(element), alone.head(element)) << element;
   }
 }
 

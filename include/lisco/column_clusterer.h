@@ -100,8 +100,9 @@ class ColumnClusterer {
   };
   /// What one thread has read.
   struct Reading {
-    std::uint32_t first_element = 0;          ///< run i is element first_element + i
-    std::vector<std::uint32_t> source_index;  ///< of each cell of the rows with returns
+    std::size_t first_laser = 0, end_laser = 0;  ///< its part of a rotation that is read in parallel
+    std::uint32_t first_element = 0;             ///< run i is element first_element + i
+    std::vector<std::uint32_t> source_index;     ///< of each cell of the rows with returns
     std::size_t returns = 0;
     std::vector<Run> runs;
     std::vector<RowRuns> rows;
@@ -112,6 +113,7 @@ class ColumnClusterer {
 
   void clusterBlock();
   void finishBlock(std::size_t columns);
+  void linkStrip();
   void readRow(Reading& reading, std::size_t thread, Row& row, std::size_t laser, std::uint32_t first_column,
                std::size_t columns);
   void startStrip(Reading& reading, Row& row, std::uint32_t first_column, std::size_t columns);
@@ -126,11 +128,14 @@ class ColumnClusterer {
 
   Parameters parameters_;
   Tolerance tolerance_;
-  ViewStrip strip_;                ///< far returns
-  DisjointSets subclusters_;       ///< of runs
-  std::vector<Reading> readings_;  ///< one for each thread; near returns are in their voxels
-  std::size_t threads_ = 1;        ///< that have read
-  std::vector<Row> staged_;        ///< by laser: columns that wait for their block to be complete
+  ViewStrip strip_;                    ///< far returns
+  std::vector<DisjointSets> forests_;  ///< of runs: the subclusters, and one for each further thread that links
+  static constexpr std::uint32_t kReturnWeight = 4;  ///< of the work of reading
+  static constexpr std::uint32_t kCellWeight = 1;
+  std::vector<std::uint32_t> weights_;  ///< of the lasers
+  std::vector<Reading> readings_;       ///< one for each thread; near returns are in their voxels
+  std::size_t threads_ = 1;             ///< that have read
+  std::vector<Row> staged_;             ///< by laser: columns that wait for their block to be complete
   std::size_t staged_columns_ = 0;
   std::uint32_t column_ = 0;  ///< number of columns added
   std::vector<std::uint32_t> subcluster_sizes_;
@@ -160,6 +165,13 @@ void ColumnClusterer::fillRow(Row& row, std::size_t at, std::size_t laser, std::
 template <typename CellAt>
 void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt&& cell_at) {
   if (readsInParallel(columns, lasers)) {
+    weights_.assign(lasers, 0);
+    constexpr std::size_t kSampled = 16;  // one column of so many
+    for (std::size_t laser = 0; laser < lasers; ++laser)
+      for (std::size_t column = 0; column < columns; column += kSampled) {
+        const Return cell = cell_at(laser, column);
+        weights_[laser] += isReturn(cell.x, cell.y, cell.z) ? kReturnWeight : kCellWeight;
+      }
     prepareReadings(columns, lasers);
     Reading& first_reading = readings_.front();
     for (std::size_t first = 0; first < columns && strip_.inUse() && !strip_.hasStarted(); first += Row::kColumns)
@@ -170,7 +182,7 @@ void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt
       }
     inParallel(threads_, [&](std::size_t thread) {
       Reading& reading = readings_[thread];
-      for (std::size_t laser = lasers * thread / threads_; laser < lasers * (thread + 1) / threads_; ++laser)
+      for (std::size_t laser = reading.first_laser; laser < reading.end_laser; ++laser)
         for (std::size_t first = 0; first < columns; first += Row::kColumns) {
           const std::size_t count = std::min(columns - first, Row::kColumns);
           fillRow(reading.row, 0, laser, first, count, cell_at);

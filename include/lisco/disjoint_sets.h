@@ -12,15 +12,11 @@ namespace lisco {
 /// The paper's subclusters and their heads (section IV, createH / getH / merge) as a disjoint-set forest (Galler and
 /// Fischer 1964): the head of a set is its element with the lowest number, so that which element is the head does not
 /// depend on the order of the merges, and paths are halved on the way (van Leeuwen and van der Weide 1977).
-///
-/// While it is shared, any number of threads may call head () and merge () at once: a head becomes another's child by
-/// one compare-and-swap (Anderson and Woll 1991), and an element's parent only ever moves towards its head.
 class DisjointSets {
  public:
   /// Forgets all elements and makes room for so many. Keeps its memory.
   void reset(std::size_t room) {
     if (parents_.size() < room) parents_.resize(room);
-    shared_ = false;
   }
   std::size_t room() const { return parents_.size(); }
 
@@ -31,15 +27,12 @@ class DisjointSets {
     if (parents_.size() < room) parents_.resize(room + room / 2);
   }
 
-  /// Whether several threads are at work.
-  void share(bool shared) { shared_ = shared; }
-
   /// getH: the head of the set that holds the element.
   std::uint32_t head(std::uint32_t element) {
-    std::uint32_t parent = load(element);
+    std::uint32_t parent = parents_[element];
     while (parent != element) {
-      const std::uint32_t grandparent = load(parent);
-      if (grandparent != parent) store(element, grandparent);
+      const std::uint32_t grandparent = parents_[parent];
+      parents_[element] = grandparent;
       element = parent;
       parent = grandparent;
     }
@@ -48,28 +41,21 @@ class DisjointSets {
 
   /// merge: joins the sets of two elements. \return their head now
   std::uint32_t merge(std::uint32_t a, std::uint32_t b) {
-    for (;;) {
-      a = head(a);
-      b = head(b);
-      if (a == b) return a;
-      if (a > b) std::swap(a, b);
-      if (!shared_) {
-        store(b, a);
-        return a;
-      }
-      std::uint32_t expected = b;
-      if (__atomic_compare_exchange_n(&parents_[b], &expected, a, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) return a;
-    }
+    a = head(a);
+    b = head(b);
+    if (a > b) std::swap(a, b);
+    parents_[b] = a;
+    return a;
+  }
+
+  /// Joins what another forest of the same elements has joined, for elements first..last-1.
+  void absorb(const DisjointSets& other, std::uint32_t first, std::uint32_t last) {
+    for (std::uint32_t element = first; element < last; ++element)
+      if (other.parents_[element] != element) merge(element, other.parents_[element]);
   }
 
  private:
-  std::uint32_t load(std::uint32_t element) const { return __atomic_load_n(&parents_[element], __ATOMIC_RELAXED); }
-  void store(std::uint32_t element, std::uint32_t parent) {
-    __atomic_store_n(&parents_[element], parent, __ATOMIC_RELAXED);
-  }
-
   std::vector<std::uint32_t> parents_;
-  bool shared_ = false;
 };
 
 }  // namespace lisco

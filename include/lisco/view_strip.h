@@ -151,13 +151,17 @@ class ViewStrip : private StripData {
   /// Compares what has come since the last call, as far as all lasers have passed it.
   void link(DisjointSets& subclusters);
   /// Compares all that has not been compared, the seam included. More returns may follow.
-  /// \param threads not more than prepare () was told
-  void linkAll(DisjointSets& subclusters, std::size_t threads = 1);
+  void linkAll(DisjointSets& subclusters) { linkAll(&subclusters, 1); }
+  /// The same by several threads, not more than prepare () was told. Each joins in a forest of its own, so that none
+  /// waits for another's memory.
+  /// \param forests the first holds what has been joined before; the others of the same elements are to be absorbed by it
+  void linkAll(DisjointSets* forests, std::size_t threads);
 
  private:
   void updateElevations();
   void search(const Loose& loose, DisjointSets& subclusters) const;
   std::size_t end() const;
+  std::size_t passed() const;
 };
 
 }  // namespace lisco
