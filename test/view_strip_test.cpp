@@ -12,6 +12,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,6 +41,7 @@ class Probe {
     hints_ = hints;
     tolerance_ = lisco::Tolerance(tolerance);
     threads_ = threads;
+    if (forests_.size() < threads) throw std::logic_error("too many threads");
     lasers_ = 0;
     points_.clear();
     subclusters_.reset(0);
@@ -81,9 +83,13 @@ class Probe {
 
   void link() { strip_.link(subclusters_); }
   void linkAll() {
-    subclusters_.share(threads_ > 1);
-    strip_.linkAll(subclusters_, threads_);
-    subclusters_.share(false);
+    const auto elements = static_cast<std::uint32_t>(points_.size());
+    for (std::size_t thread = 1; thread < threads_; ++thread) {
+      forests_[thread].reset(elements);
+      for (std::uint32_t element = 0; element < elements; ++element) forests_[thread].create(element);
+    }
+    strip_.linkAll(forests_.data(), threads_);
+    for (std::size_t thread = 1; thread < threads_; ++thread) subclusters_.absorb(forests_[thread], 0, elements);
   }
   bool joined(std::uint32_t a, std::uint32_t b) { return subclusters_.head(a) == subclusters_.head(b); }
   bool neighbours(std::size_t a, std::size_t b, float tolerance) const {
@@ -128,7 +134,8 @@ class Probe {
   lisco::ViewStrip strip_;
   lisco::ViewHints hints_;
   lisco::Tolerance tolerance_;
-  lisco::DisjointSets subclusters_;
+  std::vector<lisco::DisjointSets> forests_ = std::vector<lisco::DisjointSets>(8);
+  lisco::DisjointSets& subclusters_ = forests_.front();
   std::size_t threads_ = 1;
   std::size_t lasers_ = 0;
   lisco::Row row_{};
