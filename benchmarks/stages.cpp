@@ -258,7 +258,7 @@ class StagesTable : public Table {
   StagesTable() : best_(lisco::simdLevels().front()), whole_(variantOf(best_, 1)) {}
 
   void printTitles() override {
-    std::printf("%s thread, 1 of them; milliseconds, +- in percent\n%s", best_.c_str(), Case::titles().c_str());
+    std::printf("one thread, %s; milliseconds, +- in percent\n%s", best_.c_str(), Case::titles().c_str());
     for (const char* stage : kStageNames) std::printf(" %8s   +-", stage);
     std::printf(" %8s   +- %8s   +-\n", "sum", "extract");
   }
@@ -327,8 +327,8 @@ class ThreadsTable : public Table {
   }
 
   void printTitles() override {
-    std::printf("one thread; milliseconds, +- in percent, and how many times as long as %s\n%s",
-                levels_.front().c_str(), Case::titles().c_str());
+    std::printf("one thread; milliseconds, +- in percent, ratio to %s\n%s", levels_.front().c_str(),
+                Case::titles().c_str());
     for (std::size_t i = 0; i < levels_.size(); ++i)
       std::printf(" %8s   +-%s", levels_[i].c_str(), i == 0 ? "" : "  ratio");
     std::printf("\n");
@@ -370,10 +370,10 @@ class ThreadsTable : public Table {
   void printEnd() override {
     if (thread_rows_.empty()) return;
     printMeans(false);
-    std::printf("\n%s; milliseconds, +- in percent, and how many times as fast as one thread\n%s %8s   +-",
-                levels_.front().c_str(), Case::titles().c_str(), "1 thread");
+    std::printf("\n%s; milliseconds, +- in percent, ratio of one thread to more\n%s %8s   +-", levels_.front().c_str(),
+                Case::titles().c_str(), "1 thread");
     for (const Variant& variant : variants_)
-      if (variant.threads > 1) std::printf(" %8u   +-  ratio", variant.threads);
+      if (variant.threads > 1) std::printf(" %8s   +-  ratio", formatted("%u thr.", variant.threads).c_str());
     std::printf("\n%s", thread_rows_.c_str());
     printMeans(true);
   }
@@ -391,12 +391,11 @@ class ThreadsTable : public Table {
   }
 
   void printMeans(bool of_threads) const {
-    std::printf(
-        "%-57s",
-        formatted("geometric mean of %zu cases", variants_.size() > 1 ? variants_.back().ratios.size() : 0).c_str());
+    const std::size_t cases = variants_.back().ratios.size();
+    std::printf("%-58s", formatted("geometric mean of %zu cases", cases).c_str());
     for (const Variant& variant : variants_)
       if (&variant != &variants_.front() && (variant.threads > 1) == of_threads)
-        std::printf("               %6.2f", geometricMean(variant.ratios));
+        std::printf("%21.2f", geometricMean(variant.ratios));
     std::printf("\n");
   }
 
