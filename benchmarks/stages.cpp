@@ -305,7 +305,7 @@ class StagesTable : public Table {
   void printEnd() override {
     if (cases_ == 0) return;
     std::printf("%-44s", formatted("mean share of the sum in %zu cases", cases_).c_str());
-    for (const double share : shares_) std::printf(" %7.1f%%     ", 100 * share / static_cast<double>(cases_));
+    for (const double share : shares_) std::printf("%13.1f%%", 100 * share / static_cast<double>(cases_));
     std::printf("\n");
   }
 
