@@ -6,12 +6,12 @@
 #
 #   benchmarks/suite.sh [--runs N] [SECTION...]     --runs: timed runs of each rival (default 5)
 #
-# Sections: real vehicle worst growth memory
+# Sections: real vehicle worst growth memory threads stages
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/benchmarks/tools.sh"
 
-all_sections=(real vehicle worst growth memory)
+all_sections=(real vehicle worst growth memory threads stages)
 runs=5
 sections=()
 while [ $# -gt 0 ]; do
@@ -135,8 +135,19 @@ measure_memory() {
     code_block <"$out/memory.table" | replace_section "$document" "memory" && cat "$out/memory.table"
 }
 
+# measure_engine TABLE: that table of engine_stages, whose runs are short, and thus many.
+measure_engine() {
+  local table=$1
+  report "$out/$table.txt" "$build/benchmarks/engine_stages" --table "$table" --runs $((4 * runs)) --tolerance 0.1,0.4,1 \
+    "${ground[@]}" "${rotating[@]}" &&
+    code_block <"$out/$table.txt" | replace_section "$document" "$table" && cat "$out/$table.txt"
+}
+
+measure_threads() { measure_engine threads; }
+measure_stages() { measure_engine stages; }
+
 # More sections: a function measure_NAME here, NAME in `all_sections` and in the head of this file, and in doc/benchmarks.md a place
-# for the table. The places `threads` and `stages` are there already.
+# for the table.
 
 failed=()
 for section in "${sections[@]}"; do

@@ -119,9 +119,10 @@ constexpr const char* kMeanChart = "time_over_tolerance.png";
 
 }  // namespace
 
-std::string describeRun(const CompareSettings& settings) {
-  std::string text = formatted("lisco %s, %s, %s with %u threads, of which 1 is used\n", LISCO_VERSION, kCompiler,
+std::string describeRun(const CompareSettings& settings, unsigned threads) {
+  std::string text = formatted("lisco %s, %s, %s with %u threads, of which ", LISCO_VERSION, kCompiler,
                                processor().c_str(), std::thread::hardware_concurrency());
+  text += threads == 1 ? "1 is used\n" : formatted("up to %u are used\n", threads);
   text += std::string("against PCL ") + PCL_VERSION_PRETTY + "; built as " + kBuild + "\n";
 #ifndef NDEBUG
   text += "not a release build: its times say nothing\n";

@@ -11,7 +11,8 @@
 namespace lisco_apps {
 
 /// Version, compiler, processor and settings: what a figure means nothing without.
-std::string describeRun(const CompareSettings& settings);
+/// \param threads the most that anything of it uses
+std::string describeRun(const CompareSettings& settings, unsigned threads = 1);
 
 /// The tables for people: one scan's heading, one tolerance's rivals, and what all of it comes to.
 std::string headingOf(const InputResult& input, const CompareSettings& settings);

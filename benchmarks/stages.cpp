@@ -1,0 +1,490 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+//
+// Where an extraction's time goes: what each stage takes, and what vector instructions and threads save.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <omp.h>
+
+#include <pcl/segmentation/extract_clusters.h>  // comparePointClusters
+#include <pcl/segmentation/lisco_cluster_extraction.h>
+
+#include "cloud_file.h"
+#include "compare/comparison.h"
+#include "compare/report.h"
+#include "compare/text.h"
+#include "lisco/column_clusterer.h"
+#include "lisco/parallel.h"
+#include "lisco/scan_survey.h"
+#include "lisco/simd.h"
+#include "options.h"
+#include "output_file.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+namespace po = boost::program_options;
+using namespace lisco_apps;
+
+constexpr const char* kSignature = "input,rows,columns,returns,ground_z,tolerance,min_size,clusters,stage,level";
+
+enum Stage : std::size_t { kSurvey, kBegin, kRead, kUpdate, kOutput, kFree, kStages };
+constexpr std::array<const char*, kStages> kStageNames{"survey", "begin", "read", "update", "output", "free"};
+
+/// pcl::LiscoClusterExtraction::extract () of a whole cloud by the engine's own calls, each of them timed.
+class StagedExtraction {
+ public:
+  void extract(const Problem& problem, Clusters& clusters) {
+    const RivalCloud& cloud = *problem.cloud;
+    const std::size_t lasers = std::max<std::size_t>(1, cloud.height);
+    const std::size_t columns = cloud.size() / lasers;
+    const std::array<float, 3> sensor{cloud.sensor_origin_[0], cloud.sensor_origin_[1], cloud.sensor_origin_[2]};
+    const RivalPoint* const points = cloud.points.data();
+    const auto cell_at = [points, columns](std::size_t laser, std::size_t column) {
+      const std::size_t point = laser * columns + column;
+      return lisco::Return{points[point].x, points[point].y, points[point].z, static_cast<std::uint32_t>(point)};
+    };
+
+    latest_ = Clock::now();
+    lisco::Parameters parameters = lisco::surveyScan(columns, lasers, sensor, cell_at);
+    finish(kSurvey);
+    parameters.tolerance = static_cast<float>(problem.tolerance);
+    clusterer_.begin(parameters);
+    finish(kBegin);
+    clusterer_.addColumns(columns, lasers, cell_at);
+    finish(kRead);
+    clusterer_.update();
+    finish(kUpdate);
+    collect(problem, clusters);
+    std::sort(clusters.rbegin(), clusters.rend(), pcl::comparePointClusters);
+    finish(kOutput);
+  }
+
+  /// Milliseconds of each stage of one extraction.
+  std::array<double, kStages> time(const Problem& problem) {
+    {
+      Clusters clusters;
+      extract(problem, clusters);
+    }
+    finish(kFree);
+    return times_;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void finish(Stage stage) {
+    const Clock::time_point now = Clock::now();
+    times_[stage] = std::chrono::duration<double, std::milli>(now - latest_).count();
+    latest_ = now;
+  }
+
+  /// As LiscoCloudClusterer::collect () does it.
+  void collect(const Problem& problem, Clusters& clusters) {
+    constexpr std::uint32_t kUndecided = ~std::uint32_t{0};
+    constexpr std::uint32_t kNoCluster = kUndecided - 1;
+    cluster_of_subcluster_.assign(clusterer_.subclusterCount(), kUndecided);
+    clusterer_.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
+      std::uint32_t& cluster = cluster_of_subcluster_[subcluster];
+      if (cluster == kUndecided) {
+        const std::uint32_t size = clusterer_.sizeOf(subcluster);
+        const bool wanted = size >= problem.min_size && size <= problem.max_size;
+        cluster = wanted ? static_cast<std::uint32_t>(clusters.size()) : kNoCluster;
+        if (wanted) {
+          clusters.emplace_back();
+          clusters.back().header = problem.cloud->header;
+          clusters.back().indices.reserve(size);
+        }
+      }
+      if (cluster == kNoCluster) return;
+      pcl::Indices& members = clusters[cluster].indices;
+      members.insert(members.end(), cells, cells + count);
+    });
+  }
+
+  lisco::ColumnClusterer clusterer_;
+  std::vector<std::uint32_t> cluster_of_subcluster_;
+  Clock::time_point latest_;
+  std::array<double, kStages> times_{};
+};
+
+/// The whole extraction at a level of vector instructions ("": the best) with so many threads.
+Rival variantOf(const std::string& level, unsigned threads) {
+  Rival rival;
+  rival.key = level + "," + std::to_string(threads);
+  rival.title = level + " with " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+  const auto extraction = std::make_shared<pcl::LiscoClusterExtraction<RivalPoint>>();
+  extraction->setNumberOfThreads(threads);
+  rival.extract = [extraction, level](const Problem& problem, Clusters& clusters) {
+    lisco::useSimdLevel(level);
+    extraction->setInputCloud(problem.cloud);
+    extraction->setClusterTolerance(problem.tolerance);
+    extraction->setMinClusterSize(problem.min_size);
+    extraction->setMaxClusterSize(problem.max_size);
+    extraction->extract(clusters);
+  };
+  return rival;
+}
+
+struct Options {
+  std::vector<std::string> inputs;
+  bool threads = false;  ///< the tables of levels and threads, not that of the stages
+  std::vector<double> tolerances;
+  unsigned min_size = 10;
+  unsigned runs = 20;
+  GroundHeights ground;
+  fs::path csv;
+};
+
+/// \return false if there is nothing to do but to print help or version, which has been done
+bool parse(int argc, char** argv, Options& options) {
+  po::options_description shown(
+      "Usage: engine_stages SCAN-OR-FOLDER... [options]\n\n"
+      "Where the time of pcl::LiscoClusterExtraction goes. One thread, best vector instructions, milliseconds:\n"
+      "  survey   looking at about a hundred cells: where the sensor stands, and its steps\n"
+      "  begin    making room for a rotation\n"
+      "  read     reading all columns, and linking what all lasers have passed\n"
+      "  update   linking the rest: last columns, seam, near returns; numbering the subclusters\n"
+      "  output   writing and sorting PCL's clusters\n"
+      "  free     giving back their memory\n"
+      "  sum      of these\n"
+      "  extract  the whole call of extract (), memory given back\n"
+      "or, with --table threads, extract () with each level of vector instructions that the processor has, and with 1, "
+      "2\nand all threads.\n"
+      "They run in turn. Each runs twice in its turn, of which the second run counts, and +- is half the distance of "
+      "the\nquartiles in percent of the median.\n\n"
+      "Exit code: 1 if any clusters are not those of EuclideanClusterExtraction, 2 on bad input or usage (1 goes "
+      "before 2).\n\n"
+      "Options");
+  std::string table = "stages";
+  std::string tolerances = "0.4";
+  std::string min_size = "10";
+  std::string runs = "20";
+  std::vector<std::string> ground;
+  std::string csv;
+  // clang-format off
+  shown.add_options()
+    ("table", po::value<std::string>(&table)->value_name("NAME"), "stages (default) or threads")
+    ("tolerance,t", po::value<std::string>(&tolerances)->value_name("M[,M...]"), "metres (default 0.4)")
+    ("min-size", po::value<std::string>(&min_size)->value_name("N"), "least returns of a cluster (default 10)")
+    ("runs", po::value<std::string>(&runs)->value_name("N"), "timed runs of each (default 20)")
+    ("ground-z", po::value<std::vector<std::string>>(&ground)->value_name("M"),
+     "leave out returns below this height in metres; NAME=M: of the input of this name only")
+    ("csv", po::value<std::string>(&csv)->value_name("FILE"), "write a row per input, tolerance and what was timed");
+  // clang-format on
+  po::variables_map given;
+  if (!readCommandLine(argc, argv, "engine_stages", shown, &options.inputs, given)) return false;
+  if (options.inputs.empty()) throw std::runtime_error("no input; see --help");
+  if (table != "stages" && table != "threads")
+    throw std::runtime_error("--table must be stages or threads, not '" + table + "'");
+  options.threads = table == "threads";
+  for (const std::string& item : itemsOf(tolerances)) {
+    options.tolerances.push_back(numberOf(item, "--tolerance"));
+    if (!(options.tolerances.back() > 0)) throw std::runtime_error("--tolerance must be positive, not '" + item + "'");
+  }
+  options.min_size = countOf(min_size, "--min-size", 1);
+  options.runs = countOf(runs, "--runs", 1);
+  options.ground = GroundHeights(ground);
+  if (given.count("csv") != 0 && csv.empty()) throw std::runtime_error("--csv is empty");
+  options.csv = csv;
+  return true;
+}
+
+/// "   1.234   5%": median and half the distance of the quartiles.
+std::string timed(const std::vector<double>& runs) {
+  const double middle = median(runs);
+  return formatted(" %8.3f %3.0f%%", middle, 50 * (quantile(runs, 0.75) - quantile(runs, 0.25)) / middle);
+}
+
+/// What both tables have in common: an input at a tolerance.
+struct Case {
+  std::string name;
+  float ground_z = 0;
+  Problem problem;
+  Clusters expected;
+
+  std::string head() const {
+    return formatted("%-20s %8zu %5.2f %8zu", name.c_str(), problem.returns->size(), problem.tolerance,
+                     expected.size());
+  }
+  static std::string titles() { return formatted("%-20s %8s %5s %8s", "scan", "returns", "eps", "clusters"); }
+
+  /// Whether a rival finds PCL's clusters; says on stderr where it does not.
+  bool agrees(const Rival& rival) const {
+    Clusters found;
+    rival.extract(problem, found);
+    const Difference difference = differenceOf(problem, referenceRival(), expected, rival, found);
+    if (!difference.identical)
+      std::fprintf(stderr, "%s at %g m: %s differs from PCL\n%s", name.c_str(), problem.tolerance, rival.title.c_str(),
+                   difference.details.c_str());
+    return difference.identical;
+  }
+
+  std::string csv(const std::string& stage, const std::string& level, unsigned threads,
+                  const std::vector<double>& runs) const {
+    return formatted("\"%s\",%u,%u,%zu,%g,%g,%u,%zu,%s,%s,%u,%zu,%.6g,%.6g,%.6g,%.6g\n", name.c_str(),
+                     problem.cloud->height, problem.cloud->width, problem.returns->size(),
+                     static_cast<double>(ground_z), problem.tolerance, problem.min_size, expected.size(), stage.c_str(),
+                     level.c_str(), threads, runs.size(), median(runs), *std::min_element(runs.begin(), runs.end()),
+                     quantile(runs, 0.25), quantile(runs, 0.75));
+  }
+};
+
+/// One of the program's tables, or two that are measured together.
+class Table {
+ public:
+  virtual ~Table() = default;
+  virtual void printTitles() = 0;
+  /// Prints the row of a case. \return false, and nothing is timed, if any clusters are not PCL's
+  virtual bool measure(const Case& one, unsigned runs, std::string& csv) = 0;
+  virtual void printEnd() = 0;
+};
+
+class StagesTable : public Table {
+ public:
+  StagesTable() : best_(lisco::simdLevels().front()), whole_(variantOf(best_, 1)) {}
+
+  void printTitles() override {
+    std::printf("one thread, %s; milliseconds, +- in percent\n%s", best_.c_str(), Case::titles().c_str());
+    for (const char* stage : kStageNames) std::printf(" %8s   +-", stage);
+    std::printf(" %8s   +- %8s   +-\n", "sum", "extract");
+  }
+
+  bool measure(const Case& one, unsigned runs, std::string& csv) override {
+    Rival staged;
+    staged.key = staged.title = "stages";
+    staged.extract = [this](const Problem& problem, Clusters& clusters) { stages_.extract(problem, clusters); };
+    // Both, even if the first is wrong.
+    const bool whole_agrees = one.agrees(whole_);
+    if (!one.agrees(staged) || !whole_agrees) return false;
+
+    std::array<std::vector<double>, kStages> times;
+    std::vector<double> sums, wholes;
+    for (unsigned run = 0; run < runs; ++run) {
+      stages_.time(one.problem);  // the other's run has displaced its memory from the caches
+      const std::array<double, kStages> now = stages_.time(one.problem);
+      double sum = 0;
+      for (std::size_t stage = 0; stage < kStages; ++stage) {
+        times[stage].push_back(now[stage]);
+        sum += now[stage];
+      }
+      sums.push_back(sum);
+      const auto extract = [&] {
+        Clusters clusters;
+        whole_.extract(one.problem, clusters);
+      };
+      extract();
+      wholes.push_back(millisecondsOf(extract));
+    }
+
+    std::string row = one.head();
+    for (std::size_t stage = 0; stage < kStages; ++stage) {
+      row += timed(times[stage]);
+      shares_[stage] += median(times[stage]) / median(sums);
+      csv += one.csv(kStageNames[stage], best_, 1, times[stage]);
+    }
+    ++cases_;
+    csv += one.csv("sum", best_, 1, sums) + one.csv("extract", best_, 1, wholes);
+    std::printf("%s\n", (row + timed(sums) + timed(wholes)).c_str());
+    return true;
+  }
+
+  void printEnd() override {
+    if (cases_ == 0) return;
+    std::printf("%-44s", formatted("mean share of the sum in %zu cases", cases_).c_str());
+    for (const double share : shares_) std::printf("%13.1f%%", 100 * share / static_cast<double>(cases_));
+    std::printf("\n");
+  }
+
+ private:
+  std::string best_;
+  Rival whole_;
+  StagedExtraction stages_;
+  std::array<double, kStages> shares_{};
+  std::size_t cases_ = 0;
+};
+
+/// The rows of the levels are printed as they come, those of the threads below them all.
+class ThreadsTable : public Table {
+ public:
+  explicit ThreadsTable(const std::vector<unsigned>& threads) : levels_(lisco::simdLevels()) {
+    for (const std::string& level : levels_) add(level, 1);
+    for (const unsigned count : threads)
+      if (count > 1) add(levels_.front(), count);
+  }
+
+  void printTitles() override {
+    std::printf("one thread; milliseconds, +- in percent, ratio to %s\n%s", levels_.front().c_str(),
+                Case::titles().c_str());
+    for (std::size_t i = 0; i < levels_.size(); ++i)
+      std::printf(" %8s   +-%s", levels_[i].c_str(), i == 0 ? "" : "  ratio");
+    std::printf("\n");
+  }
+
+  bool measure(const Case& one, unsigned runs, std::string& csv) override {
+    bool agree = true;
+    for (const Variant& variant : variants_) agree = one.agrees(variant.rival) && agree;
+    if (!agree) return false;
+
+    std::vector<Contestant> contestants;
+    for (const Variant& variant : variants_)
+      contestants.push_back({[&one, &variant] {
+                               Clusters clusters;
+                               variant.rival.extract(one.problem, clusters);
+                             },
+                             0, runs});
+    // OpenMP's threads spin for some milliseconds before they sleep.
+    const std::vector<Times> times = timeInTurn(
+        contestants, [](std::size_t, std::size_t) { std::this_thread::sleep_for(std::chrono::milliseconds(20)); });
+
+    const double best = median(times.front().runs);
+    std::string level_row = one.head() + timed(times.front().runs);
+    std::string thread_row = level_row;
+    for (std::size_t i = 0; i < variants_.size(); ++i) {
+      const Variant& variant = variants_[i];
+      csv += one.csv("extract", variant.level, variant.threads, times[i].runs);
+      if (i == 0) continue;
+      const double time = median(times[i].runs);
+      const double ratio = variant.threads == 1 ? time / best : best / time;
+      variants_[i].ratios.push_back(ratio);
+      (variant.threads == 1 ? level_row : thread_row) += timed(times[i].runs) + formatted(" %6.2f", ratio);
+    }
+    std::printf("%s\n", level_row.c_str());
+    thread_rows_ += thread_row + "\n";
+    return true;
+  }
+
+  void printEnd() override {
+    if (thread_rows_.empty()) return;
+    printMeans(false);
+    std::printf("\n%s; milliseconds, +- in percent, ratio of one thread to more\n%s %8s   +-", levels_.front().c_str(),
+                Case::titles().c_str(), "1 thread");
+    for (const Variant& variant : variants_)
+      if (variant.threads > 1) std::printf(" %8s   +-  ratio", formatted("%u thr.", variant.threads).c_str());
+    std::printf("\n%s", thread_rows_.c_str());
+    printMeans(true);
+  }
+
+ private:
+  struct Variant {
+    std::string level;
+    unsigned threads = 1;
+    Rival rival{};
+    std::vector<double> ratios{};  ///< of each case, to the first variant
+  };
+
+  void add(const std::string& level, unsigned threads) {
+    variants_.push_back({level, threads, variantOf(level, threads)});
+  }
+
+  void printMeans(bool of_threads) const {
+    const std::size_t cases = variants_.back().ratios.size();
+    std::printf("%-58s", formatted("geometric mean of %zu cases", cases).c_str());
+    for (const Variant& variant : variants_)
+      if (&variant != &variants_.front() && (variant.threads > 1) == of_threads)
+        std::printf("%21.2f", geometricMean(variant.ratios));
+    std::printf("\n");
+  }
+
+  std::vector<std::string> levels_;
+  std::vector<Variant> variants_;  ///< the first: best level, one thread
+  std::string thread_rows_;
+};
+
+/// \return false if any clusters are not PCL's
+bool measureFile(const fs::path& file, const std::string& name, const Options& options, Table& table,
+                 std::string& csv) {
+  Case one;
+  one.name = name;
+  one.ground_z = options.ground.of(file.stem().string());
+  const Cloud::Ptr cloud = readCloudFile(file);
+  ComparedScan scan;
+  try {
+    scan = prepareScan(*cloud, {}, one.ground_z, false);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(file.string() + ": " + error.what());
+  }
+  one.problem.cloud = scan.cloud;
+  one.problem.returns = scan.returns;
+  one.problem.min_size = options.min_size;
+  bool good = true;
+  for (const double tolerance : options.tolerances) {
+    one.problem.tolerance = tolerance;
+    one.expected.clear();
+    referenceRival().extract(one.problem, one.expected);
+    if (!table.measure(one, options.runs, csv)) {
+      std::printf("%s  NOT PCL's clusters\n", one.head().c_str());
+      good = false;
+    }
+    std::fflush(stdout);
+  }
+  return good;
+}
+
+int run(const Options& options) {
+  std::vector<std::string> failures;
+  const std::vector<fs::path> files = expandInputs(options.inputs, failures);
+  const std::vector<std::string> names = namesOf(files);
+  if (!options.csv.empty()) checkMayWrite(options.csv, kSignature);
+  std::string csv = std::string(kSignature) + ",threads,runs,median_ms,min_ms,lower_quartile_ms,upper_quartile_ms\n";
+
+  std::vector<unsigned> threads{1};
+  if (options.threads) threads.push_back(2);
+  const auto all = static_cast<unsigned>(lisco::allThreads());
+  if (options.threads && all > 2) threads.push_back(all);
+  std::unique_ptr<Table> table;
+  if (options.threads)
+    table = std::make_unique<ThreadsTable>(threads);
+  else
+    table = std::make_unique<StagesTable>();
+
+  CompareSettings unlimited;
+  unlimited.runs = 0;  // no line about runs, which are not fewer where they take long
+  std::fputs(describeRun(unlimited, threads.back()).c_str(), stdout);
+  std::printf("%u run%s of each in turn; all clusters are those of PCL unless a row says otherwise\n", options.runs,
+              options.runs == 1 ? "" : "s");
+  table->printTitles();
+  bool good = true;
+  std::size_t measured = 0;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    try {
+      good = measureFile(files[i], names[i], options, *table, csv) && good;
+      ++measured;
+    } catch (const std::exception& error) {
+      failures.emplace_back(error.what());
+    }
+  }
+  lisco::useSimdLevel("");
+  table->printEnd();
+  std::fflush(stdout);
+  for (const std::string& failure : failures) std::fprintf(stderr, "engine_stages: %s\n", failure.c_str());
+  if (measured > 0 && !options.csv.empty()) writeOwnFile(options.csv, csv, kSignature);
+  if (!good) {
+    std::fprintf(stderr, "engine_stages: wrong clusters\n");
+    return 1;
+  }
+  return failures.empty() ? 0 : 2;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  omp_set_num_threads(1);  // as lisco_compare; the engine asks for its threads itself
+  return runProgram("engine_stages", [&] {
+    Options options;
+    return parse(argc, argv, options) ? run(options) : 0;
+  });
+}
