@@ -8,7 +8,7 @@
 #include <pcl/segmentation/impl/lisco_cluster_extraction.hpp>
 
 bool pcl::detail::LiscoCloudClusterer::fitsIndexType(std::size_t points) {
-  // The engine numbers points, runs and patches with 31 bits.
+  // The engine numbers points and runs with 31 bits.
   return (points <= static_cast<std::size_t>(std::numeric_limits<index_t>::max()) && points < std::size_t{1} << 31);
 }
 

@@ -49,6 +49,11 @@ inline float asinBound(float ratio) {
   return (ratio + 0.5708F * ratio * ratio * ratio) * 1.00001F;
 }
 
+/// All bits before the first that is set; all of them if none is.
+inline std::uint64_t upTo(std::uint64_t bits) {
+  return bits != 0 ? (bits & -bits) - 1 : ~std::uint64_t{0};
+}
+
 }  // namespace
 }  // namespace lisco
 #endif
@@ -137,15 +142,15 @@ std::uint64_t placeReturns(StripData& strip, const Row& row, const MeasuredRow& 
       // Places before the first and behind the last are nobody's.
       if (first_place < 0) {
         const std::uint64_t before = (std::uint64_t{1} << -first_place) - 1;
-        loose |= left & before & (astray != 0 ? (astray & -astray) - 1 : ~std::uint64_t{0});
+        loose |= left & before & upTo(astray);
       }
       if (first_place + static_cast<std::int64_t>(Row::kColumns) > places) {
         const std::int64_t inside = places - first_place;
         const std::uint64_t behind = inside <= 0 ? ~std::uint64_t{0} : ~std::uint64_t{0} << inside;
-        loose |= left & behind & (astray != 0 ? (astray & -astray) - 1 : ~std::uint64_t{0});
+        loose |= left & behind & upTo(astray);
       }
     }
-    const std::uint64_t together = left & (astray != 0 ? (astray & -astray) - 1 : ~std::uint64_t{0});
+    const std::uint64_t together = left & upTo(astray);
     if (together != 0) {
       const std::uint64_t placed = together & ~loose;
       if (placed != 0) {

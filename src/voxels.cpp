@@ -240,25 +240,24 @@ std::uint32_t Voxels::makeBlock(const Key& key) {
   if (found != kNone) return found;
   const auto number = static_cast<std::uint32_t>(blocks_.size());
   blocks_.push_back({key, 0, 0, 0, false});
-  if (2 * blocks_.size() > slots_.size()) {
+  if (2 * blocks_.size() > slots_.size())
     rehash(2 * slots_.size());
-    return number;
-  }
-  const std::size_t mask = slots_.size() - 1;
-  std::size_t slot = hashOf(key) & mask;
-  while (slots_[slot] != kNone) slot = (slot + 1) & mask;
-  slots_[slot] = number;
+  else
+    takeSlot(number);
   return number;
 }
 
 void Voxels::rehash(std::size_t slots) {
   slots_.assign(slots, kNone);
-  const std::size_t mask = slots - 1;
-  for (std::size_t block = 0; block < blocks_.size(); ++block) {
-    std::size_t slot = hashOf(blocks_[block].key) & mask;
-    while (slots_[slot] != kNone) slot = (slot + 1) & mask;
-    slots_[slot] = static_cast<std::uint32_t>(block);
-  }
+  for (std::size_t block = 0; block < blocks_.size(); ++block) takeSlot(static_cast<std::uint32_t>(block));
+}
+
+/// Puts a block that is not in the table where it is looked for.
+void Voxels::takeSlot(std::uint32_t block) {
+  const std::size_t mask = slots_.size() - 1;
+  std::size_t slot = hashOf(blocks_[block].key) & mask;
+  while (slots_[slot] != kNone) slot = (slot + 1) & mask;
+  slots_[slot] = block;
 }
 
 /// The first unit of a cube, kNone if it is new. The list of a block has one entry for each cube in use, in the

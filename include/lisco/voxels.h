@@ -43,7 +43,6 @@ class Voxels {
 
  private:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  static constexpr std::size_t kCubes = 64;  ///< of a block
 
   using Key = std::array<std::uint32_t, 3>;
 
@@ -76,6 +75,7 @@ class Voxels {
   std::uint32_t findBlock(const Key& key) const;
   std::uint32_t makeBlock(const Key& key);
   void rehash(std::size_t slots);
+  void takeSlot(std::uint32_t block);
   std::uint32_t& firstUnit(Block& block, std::uint32_t cube);
   void addPiece(const Key& cube, const Box& box, std::uint32_t piece, std::uint32_t element, DisjointSets& subclusters);
   void linkBlock(const Block& block, bool all_new, DisjointSets& subclusters);
