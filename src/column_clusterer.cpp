@@ -13,30 +13,27 @@ void ColumnClusterer::begin(const Parameters& parameters) {
   if (readings_.size() < parameters_.threads) readings_.resize(parameters_.threads);
   for (Reading& reading : readings_) {
     reading.first_element = 0;
-    reading.source_index.clear();
     reading.runs.clear();
-    reading.rows.clear();
-    reading.returns = 0;
     reading.voxels.prepare(tolerance_);
   }
-  readings_.front().source_index.reserve(parameters.expected_returns / parameters_.threads);
+  readings_.front().runs.source_index.reserve(parameters.expected_returns / parameters_.threads);
   strip_.prepare(tolerance_, parameters_.view, parameters_.threads);
   if (forests_.size() < parameters_.threads) forests_.resize(parameters_.threads);
   forests_.front().reset(0);
   subcluster_sizes_.clear();
-  staged_columns_ = 0;
+  staged_.clear();
   column_ = 0;
 }
 
 std::size_t ColumnClusterer::returnCount() const {
   std::size_t count = 0;
-  for (const Reading& reading : readings_) count += reading.returns;
+  for (const Reading& reading : readings_) count += reading.runs.returns;
   return count;
 }
 
 bool ColumnClusterer::readsInParallel(std::size_t columns, std::size_t lasers) const {
   constexpr std::size_t kWorthThreads = 8192;  // cells
-  return parameters_.threads > 1 && column_ == 0 && staged_columns_ == 0 && lasers > 1 &&
+  return parameters_.threads > 1 && column_ == 0 && staged_.columns() == 0 && lasers > 1 &&
          columns * lasers >= kWorthThreads;
 }
 
@@ -57,16 +54,6 @@ void ColumnClusterer::prepareReadings(std::size_t columns, std::size_t lasers) {
   if (strip_.inUse()) strip_.addLasers(lasers);
 }
 
-void ColumnClusterer::stageLasers(std::size_t lasers) {
-  while (staged_.size() < lasers) {
-    staged_.emplace_back();
-    std::fill_n(staged_.back().x, Row::kMargin + Row::kColumns, kNoReturn.x);
-    std::fill_n(staged_.back().y, Row::kMargin + Row::kColumns, kNoReturn.y);
-    std::fill_n(staged_.back().z, Row::kMargin + Row::kColumns, kNoReturn.z);
-  }
-  if (strip_.inUse()) strip_.addLasers(lasers);
-}
-
 /// Lets the strip begin at the first far return of a row.
 void ColumnClusterer::startStripAt(const Row& row, const MeasuredRow& measured, std::uint32_t first_column) {
   const auto first = static_cast<std::size_t>(__builtin_ctzll(measured.far));
@@ -81,10 +68,10 @@ void ColumnClusterer::startStrip(Reading& reading, Row& row, std::uint32_t first
 
 /// Reads the columns that have been staged, row by row.
 void ColumnClusterer::clusterBlock() {
-  for (std::size_t laser = 0; laser < staged_.size(); ++laser)
-    readRow(readings_[threads_ - 1], threads_ - 1, staged_[laser], laser, column_, staged_columns_);
-  const std::size_t columns = staged_columns_;
-  staged_columns_ = 0;
+  const std::size_t columns = staged_.columns();
+  for (std::size_t laser = 0; laser < staged_.lasers(); ++laser)
+    readRow(readings_[threads_ - 1], threads_ - 1, staged_.row(laser), laser, column_, columns);
+  staged_.clear();
   finishBlock(columns);
 }
 
@@ -102,26 +89,7 @@ void ColumnClusterer::readRow(Reading& reading, std::size_t thread, Row& row, st
   measureRow(row, columns, tolerance_.squared(), strip_.farRange(), measured);
   if (measured.returns == 0) return;
 
-  const auto first_run = static_cast<std::uint32_t>(reading.runs.size());
-  const auto first_cell = static_cast<std::uint32_t>(reading.source_index.size());
-  const std::size_t last_run = first_run + static_cast<std::size_t>(__builtin_popcountll(measured.starts));
-  forests_.front().grow(reading.first_element + last_run);
-  reading.runs.resize(last_run);
-  reading.source_index.insert(reading.source_index.end(), row.source_index, row.source_index + columns);
-  reading.returns += static_cast<std::size_t>(__builtin_popcountll(measured.returns));
-  const std::uint64_t ends = ~measured.returns | measured.starts;
-  std::uint32_t number = first_run;
-  for (std::uint64_t starts = measured.starts; starts != 0; starts &= starts - 1, ++number) {
-    const auto begin = static_cast<std::uint32_t>(__builtin_ctzll(starts));
-    const std::uint64_t after = begin == Row::kColumns - 1 ? 0 : ends & ~std::uint64_t{0} << (begin + 1);
-    const std::uint32_t end = after != 0 ? static_cast<std::uint32_t>(__builtin_ctzll(after)) : Row::kColumns;
-    const std::uint32_t element = reading.first_element + number;
-    forests_.front().create(element);
-    for (std::uint32_t i = begin; i < end; ++i) measured.run[i] = element;
-    reading.runs[number] = {first_cell + begin, end - begin, 0};
-  }
-  reading.rows.push_back({static_cast<std::uint32_t>(laser), first_run, number - first_run});
-
+  reading.runs.add(row, measured, laser, first_column, columns, reading.first_element, forests_.front());
   std::uint64_t loose = 0;
   if (measured.far != 0) {
     if (!strip_.hasStarted()) startStripAt(row, measured, first_column);
@@ -135,7 +103,7 @@ void ColumnClusterer::linkStrip() {
   const auto forEachReading = [this](auto&& visit) {
     for (std::size_t thread = 0; thread < threads_; ++thread) {
       const std::uint32_t first = readings_[thread].first_element;
-      visit(first, first + static_cast<std::uint32_t>(readings_[thread].runs.size()));
+      visit(first, first + static_cast<std::uint32_t>(readings_[thread].runs.runs.size()));
     }
   };
   if (threads_ > 1)
@@ -153,7 +121,7 @@ void ColumnClusterer::linkStrip() {
 }
 
 void ColumnClusterer::update() {
-  if (staged_columns_ > 0) clusterBlock();
+  if (staged_.columns() > 0) clusterBlock();
   DisjointSets& subclusters = forests_.front();
   if (strip_.inUse()) linkStrip();
   Voxels& voxels = readings_.front().voxels;
@@ -164,8 +132,8 @@ void ColumnClusterer::update() {
   subcluster_sizes_.clear();
   for (std::size_t thread = 0; thread < threads_; ++thread) {
     Reading& reading = readings_[thread];
-    for (std::size_t i = 0; i < reading.runs.size(); ++i) {
-      Run& run = reading.runs[i];
+    for (std::size_t i = 0; i < reading.runs.runs.size(); ++i) {
+      Runs::Run& run = reading.runs.runs[i];
       const std::uint32_t element = reading.first_element + static_cast<std::uint32_t>(i);
       const std::uint32_t head = subclusters.head(element);
       if (head == element) {
@@ -175,29 +143,10 @@ void ColumnClusterer::update() {
       }
       std::size_t owner = thread;
       while (head < readings_[owner].first_element) --owner;
-      run.subcluster = readings_[owner].runs[head - readings_[owner].first_element].subcluster;
+      run.subcluster = readings_[owner].runs.runs[head - readings_[owner].first_element].subcluster;
       subcluster_sizes_[run.subcluster] += run.count;
     }
   }
-}
-
-/// Sorts the rows by laser, those of one laser as they came.
-void ColumnClusterer::orderRows() {
-  std::size_t lasers = 0;
-  std::size_t rows = 0;
-  for (std::size_t thread = 0; thread < threads_; ++thread) {
-    rows += readings_[thread].rows.size();
-    for (const RowRuns& row : readings_[thread].rows) lasers = std::max<std::size_t>(lasers, row.laser + 1);
-  }
-  rows_of_laser_.assign(lasers + 1, 0);
-  for (std::size_t thread = 0; thread < threads_; ++thread)
-    for (const RowRuns& row : readings_[thread].rows) ++rows_of_laser_[row.laser + 1];
-  for (std::size_t laser = 0; laser < lasers; ++laser) rows_of_laser_[laser + 1] += rows_of_laser_[laser];
-  ordered_rows_.resize(rows);
-  for (std::size_t thread = 0; thread < threads_; ++thread)
-    for (std::size_t row = 0; row < readings_[thread].rows.size(); ++row)
-      ordered_rows_[rows_of_laser_[readings_[thread].rows[row].laser]++] = {static_cast<std::uint32_t>(thread),
-                                                                            static_cast<std::uint32_t>(row)};
 }
 
 }  // namespace lisco

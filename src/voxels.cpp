@@ -154,6 +154,7 @@ void Voxels::prepare(const Tolerance& tolerance) {
   first_units_.clear();
   new_blocks_.clear();
   latest_block_ = kNone;
+  bounds_ = Box::nothing();
   anything_linked_ = false;
   if (slots_.size() < kFewestSlots)
     slots_.assign(kFewestSlots, kNone);
@@ -213,6 +214,7 @@ void Voxels::addPiece(const Key& cube, const Box& box, std::uint32_t piece, std:
     block.is_new = true;
     new_blocks_.push_back(latest_block_);
   }
+  bounds_.add(box);
   std::uint32_t& first = firstUnit(block, (cube[0] & 3U) | (cube[1] & 3U) << 2 | (cube[2] & 3U) << 4);
   for (std::uint32_t i = first; i != kNone; i = units_[i].next_in_cube) {
     Unit& unit = units_[i];
@@ -291,6 +293,7 @@ void Voxels::absorb(Voxels& other, DisjointSets& subclusters) {
     if (piece.next_in_unit != kNone) piece.next_in_unit += pieces;
     pieces_.push_back(piece);
   }
+  bounds_.add(other.bounds_);
   for (const Block& block : other.blocks_) {
     const std::uint32_t own_number = makeBlock(block.key);
     Block& own = blocks_[own_number];
@@ -338,23 +341,35 @@ void Voxels::link(DisjointSets& subclusters) {
   new_blocks_.clear();
 }
 
+/// Finds the blocks around one that hold anything.
+/// \param first the first of the 27 to look at
+std::size_t Voxels::findNear(const Key& key, std::size_t first, Near* near) const {
+  std::size_t count = 0;
+  for (std::size_t i = first; i < kNeighbourBlocks; ++i) {
+    const auto step = [](std::size_t which) { return static_cast<std::uint32_t>(which) - 1U; };
+    const std::uint32_t number =
+        findBlock({(key[0] + step(i % 3)) & kBlockMask, (key[1] + step(i / 3 % 3)) & kBlockMask,
+                   (key[2] + step(i / 9)) & kBlockMask});
+    if (number != kNone) near[count++] = {i, blocks_[number].occupied, blocks_[number].units};
+  }
+  return count;
+}
+
+/// Calls visit(unit) for all units of some cubes of a block.
+template <typename Visit>
+void Voxels::forEachUnitNear(const Near& near, std::uint64_t cubes, Visit&& visit) const {
+  for (std::uint64_t left = near.occupied & cubes; left != 0; left &= left - 1) {
+    const auto rank = countBits(near.occupied & ((left & -left) - 1));
+    for (std::uint32_t unit = first_units_[near.units + rank]; unit != kNone; unit = units_[unit].next_in_cube)
+      visit(unit);
+  }
+}
+
 /// Compares the new units of a block with all units around them; each pair of new ones once.
 void Voxels::linkBlock(const Block& block, bool all_new, DisjointSets& subclusters) {
   const auto& masks = all_new ? kNeighbourhood.later : kNeighbourhood.all;
-  struct Near {
-    std::size_t mask;
-    std::uint64_t occupied;
-    std::uint32_t units;
-  };
   Near near[kNeighbourBlocks];
-  std::size_t count = 0;
-  for (std::size_t i = all_new ? kNeighbourBlocks / 3 : 0; i < kNeighbourBlocks; ++i) {
-    const auto step = [](std::size_t which) { return static_cast<std::uint32_t>(which) - 1U; };
-    const Key key{(block.key[0] + step(i % 3)) & kBlockMask, (block.key[1] + step(i / 3 % 3)) & kBlockMask,
-                  (block.key[2] + step(i / 9)) & kBlockMask};
-    const std::uint32_t number = findBlock(key);
-    if (number != kNone) near[count++] = {i, blocks_[number].occupied, blocks_[number].units};
-  }
+  const std::size_t count = findNear(block.key, all_new ? kNeighbourBlocks / 3 : 0, near);
 
   const auto compare = [&](std::uint32_t a_number, std::uint32_t b_number) {
     Unit& a = units_[a_number];
@@ -362,7 +377,7 @@ void Voxels::linkBlock(const Block& block, bool all_new, DisjointSets& subcluste
     if (a.head == b.head || (!all_new && b.is_new && b_number > a_number)) return;
     a.head = subclusters.head(a.head);
     b.head = subclusters.head(b.head);
-    if (a.head != b.head && haveNeighbours(a, b)) a.head = b.head = subclusters.merge(a.head, b.head);
+    if (a.head != b.head && haveNeighbours(a, *this, b)) a.head = b.head = subclusters.merge(a.head, b.head);
   };
 
   std::uint32_t rank = 0;
@@ -374,15 +389,35 @@ void Voxels::linkBlock(const Block& block, bool all_new, DisjointSets& subcluste
            other = units_[other].next_in_cube)
         compare(unit, other);
       for (std::size_t i = 0; i < count; ++i) {
-        std::uint64_t around = near[i].occupied & masks[cube][near[i].mask];
-        if (near[i].mask == kNeighbourBlocks / 2) around &= ~(std::uint64_t{1} << cube);
-        for (; around != 0; around &= around - 1) {
-          const std::uint64_t before = (around & -around) - 1;
-          const auto place = countBits(near[i].occupied & before);
-          for (std::uint32_t other = first_units_[near[i].units + place]; other != kNone;
-               other = units_[other].next_in_cube)
-            compare(unit, other);
-        }
+        std::uint64_t around = masks[cube][near[i].place];
+        if (near[i].place == kNeighbourBlocks / 2) around &= ~(std::uint64_t{1} << cube);
+        forEachUnitNear(near[i], around, [&](std::uint32_t other) { compare(unit, other); });
+      }
+    }
+  }
+}
+
+void Voxels::linkTo(const Voxels& other, Joiner& joiner) const {
+  for (const std::uint32_t number : new_blocks_) {
+    const Block& block = blocks_[number];
+    bool looked = false;
+    Near near[kNeighbourBlocks];
+    std::size_t count = 0;
+    std::uint32_t rank = 0;
+    for (std::uint64_t left = block.occupied; left != 0; left &= left - 1, ++rank) {
+      const auto cube = static_cast<std::size_t>(__builtin_ctzll(left));
+      for (std::uint32_t i = first_units_[block.units + rank]; i != kNone; i = units_[i].next_in_cube) {
+        const Unit& unit = units_[i];
+        if (!unit.is_new || !(Box::squaredGap(unit.box, other.bounds_) < tolerance_.squared())) continue;
+        if (!looked) count = other.findNear(block.key, 0, near);
+        looked = true;
+        for (std::size_t k = 0; k < count; ++k)
+          other.forEachUnitNear(near[k], kNeighbourhood.all[cube][near[k].place], [&](std::uint32_t j) {
+            const Unit& others = other.units_[j];
+            if (Box::squaredGap(unit.box, others.box) < tolerance_.squared() &&
+                joiner.areApart(unit.head, others.head) && haveNeighbours(unit, other, others))
+              joiner.join(unit.head, others.head);
+          });
       }
     }
   }
@@ -405,19 +440,19 @@ void Voxels::gather(Cursor& cursor, const Box& box, VoxelPoints& points) const {
   }
 }
 
-/// Whether any return of one unit is a neighbour of any return of the other.
-bool Voxels::haveNeighbours(const Unit& a, const Unit& b) const {
+/// Whether any return of one unit is a neighbour of any return of another one's.
+bool Voxels::haveNeighbours(const Unit& own, const Voxels& other, const Unit& others) const {
   const float squared_tolerance = tolerance_.squared();
-  if (!(Box::squaredGap(a.box, b.box) < squared_tolerance)) return false;
-  if (Box::squaredSpan(a.box, b.box) < squared_tolerance) return true;
-  VoxelPoints some_of_a;
-  VoxelPoints some_of_b;
-  for (Cursor at_a{a.first_piece, 0}; at_a.piece != kNone;) {
-    gather(at_a, b.box, some_of_a);
-    if (some_of_a.count == 0) continue;
-    for (Cursor at_b{b.first_piece, 0}; at_b.piece != kNone;) {
-      gather(at_b, a.box, some_of_b);
-      if (HWY_DYNAMIC_DISPATCH(anyNeighbours)(some_of_a, some_of_b, squared_tolerance)) return true;
+  if (!(Box::squaredGap(own.box, others.box) < squared_tolerance)) return false;
+  if (Box::squaredSpan(own.box, others.box) < squared_tolerance) return true;
+  VoxelPoints some;
+  VoxelPoints some_others;
+  for (Cursor at{own.first_piece, 0}; at.piece != kNone;) {
+    gather(at, others.box, some);
+    if (some.count == 0) continue;
+    for (Cursor at_others{others.first_piece, 0}; at_others.piece != kNone;) {
+      other.gather(at_others, own.box, some_others);
+      if (HWY_DYNAMIC_DISPATCH(anyNeighbours)(some, some_others, squared_tolerance)) return true;
     }
   }
   return false;

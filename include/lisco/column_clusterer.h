@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "lisco/column_block.h"
 #include "lisco/disjoint_sets.h"
 #include "lisco/parallel.h"
 #include "lisco/return.h"
 #include "lisco/row.h"
+#include "lisco/runs.h"
 #include "lisco/tolerance.h"
 #include "lisco/view_hints.h"
 #include "lisco/view_strip.h"
@@ -87,25 +89,11 @@ class ColumnClusterer {
   std::size_t returnCount() const;
 
  private:
-  struct Run {
-    std::uint32_t first_cell;  ///< its cells follow each other
-    std::uint32_t count;
-    std::uint32_t subcluster;  ///< by the last update()
-  };
-  /// What a row left behind.
-  struct RowRuns {
-    std::uint32_t laser;
-    std::uint32_t first_run;
-    std::uint32_t count;
-  };
   /// What one thread has read.
   struct Reading {
     std::size_t first_laser = 0, end_laser = 0;  ///< its part of a rotation that is read in parallel
     std::uint32_t first_element = 0;             ///< run i is element first_element + i
-    std::vector<std::uint32_t> source_index;     ///< of each cell of the rows with returns
-    std::size_t returns = 0;
-    std::vector<Run> runs;
-    std::vector<RowRuns> rows;
+    Runs runs;
     Voxels voxels;
     Row row{};
     MeasuredRow measured{};
@@ -120,11 +108,6 @@ class ColumnClusterer {
   void startStripAt(const Row& row, const MeasuredRow& measured, std::uint32_t first_column);
   bool readsInParallel(std::size_t columns, std::size_t lasers) const;
   void prepareReadings(std::size_t columns, std::size_t lasers);
-  void stageLasers(std::size_t lasers);
-  void orderRows();
-  template <typename CellAt>
-  static void fillRow(Row& row, std::size_t at, std::size_t laser, std::size_t first, std::size_t count,
-                      CellAt&& cell_at);
 
   Parameters parameters_;
   Tolerance tolerance_;
@@ -135,32 +118,11 @@ class ColumnClusterer {
   std::vector<std::uint32_t> weights_;  ///< of the lasers
   std::vector<Reading> readings_;       ///< one for each thread; near returns are in their voxels
   std::size_t threads_ = 1;             ///< that have read
-  std::vector<Row> staged_;             ///< by laser: columns that wait for their block to be complete
-  std::size_t staged_columns_ = 0;
-  std::uint32_t column_ = 0;  ///< number of columns added
+  ColumnBlock staged_;                  ///< columns that wait for their block to be complete
+  std::uint32_t column_ = 0;            ///< number of columns added
   std::vector<std::uint32_t> subcluster_sizes_;
-  std::vector<std::uint32_t> rows_of_laser_;  ///< where each laser's rows begin in ordered_rows_
-  struct RowPlace {
-    std::uint32_t reading, row;
-  };
-  std::vector<RowPlace> ordered_rows_;
+  LaserOrder order_;
 };
-
-template <typename CellAt>
-void ColumnClusterer::fillRow(Row& row, std::size_t at, std::size_t laser, std::size_t first, std::size_t count,
-                              CellAt&& cell_at) {
-  float* const x = row.x + Row::kMargin + at;
-  float* const y = row.y + Row::kMargin + at;
-  float* const z = row.z + Row::kMargin + at;
-  std::uint32_t* const source_index = row.source_index + at;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Return cell = cell_at(laser, first + i);
-    x[i] = cell.x;
-    y[i] = cell.y;
-    z[i] = cell.z;
-    source_index[i] = cell.source_index;
-  }
-}
 
 template <typename CellAt>
 void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt&& cell_at) {
@@ -177,7 +139,7 @@ void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt
     for (std::size_t first = 0; first < columns && strip_.inUse() && !strip_.hasStarted(); first += Row::kColumns)
       for (std::size_t laser = 0; laser < lasers; ++laser) {
         const std::size_t count = std::min(columns - first, Row::kColumns);
-        fillRow(first_reading.row, 0, laser, first, count, cell_at);
+        ColumnBlock::fill(first_reading.row, 0, laser, first, count, cell_at);
         startStrip(first_reading, first_reading.row, static_cast<std::uint32_t>(first), count);
       }
     inParallel(threads_, [&](std::size_t thread) {
@@ -185,7 +147,7 @@ void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt
       for (std::size_t laser = reading.first_laser; laser < reading.end_laser; ++laser)
         for (std::size_t first = 0; first < columns; first += Row::kColumns) {
           const std::size_t count = std::min(columns - first, Row::kColumns);
-          fillRow(reading.row, 0, laser, first, count, cell_at);
+          ColumnBlock::fill(reading.row, 0, laser, first, count, cell_at);
           readRow(reading, thread, reading.row, laser, static_cast<std::uint32_t>(first), count);
         }
     });
@@ -193,24 +155,19 @@ void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt
     return;
   }
   constexpr std::size_t kWorthReadingAtOnce = 16;
-  stageLasers(lasers);
+  if (strip_.inUse()) strip_.addLasers(lasers);
   for (std::size_t first = 0; first < columns;) {
-    const std::size_t count = std::min(columns - first, parameters_.block_columns - staged_columns_);
-    if (count == parameters_.block_columns || (staged_columns_ == 0 && count >= kWorthReadingAtOnce)) {
+    const std::size_t count = std::min(columns - first, parameters_.block_columns - staged_.columns());
+    if (count == parameters_.block_columns || (staged_.columns() == 0 && count >= kWorthReadingAtOnce)) {
       Reading& reading = readings_[threads_ - 1];
       for (std::size_t laser = 0; laser < lasers; ++laser) {
-        fillRow(reading.row, 0, laser, first, count, cell_at);
+        ColumnBlock::fill(reading.row, 0, laser, first, count, cell_at);
         readRow(reading, threads_ - 1, reading.row, laser, column_, count);
       }
       finishBlock(count);
     } else {
-      for (std::size_t laser = 0; laser < lasers; ++laser)
-        fillRow(staged_[laser], staged_columns_, laser, first, count, cell_at);
-      for (std::size_t laser = lasers; laser < staged_.size(); ++laser)
-        fillRow(staged_[laser], staged_columns_, laser, first, count,
-                [](std::size_t, std::size_t) { return kNoReturn; });
-      staged_columns_ += count;
-      if (staged_columns_ == parameters_.block_columns) clusterBlock();
+      staged_.add(first, count, lasers, cell_at);
+      if (staged_.columns() == parameters_.block_columns) clusterBlock();
     }
     first += count;
   }
@@ -218,13 +175,13 @@ void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt
 
 template <typename Visit>
 void ColumnClusterer::forEachRun(Visit&& visit) {
-  orderRows();
-  for (const RowPlace& place : ordered_rows_) {
-    const Reading& reading = readings_[place.reading];
-    const RowRuns& row = reading.rows[place.row];
+  order_.sort(threads_, [this](std::size_t thread) -> const Runs& { return readings_[thread].runs; });
+  for (const LaserOrder::Place& place : order_.places()) {
+    const Runs& part = readings_[place.part].runs;
+    const Runs::RowRuns& row = part.rows[place.row];
     for (std::uint32_t run = row.first_run; run < row.first_run + row.count; ++run)
-      visit(reading.source_index.data() + reading.runs[run].first_cell,
-            static_cast<std::size_t>(reading.runs[run].count), reading.runs[run].subcluster);
+      visit(part.source_index.data() + part.runs[run].first_cell, static_cast<std::size_t>(part.runs[run].count),
+            part.runs[run].subcluster);
   }
 }
 

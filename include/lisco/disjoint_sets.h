@@ -43,10 +43,19 @@ class DisjointSets {
   std::uint32_t merge(std::uint32_t a, std::uint32_t b) {
     a = head(a);
     b = head(b);
+    if (a == b) return a;
     if (a > b) std::swap(a, b);
     parents_[b] = a;
+    if (log_ != nullptr) log_->push_back({a, b});
     return a;
   }
+
+  /// Two heads of which the first is now the head of both sets.
+  struct Merge {
+    std::uint32_t head, former_head;
+  };
+  /// From now on, merge () tells what it has joined; nullptr: to nobody.
+  void logTo(std::vector<Merge>* log) { log_ = log; }
 
   /// Joins what another forest of the same elements has joined, for elements first..last-1.
   void absorb(const DisjointSets& other, std::uint32_t first, std::uint32_t last) {
@@ -56,6 +65,7 @@ class DisjointSets {
 
  private:
   std::vector<std::uint32_t> parents_;
+  std::vector<Merge>* log_ = nullptr;
 };
 
 }  // namespace lisco

@@ -41,6 +41,18 @@ class Voxels {
   /// Compares what has come since the last call with everything. More returns may follow.
   void link(DisjointSets& subclusters);
 
+  /// What is to be done with neighbours in different voxels.
+  class Joiner {
+   public:
+    virtual ~Joiner() = default;
+    /// Whether anybody wants to know if two elements are neighbours. They are those of add () or others of their sets.
+    virtual bool areApart(std::uint32_t own, std::uint32_t others) = 0;
+    /// They are.
+    virtual void join(std::uint32_t own, std::uint32_t others) = 0;
+  };
+  /// Compares what has come since the last link () with all of another one's, both of the same tolerance.
+  void linkTo(const Voxels& other, Joiner& joiner) const;
+
  private:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
@@ -78,9 +90,18 @@ class Voxels {
   void takeSlot(std::uint32_t block);
   std::uint32_t& firstUnit(Block& block, std::uint32_t cube);
   void addPiece(const Key& cube, const Box& box, std::uint32_t piece, std::uint32_t element, DisjointSets& subclusters);
+  /// A block beside another one.
+  struct Near {
+    std::size_t place;  ///< in kNeighbourhood's masks
+    std::uint64_t occupied;
+    std::uint32_t units;
+  };
+  std::size_t findNear(const Key& key, std::size_t first, Near* near) const;
+  template <typename Visit>
+  void forEachUnitNear(const Near& near, std::uint64_t cubes, Visit&& visit) const;
   void linkBlock(const Block& block, bool all_new, DisjointSets& subclusters);
   void gather(Cursor& cursor, const Box& box, VoxelPoints& points) const;
-  bool haveNeighbours(const Unit& a, const Unit& b) const;
+  bool haveNeighbours(const Unit& own, const Voxels& other, const Unit& others) const;
 
   Tolerance tolerance_;
   double cubes_per_metre_ = 1;
@@ -91,6 +112,7 @@ class Voxels {
   std::vector<Block> blocks_;
   std::vector<std::uint32_t> first_units_;
   std::vector<std::uint32_t> slots_;  ///< hash table of blocks
+  Box bounds_;                        ///< of all points
   std::uint32_t latest_block_ = kNone;
   std::vector<std::uint32_t> new_blocks_;  ///< that hold new units
   bool anything_linked_ = false;
