@@ -397,28 +397,34 @@ void Voxels::linkBlock(const Block& block, bool all_new, DisjointSets& subcluste
   }
 }
 
-void Voxels::linkTo(const Voxels& other, Joiner& joiner) const {
-  for (const std::uint32_t number : new_blocks_) {
-    const Block& block = blocks_[number];
-    bool looked = false;
-    Near near[kNeighbourBlocks];
-    std::size_t count = 0;
-    std::uint32_t rank = 0;
-    for (std::uint64_t left = block.occupied; left != 0; left &= left - 1, ++rank) {
-      const auto cube = static_cast<std::size_t>(__builtin_ctzll(left));
-      for (std::uint32_t i = first_units_[block.units + rank]; i != kNone; i = units_[i].next_in_cube) {
-        const Unit& unit = units_[i];
-        if (!unit.is_new || !(Box::squaredGap(unit.box, other.bounds_) < tolerance_.squared())) continue;
-        if (!looked) count = other.findNear(block.key, 0, near);
-        looked = true;
-        for (std::size_t k = 0; k < count; ++k)
-          other.forEachUnitNear(near[k], kNeighbourhood.all[cube][near[k].place], [&](std::uint32_t j) {
-            const Unit& others = other.units_[j];
-            if (Box::squaredGap(unit.box, others.box) < tolerance_.squared() &&
-                joiner.areApart(unit.head, others.head) && haveNeighbours(unit, other, others))
-              joiner.join(unit.head, others.head);
-          });
-      }
+void Voxels::linkTo(const Voxels& other, Part part, Joiner& joiner) const {
+  if (part == Part::kNew) {
+    for (const std::uint32_t block : new_blocks_) linkBlockTo(blocks_[block], other, part, joiner);
+  } else {
+    for (const Block& block : blocks_) linkBlockTo(block, other, part, joiner);
+  }
+}
+
+void Voxels::linkBlockTo(const Block& block, const Voxels& other, Part part, Joiner& joiner) const {
+  const auto mayBeNeighbours = [this](const Box& a, const Box& b) {
+    return Box::squaredGap(a, b) < tolerance_.squared();
+  };
+  Near near[kNeighbourBlocks];
+  std::size_t count = kNeighbourBlocks + 1;  // not looked for yet
+  std::uint32_t rank = 0;
+  for (std::uint64_t left = block.occupied; left != 0; left &= left - 1, ++rank) {
+    const auto cube = static_cast<std::size_t>(__builtin_ctzll(left));
+    for (std::uint32_t i = first_units_[block.units + rank]; i != kNone; i = units_[i].next_in_cube) {
+      const Unit& unit = units_[i];
+      if ((part == Part::kNew && !unit.is_new) || !mayBeNeighbours(unit.box, other.bounds_)) continue;
+      if (count > kNeighbourBlocks) count = other.findNear(block.key, 0, near);
+      for (std::size_t k = 0; k < count; ++k)
+        other.forEachUnitNear(near[k], kNeighbourhood.all[cube][near[k].place], [&](std::uint32_t j) {
+          const Unit& others = other.units_[j];
+          if (mayBeNeighbours(unit.box, others.box) && joiner.areApart(unit.head, others.head) &&
+              haveNeighbours(unit, other, others))
+            joiner.join(unit.head, others.head);
+        });
     }
   }
 }

@@ -50,8 +50,9 @@ class Voxels {
     /// They are.
     virtual void join(std::uint32_t own, std::uint32_t others) = 0;
   };
-  /// Compares what has come since the last link () with all of another one's, both of the same tolerance.
-  void linkTo(const Voxels& other, Joiner& joiner) const;
+  enum class Part { kAll, kNew };  ///< new: what has come since the last link ()
+  /// Compares a part of these with all of another one's, both of the same tolerance.
+  void linkTo(const Voxels& other, Part part, Joiner& joiner) const;
 
  private:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
@@ -96,6 +97,7 @@ class Voxels {
     std::uint64_t occupied;
     std::uint32_t units;
   };
+  void linkBlockTo(const Block& block, const Voxels& other, Part part, Joiner& joiner) const;
   std::size_t findNear(const Key& key, std::size_t first, Near* near) const;
   template <typename Visit>
   void forEachUnitNear(const Near& near, std::uint64_t cubes, Visit&& visit) const;
