@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "lisco/column_clusterer.h"
 
+#include <stdexcept>
+
 namespace lisco {
 
 void ColumnClusterer::begin(const Parameters& parameters) {
@@ -23,6 +25,14 @@ void ColumnClusterer::begin(const Parameters& parameters) {
   subcluster_sizes_.clear();
   staged_.clear();
   column_ = 0;
+  is_ordered_ = false;
+  begun_ = true;
+}
+
+void ColumnClusterer::checkColumns(std::size_t lasers) const {
+  if (!begun_) throw std::logic_error("lisco::ColumnClusterer: a column before begin ()");
+  if (parameters_.lasers != 0 && lasers > parameters_.lasers)
+    throw std::invalid_argument("lisco::ColumnClusterer: a column of more cells than lasers were declared");
 }
 
 std::size_t ColumnClusterer::returnCount() const {
@@ -121,6 +131,7 @@ void ColumnClusterer::linkStrip() {
 }
 
 void ColumnClusterer::update() {
+  is_ordered_ = false;
   if (staged_.columns() > 0) clusterBlock();
   DisjointSets& subclusters = forests_.front();
   if (strip_.inUse()) linkStrip();
@@ -147,6 +158,31 @@ void ColumnClusterer::update() {
       subcluster_sizes_[run.subcluster] += run.count;
     }
   }
+}
+
+void ColumnClusterer::orderRows() {
+  if (is_ordered_) return;
+  order_.sort(threads_, [this](std::size_t thread) -> const Runs& { return readings_[thread].runs; });
+  is_ordered_ = true;
+}
+
+std::uint32_t ColumnClusterer::subclusterAt(std::size_t laser, std::size_t column) {
+  orderRows();
+  const auto begin = order_.places().begin() + static_cast<std::ptrdiff_t>(order_.beginOf(laser));
+  const auto end = order_.places().begin() + static_cast<std::ptrdiff_t>(order_.endOf(laser));
+  const auto rowOf = [this](const LaserOrder::Place& place) -> const Runs::RowRuns& {
+    return readings_[place.part].runs.rows[place.row];
+  };
+  const auto after = std::upper_bound(begin, end, column, [&](std::size_t wanted, const LaserOrder::Place& place) {
+    return wanted < rowOf(place).first_column;
+  });
+  if (after == begin) return kNone;
+  const LaserOrder::Place& place = *(after - 1);
+  const std::size_t offset = column - rowOf(place).first_column;
+  if (offset >= Row::kColumns) return kNone;
+  const Runs& runs = readings_[place.part].runs;
+  const std::uint32_t run = runs.runAt(rowOf(place), static_cast<std::uint32_t>(offset));
+  return run == Runs::kNone ? kNone : runs.runs[run].subcluster;
 }
 
 }  // namespace lisco

@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "lisco/runs.h"
 
+#include <algorithm>
+
 namespace lisco {
 
 void Runs::clear() {
@@ -32,6 +34,15 @@ void Runs::add(const Row& row, MeasuredRow& measured, std::size_t laser, std::ui
     runs[number] = {first_cell + begin, end - begin, 0};
   }
   rows.push_back({static_cast<std::uint32_t>(laser), first_column, first_cell, first_run, number - first_run});
+}
+
+std::uint32_t Runs::runAt(const RowRuns& row, std::uint32_t column) const {
+  const std::uint32_t cell = row.first_cell + column;
+  const auto begin = runs.begin() + row.first_run;
+  const auto after = std::upper_bound(begin, begin + row.count, cell,
+                                      [](std::uint32_t wanted, const Run& run) { return wanted < run.first_cell; });
+  if (after == begin || cell >= (after - 1)->first_cell + (after - 1)->count) return kNone;
+  return static_cast<std::uint32_t>(after - 1 - runs.begin());
 }
 
 }  // namespace lisco

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -138,6 +139,42 @@ TEST(Stream, CountsItsReturns) {
     cluster(clusterer, scan, 0.1F, random.oneOf(allSettings()));
     EXPECT_EQ(clusterer.returnCount(), valid);
   }
+}
+
+// In whatever portions the columns came: the engine keeps them in blocks.
+TEST(Stream, WhichSubclusterACellIsIn) {
+  lisco::ColumnClusterer clusterer;
+  EXPECT_EQ(clusterer.subclusterAt(0, 0), lisco::ColumnClusterer::kNone);
+  forScans(7000, 400, [&](Random& random, const Scan& scan, float tolerance, const Setting& setting) {
+    clusterer.begin(withTolerance(setting, tolerance));
+    EXPECT_EQ(clusterer.subclusterAt(0, 0), lisco::ColumnClusterer::kNone);
+    feed(clusterer, random, scan);
+    clusterer.update();
+    std::vector<std::uint32_t> subclusters(scan.cells.size(), lisco::ColumnClusterer::kNone);
+    clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster) {
+      for (std::size_t i = 0; i < count; ++i) subclusters[source_indices[i]] = subcluster;
+    });
+    for (std::size_t laser = 0; laser < scan.lasers + 2; ++laser)
+      for (std::size_t column = 0; column < scan.columns + 70; ++column)
+        ASSERT_EQ(clusterer.subclusterAt(laser, column), laser < scan.lasers && column < scan.columns
+                                                             ? subclusters[laser * scan.columns + column]
+                                                             : lisco::ColumnClusterer::kNone)
+            << "laser " << laser << ", column " << column;
+  });
+}
+
+TEST(Stream, SaysWhatIsWrong) {
+  lisco::ColumnClusterer clusterer;
+  const lisco::Return cells[2] = {{1, 0, 0, 0}, {1, 0, 1, 1}};
+  EXPECT_THROW(clusterer.addColumn(cells, 2), std::logic_error);
+  lisco::Parameters parameters;
+  parameters.tolerance = 2;
+  parameters.lasers = 1;
+  clusterer.begin(parameters);
+  EXPECT_THROW(clusterer.addColumn(cells, 2), std::invalid_argument);
+  clusterer.addColumn(cells, 1);
+  clusterer.update();
+  EXPECT_EQ(clusterer.returnCount(), 1U);
 }
 
 }  // namespace

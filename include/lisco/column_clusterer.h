@@ -25,6 +25,7 @@ struct Parameters {
   float tolerance = 0.0F;  ///< eps, metres; see Tolerance for 0, negative, NaN and infinite values
   ViewHints view;
   std::size_t expected_returns = 65536;  ///< to reserve memory; more are welcome
+  std::size_t lasers = 0;                ///< most cells of a column; 0: any number
   /// How many columns are read together, 1..64. Whoever asks for the subclusters gets them for all columns
   /// added, so it is not seen from outside: 64 is the fastest, since the returns of a laser lie side by side in a
   /// cloud's memory; 1 does the work of each column at once.
@@ -52,7 +53,10 @@ struct Parameters {
 /// of instances may work side by side.
 class ColumnClusterer {
  public:
-  ColumnClusterer() { begin(Parameters()); }
+  ColumnClusterer() {
+    begin(Parameters());
+    begun_ = false;
+  }
 
   /// Starts a new rotation and forgets the last one.
   void begin(const Parameters& parameters);
@@ -60,6 +64,7 @@ class ColumnClusterer {
   /// Event "reception of step s": cells[l] is what laser l measured; cells that are no returns are skipped.
   /// \param lasers number of cells, may differ from column to column; the order of the lasers is free, but must stay
   ///        the same for speed.
+  /// \throws std::logic_error before begin(); std::invalid_argument if there are more cells than lasers
   void addColumn(const Return* cells, std::size_t lasers) {
     addColumns(1, lasers, [cells](std::size_t laser, std::size_t) { return cells[laser]; });
   }
@@ -79,6 +84,11 @@ class ColumnClusterer {
   /// Number of returns in a subcluster, after update().
   /// \param subcluster 0..subclusterCount()-1
   std::uint32_t sizeOf(std::uint32_t subcluster) const { return subcluster_sizes_[subcluster]; }
+
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  /// The subcluster of what a laser measured in a column, kNone if that was no return; after update().
+  /// \param column counted from begin()
+  std::uint32_t subclusterAt(std::size_t laser, std::size_t column);
 
   /// Calls visit(source_indices, count, subcluster) for all returns, in groups of the same subcluster: laser by laser,
   /// and the returns of each in the order of their columns. Call update() first.
@@ -106,10 +116,13 @@ class ColumnClusterer {
                std::size_t columns);
   void startStrip(Reading& reading, Row& row, std::uint32_t first_column, std::size_t columns);
   void startStripAt(const Row& row, const MeasuredRow& measured, std::uint32_t first_column);
+  void orderRows();
+  void checkColumns(std::size_t lasers) const;
   bool readsInParallel(std::size_t columns, std::size_t lasers) const;
   void prepareReadings(std::size_t columns, std::size_t lasers);
 
   Parameters parameters_;
+  bool begun_ = false;
   Tolerance tolerance_;
   ViewStrip strip_;                    ///< far returns
   std::vector<DisjointSets> forests_;  ///< of runs: the subclusters, and one for each further thread that links
@@ -122,10 +135,12 @@ class ColumnClusterer {
   std::uint32_t column_ = 0;            ///< number of columns added
   std::vector<std::uint32_t> subcluster_sizes_;
   LaserOrder order_;
+  bool is_ordered_ = false;  ///< since the last update()
 };
 
 template <typename CellAt>
 void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt&& cell_at) {
+  checkColumns(lasers);
   if (readsInParallel(columns, lasers)) {
     weights_.assign(lasers, 0);
     constexpr std::size_t kSampled = 16;  // one column of so many
@@ -175,7 +190,7 @@ void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt
 
 template <typename Visit>
 void ColumnClusterer::forEachRun(Visit&& visit) {
-  order_.sort(threads_, [this](std::size_t thread) -> const Runs& { return readings_[thread].runs; });
+  orderRows();
   for (const LaserOrder::Place& place : order_.places()) {
     const Runs& part = readings_[place.part].runs;
     const Runs::RowRuns& row = part.rows[place.row];

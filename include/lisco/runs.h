@@ -35,6 +35,11 @@ struct Runs {
   /// Forgets all. Keeps its memory.
   void clear();
 
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  /// The run of a cell of a row, kNone if it is no return.
+  /// \param column within the row
+  std::uint32_t runAt(const RowRuns& row, std::uint32_t column) const;
+
   /// Cuts a row where measured.starts says so. Each run is a new set of the subclusters, from first_element on.
   /// \param measured receives the run of each return
   void add(const Row& row, MeasuredRow& measured, std::size_t laser, std::uint32_t first_column, std::size_t columns,
@@ -69,9 +74,12 @@ class LaserOrder {
   }
 
   const std::vector<Place>& places() const { return places_; }
+  /// Where the rows of a laser are among the places, after sort ().
+  std::size_t beginOf(std::size_t laser) const { return laser == 0 ? 0 : endOf(laser - 1); }
+  std::size_t endOf(std::size_t laser) const { return laser < first_.size() ? first_[laser] : places_.size(); }
 
  private:
-  std::vector<std::uint32_t> first_;  ///< place of each laser's next row
+  std::vector<std::size_t> first_;  ///< place of each laser's next row: when sorted, that after its last
   std::vector<Place> places_;
 };
 
