@@ -3,6 +3,7 @@
 #include "lisco/column_clusterer.h"
 
 #include <stdexcept>
+#include <utility>
 
 namespace lisco {
 
@@ -24,6 +25,8 @@ void ColumnClusterer::begin(const Parameters& parameters) {
   forests_.front().reset(0);
   subcluster_sizes_.clear();
   staged_.clear();
+  pending_.clear();
+  pending_laser_ = columns_since_block_ = parts_of_block_ = 0;
   column_ = 0;
   is_ordered_ = false;
   begun_ = true;
@@ -43,7 +46,7 @@ std::size_t ColumnClusterer::returnCount() const {
 
 bool ColumnClusterer::readsInParallel(std::size_t columns, std::size_t lasers) const {
   constexpr std::size_t kWorthThreads = 8192;  // cells
-  return parameters_.threads > 1 && column_ == 0 && staged_.columns() == 0 && lasers > 1 &&
+  return parameters_.threads > 1 && column_ == 0 && staged_.columns() == 0 && pending_.columns() == 0 && lasers > 1 &&
          columns * lasers >= kWorthThreads;
 }
 
@@ -76,19 +79,34 @@ void ColumnClusterer::startStrip(Reading& reading, Row& row, std::uint32_t first
   if (reading.measured.far != 0 && !strip_.hasStarted()) startStripAt(row, reading.measured, first_column);
 }
 
-/// Reads the columns that have been staged, row by row.
-void ColumnClusterer::clusterBlock() {
-  const std::size_t columns = staged_.columns();
-  for (std::size_t laser = 0; laser < staged_.lasers(); ++laser)
-    readRow(readings_[threads_ - 1], threads_ - 1, staged_.row(laser), laser, column_, columns);
-  staged_.clear();
-  finishBlock(columns);
+void ColumnClusterer::stagedBlockIsComplete() {
+  finishPending();
+  std::swap(staged_, pending_);
+  columns_since_block_ = 0;
 }
 
-/// Links what all lasers have passed.
-void ColumnClusterer::finishBlock(std::size_t columns) {
-  column_ += static_cast<std::uint32_t>(columns);
-  if (strip_.inUse()) strip_.link(forests_.front());
+/// Does as much of what is left to be done as so many columns are to take: a block of columns is read while the next one
+/// comes, and linked while the one after it comes.
+void ColumnClusterer::workOnPending(std::size_t columns) {
+  const std::size_t block = parameters_.block_columns;
+  columns_since_block_ = std::min(columns_since_block_ + columns, block);
+  const std::size_t parts_left = parts_of_block_ - parts_of_block_ * columns_since_block_ / block;
+  while (strip_.partsLeft() > parts_left) strip_.linkPart(forests_.front());
+  if (pending_.columns() == 0) return;
+  for (; pending_laser_ < pending_.lasers() * columns_since_block_ / block; ++pending_laser_)
+    readRow(readings_[threads_ - 1], threads_ - 1, pending_.row(pending_laser_), pending_laser_, column_,
+            pending_.columns());
+  if (pending_laser_ < pending_.lasers()) return;
+  pending_laser_ = 0;
+  column_ += static_cast<std::uint32_t>(pending_.columns());
+  pending_.clear();
+  strip_.claim();
+  parts_of_block_ = strip_.partsLeft();
+}
+
+/// Reads the rest of the block.
+void ColumnClusterer::finishPending() {
+  if (pending_.columns() > 0) workOnPending(parameters_.block_columns);
 }
 
 /// Chains the returns of one laser into runs: each a neighbour of the one before. Far ones go to their places in the
@@ -132,7 +150,8 @@ void ColumnClusterer::linkStrip() {
 
 void ColumnClusterer::update() {
   is_ordered_ = false;
-  if (staged_.columns() > 0) clusterBlock();
+  if (staged_.columns() > 0) stagedBlockIsComplete();
+  finishPending();
   DisjointSets& subclusters = forests_.front();
   if (strip_.inUse()) linkStrip();
   Voxels& voxels = readings_.front().voxels;

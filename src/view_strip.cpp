@@ -158,10 +158,10 @@ std::uint64_t placeReturns(StripData& strip, const Row& row, const MeasuredRow& 
         const auto last = static_cast<std::int64_t>(63 - __builtin_clzll(placed));
         placing.placed += static_cast<std::size_t>(__builtin_popcountll(placed & ~loose));
         placing.end = std::max(placing.end, static_cast<std::size_t>(first_place + last + 1));
-        if (first_place + static_cast<std::int64_t>(next) < static_cast<std::int64_t>(strip.linked))
+        if (first_place + static_cast<std::int64_t>(next) < static_cast<std::int64_t>(strip.claimed))
           for (std::uint64_t some = placed & ~loose; some != 0; some &= some - 1) {
             const auto i = static_cast<std::size_t>(__builtin_ctzll(some));
-            if (first_place + static_cast<std::int64_t>(i) >= static_cast<std::int64_t>(strip.linked)) break;
+            if (first_place + static_cast<std::int64_t>(i) >= static_cast<std::int64_t>(strip.claimed)) break;
             placing.late.push_back(
                 {row.x[Row::kMargin + i], row.y[Row::kMargin + i], row.z[Row::kMargin + i], measured.run[i]});
           }
@@ -189,10 +189,11 @@ std::uint64_t placeReturns(StripData& strip, const Row& row, const MeasuredRow& 
   return loose;
 }
 
-/// Compares the returns of neighbouring lasers at the same place.
-void linkSamePlaces(const StripData& strip, std::size_t begin, std::size_t end, DisjointSets& subclusters) {
+/// Compares the returns of some lasers with those of the next laser at the same place.
+void linkSamePlaces(const StripData& strip, std::size_t begin, std::size_t end, const StripData::Lasers& lasers,
+                    DisjointSets& subclusters) {
   const FloatVector r2 = hn::Set(kFloats, strip.tolerance.squared());
-  for (std::size_t laser = 0; laser + 1 < strip.lasers.size(); ++laser) {
+  for (std::size_t laser = lasers.begin; laser < lasers.end && laser + 1 < strip.lasers.size(); ++laser) {
     if (strip.lasers[laser].next_place == StripData::kNowhere ||
         strip.lasers[laser + 1].next_place == StripData::kNowhere)
       continue;
@@ -219,16 +220,16 @@ void linkSamePlaces(const StripData& strip, std::size_t begin, std::size_t end, 
   }
 }
 
-/// Cuts the runs in sixteen places of all lasers into segments.
+/// Cuts the runs in sixteen places of some lasers into segments. The lasers of a sector are to follow each other.
 /// \param later places are counted from so many before the strip's
-void cutSector(const StripData& strip, std::int64_t number, std::size_t later, StripData::Sector& sector,
-               DisjointSets& subclusters) {
-  const std::size_t lasers = strip.lasers.size();
+void cutSector(const StripData& strip, std::int64_t number, std::size_t later, const StripData::Lasers& lasers,
+               StripData::Sector& sector, DisjointSets& subclusters) {
   const std::int64_t first_place = number * static_cast<std::int64_t>(StripData::kSector);
   const float offset = static_cast<float>(first_place + static_cast<std::int64_t>(later));
   constexpr std::uint32_t kWorthVectors = 6;  // returns
-  std::uint32_t count = 0;
-  for (std::size_t laser = 0; laser < lasers; ++laser) {
+  sector.number = StripData::kNoSector;
+  std::uint32_t count = lasers.begin == 0 ? 0 : sector.begin[lasers.begin];
+  for (std::size_t laser = lasers.begin; laser < lasers.end; ++laser) {
     sector.begin[laser] = count;
     if (strip.lasers[laser].next_place == StripData::kNowhere) continue;
     const std::size_t cell = strip.at(laser, first_place);
@@ -299,8 +300,8 @@ void cutSector(const StripData& strip, std::int64_t number, std::size_t later, S
       ++count;
     }
   }
-  sector.begin[lasers] = count;
-  sector.number = number;
+  sector.begin[lasers.end] = count;
+  if (lasers.end == strip.lasers.size()) sector.number = number;
 }
 
 /// Whether any return of one segment is a neighbour of any return of the other.
@@ -334,13 +335,17 @@ class Windows {
         subclusters_(subclusters),
         places_per_radian_(1.00001F / strip.radians_per_place) {}
 
-  /// Links a sector with itself and with those before it.
-  void linkSector(std::int64_t number) {
-    StripData::Sector& sector = linking_.sectors[static_cast<std::size_t>(number) % StripData::kSectorsKept];
-    cutSector(strip_, number, 0, sector, subclusters_);
-    const std::size_t lasers = strip_.lasers.size();
-    for (std::size_t laser = 0; laser < lasers; ++laser) prepareMask(sector, laser);
-    for (std::size_t laser = 0; laser < lasers; ++laser) {
+  /// Prepares some lasers of a sector for being linked. The lasers of a sector are to follow each other.
+  void prepareSector(std::int64_t number, const StripData::Lasers& lasers) {
+    StripData::Sector& sector = sectorOf(number);
+    cutSector(strip_, number, 0, lasers, sector, subclusters_);
+    for (std::size_t laser = lasers.begin; laser < lasers.end; ++laser) prepareMask(sector, laser);
+  }
+
+  /// Links a sector with itself and with those before it: what one in so many of its lasers has to compare.
+  void linkSector(std::int64_t number, std::size_t first_laser, std::size_t one_in) {
+    StripData::Sector& sector = sectorOf(number);
+    for (std::size_t laser = first_laser; laser < strip_.lasers.size(); laser += one_in) {
       if (sector.begin[laser] == sector.begin[laser + 1]) continue;
       if (linking_.masks[laser].by_places)
         comparePlaces(number, laser);
@@ -360,7 +365,7 @@ class Windows {
     const auto last = (static_cast<std::int64_t>(end) - 1) / 16;
     for (std::int64_t number = 0; number * 16 + turn - kMostReach < static_cast<std::int64_t>(end); ++number) {
       StripData::Sector& sector = linking_.beyond;
-      cutSector(strip_, number, strip_.steps, sector, subclusters_);
+      cutSector(strip_, number, strip_.steps, strip_.allLasers(), sector, subclusters_);
       for (std::size_t laser = 0; laser < strip_.lasers.size(); ++laser) {
         prepareMask(sector, laser);
         forEachSegment(sector, laser, [&](Window& window) {
@@ -383,9 +388,13 @@ class Windows {
     float nearest, farthest, lowest, highest, first, last;
   };
 
+  StripData::Sector& sectorOf(std::int64_t number) {
+    return linking_.sectors[static_cast<std::size_t>(number) % StripData::kSectorsKept];
+  }
+
   StripData::Sector& cut(std::int64_t number) {
-    StripData::Sector& sector = linking_.sectors[static_cast<std::size_t>(number) % StripData::kSectorsKept];
-    if (sector.number != number) cutSector(strip_, number, 0, sector, subclusters_);
+    StripData::Sector& sector = sectorOf(number);
+    if (sector.number != number) cutSector(strip_, number, 0, strip_.allLasers(), sector, subclusters_);
     return sector;
   }
 
@@ -544,10 +553,29 @@ class Windows {
 
 void linkPlaces(const StripData& strip, std::size_t begin, std::size_t end, StripData::Linking& linking,
                 DisjointSets& subclusters) {
-  linkSamePlaces(strip, begin, end, subclusters);
+  linkSamePlaces(strip, begin, end, strip.allLasers(), subclusters);
   Windows windows(strip, linking, subclusters);
-  for (std::size_t place = begin; place < end; place += StripData::kSector)
-    windows.linkSector(static_cast<std::int64_t>(place / StripData::kSector));
+  for (std::size_t place = begin; place < end; place += StripData::kSector) {
+    const auto sector = static_cast<std::int64_t>(place / StripData::kSector);
+    windows.prepareSector(sector, strip.allLasers());
+    windows.linkSector(sector, 0, 1);
+  }
+}
+
+/// One of the parts of what linkPlaces does for a sector, in their order, all of them about as long.
+void linkPart(const StripData& strip, std::size_t place, std::size_t part, StripData::Linking& linking,
+              DisjointSets& subclusters) {
+  constexpr std::size_t kSame = 4;
+  constexpr std::size_t kPrepare = 4;
+  constexpr std::size_t kLink = StripData::kParts - kSame - kPrepare;
+  const auto sector = static_cast<std::int64_t>(place / StripData::kSector);
+  Windows windows(strip, linking, subclusters);
+  if (part < kSame)
+    linkSamePlaces(strip, place, place + StripData::kSector, strip.someLasers(part, kSame), subclusters);
+  else if (part < kSame + kPrepare)
+    windows.prepareSector(sector, strip.someLasers(part - kSame, kPrepare));
+  else
+    windows.linkSector(sector, part - kSame - kPrepare, kLink);
 }
 
 void linkSeam(const StripData& strip, std::size_t end, StripData::Linking& linking, DisjointSets& subclusters) {
@@ -564,6 +592,7 @@ namespace {
 
 HWY_EXPORT(placeReturns);
 HWY_EXPORT(linkPlaces);
+HWY_EXPORT(linkPart);
 HWY_EXPORT(linkSeam);
 
 }  // namespace
@@ -571,7 +600,8 @@ HWY_EXPORT(linkSeam);
 void ViewStrip::prepare(const Tolerance& new_tolerance, const ViewHints& hints, std::size_t threads) {
   tolerance = new_tolerance;
   started = false;
-  linked = 0;
+  linked = claimed = 0;
+  linked_parts = 0;
   placing.resize(std::max(placing.size(), threads));
   for (Placing& one : placing) {
     one.loose.clear();
@@ -629,6 +659,7 @@ void ViewStrip::prepare(const Tolerance& new_tolerance, const ViewHints& hints, 
 void ViewStrip::addLasers(std::size_t count) {
   const std::size_t before = lasers.size();
   if (count <= before) return;
+  linked_parts = 0;  // of a sector with fewer lasers
   lasers.resize(count, {kInfinity, -kInfinity, kNowhere, 0});
   placing.front().elevations_changed = true;  // there are more of them
   const std::size_t size = count * stride + kMargin;
@@ -738,12 +769,23 @@ std::size_t ViewStrip::passed() const {
 }
 
 void ViewStrip::link(DisjointSets& subclusters) {
+  claim();
+  while (linked_parts > 0) linkPart(subclusters);
+  if (linked < claimed) HWY_DYNAMIC_DISPATCH(linkPlaces)(*this, linked, claimed, linking.front(), subclusters);
+  linked = claimed;
+}
+
+void ViewStrip::claim() {
   if (!started) return;
   updateElevations();
-  const std::size_t complete = passed();
-  if (complete <= linked) return;
-  HWY_DYNAMIC_DISPATCH(linkPlaces)(*this, linked, complete, linking.front(), subclusters);
-  linked = complete;
+  claimed = std::max(claimed, passed());
+}
+
+void ViewStrip::linkPart(DisjointSets& subclusters) {
+  HWY_DYNAMIC_DISPATCH(linkPart)(*this, linked, linked_parts, linking.front(), subclusters);
+  if (++linked_parts < kParts) return;
+  linked_parts = 0;
+  linked += kSector;
 }
 
 void ViewStrip::linkAll(DisjointSets* forests, std::size_t threads) {
@@ -763,7 +805,8 @@ void ViewStrip::linkAll(DisjointSets* forests, std::size_t threads) {
       (*this, firstOf(part), std::min(last, firstOf(part + 1)), linking[thread], forests[thread]);
     });
   }
-  linked = std::max(linked, passed());
+  linked = claimed = std::max(claimed, passed());
+  linked_parts = 0;
   HWY_DYNAMIC_DISPATCH(linkSeam)(*this, last, linking.front(), subclusters);
   for (Linking& one : linking)
     for (Sector& sector : one.sectors) sector.number = kNoSector;  // more may come there, or has come late

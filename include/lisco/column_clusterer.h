@@ -28,7 +28,8 @@ struct Parameters {
   std::size_t lasers = 0;                ///< most cells of a column; 0: any number
   /// How many columns are read together, 1..64. Whoever asks for the subclusters gets them for all columns
   /// added, so it is not seen from outside: 64 is the fastest, since the returns of a laser lie side by side in a
-  /// cloud's memory; 1 does the work of each column at once.
+  /// cloud's memory; 1 does the work of each column at once. The work of a block is spread over the columns of the next
+  /// one, so that no column takes much longer than others.
   std::size_t block_columns = Row::kColumns;
   /// How many threads share the work of one addColumns () of a whole rotation and of the update () after it; 0: one
   /// for each core. Columns that come one by one are the work of one thread.
@@ -109,8 +110,9 @@ class ColumnClusterer {
     MeasuredRow measured{};
   };
 
-  void clusterBlock();
-  void finishBlock(std::size_t columns);
+  void stagedBlockIsComplete();
+  void workOnPending(std::size_t columns);
+  void finishPending();
   void linkStrip();
   void readRow(Reading& reading, std::size_t thread, Row& row, std::size_t laser, std::uint32_t first_column,
                std::size_t columns);
@@ -132,7 +134,11 @@ class ColumnClusterer {
   std::vector<Reading> readings_;       ///< one for each thread; near returns are in their voxels
   std::size_t threads_ = 1;             ///< that have read
   ColumnBlock staged_;                  ///< columns that wait for their block to be complete
-  std::uint32_t column_ = 0;            ///< number of columns added
+  ColumnBlock pending_;                 ///< a complete block, read while the next one is staged
+  std::size_t pending_laser_ = 0;       ///< whose row is the next to be read
+  std::size_t columns_since_block_ = 0;
+  std::size_t parts_of_block_ = 0;  ///< what the strip had to link when the last block had been read
+  std::uint32_t column_ = 0;        ///< number of columns added
   std::vector<std::uint32_t> subcluster_sizes_;
   LaserOrder order_;
   bool is_ordered_ = false;  ///< since the last update()
@@ -174,15 +180,18 @@ void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt
   for (std::size_t first = 0; first < columns;) {
     const std::size_t count = std::min(columns - first, parameters_.block_columns - staged_.columns());
     if (count == parameters_.block_columns || (staged_.columns() == 0 && count >= kWorthReadingAtOnce)) {
+      finishPending();
       Reading& reading = readings_[threads_ - 1];
       for (std::size_t laser = 0; laser < lasers; ++laser) {
         ColumnBlock::fill(reading.row, 0, laser, first, count, cell_at);
         readRow(reading, threads_ - 1, reading.row, laser, column_, count);
       }
-      finishBlock(count);
+      column_ += static_cast<std::uint32_t>(count);
+      if (strip_.inUse()) strip_.link(forests_.front());
     } else {
       staged_.add(first, count, lasers, cell_at);
-      if (staged_.columns() == parameters_.block_columns) clusterBlock();
+      if (staged_.columns() == parameters_.block_columns) stagedBlockIsComplete();
+      workOnPending(count);
     }
     first += count;
   }

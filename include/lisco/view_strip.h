@@ -23,6 +23,7 @@ struct StripData {
   static constexpr std::int64_t kNowhere = std::numeric_limits<std::int64_t>::min();
   static constexpr std::size_t kSectorsKept = 8;
   static constexpr std::int64_t kNoSector = -1;
+  static constexpr std::size_t kParts = 24;  ///< in which a sector may be linked
 
   /// What is known of a laser.
   struct Laser {
@@ -78,6 +79,14 @@ struct StripData {
   std::size_t at(std::size_t laser, std::int64_t place) const {
     return laser * stride + static_cast<std::size_t>(place + static_cast<std::int64_t>(kMargin));
   }
+  struct Lasers {
+    std::size_t begin, end;
+  };
+  Lasers allLasers() const { return {0, lasers.size()}; }
+  Lasers someLasers(std::size_t part, std::size_t parts) const {
+    return {lasers.size() * part / parts, lasers.size() * (part + 1) / parts};
+  }
+
   bool isFree(std::size_t cell) const { return x[cell] != x[cell]; }
   Seen seenFromStart(float east, float north) const {
     return {east * start_cosine + north * start_sine, direction * (north * start_cosine - east * start_sine)};
@@ -107,6 +116,8 @@ struct StripData {
   std::vector<float> lowest, highest;              ///< radians, of each laser; turned over if upside down
   std::vector<float> lowest_above, highest_below;  ///< of all lasers up to, and from, each one
   std::size_t linked = 0;                          ///< places before this are compared
+  std::size_t linked_parts = 0;                    ///< of the sector that follows
+  std::size_t claimed = 0;                         ///< places before this are compared, or about to be
   std::vector<Placing> placing;
   std::vector<Linking> linking;
 };
@@ -150,6 +161,11 @@ class ViewStrip : private StripData {
 
   /// Compares what has come since the last call, as far as all lasers have passed it.
   void link(DisjointSets& subclusters);
+  /// The same in small parts, so that no column takes much longer than others: claim () says what is to be compared.
+  void claim();
+  std::size_t partsLeft() const { return (claimed - linked) / kSector * kParts - linked_parts; }
+  void linkPart(DisjointSets& subclusters);
+
   /// Compares all that has not been compared, the seam included. More returns may follow.
   void linkAll(DisjointSets& subclusters) { linkAll(&subclusters, 1); }
   /// The same by several threads, not more than prepare () was told. Each joins in a forest of its own, so that none
