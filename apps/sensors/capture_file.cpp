@@ -32,12 +32,6 @@ struct Bytes {
     size -= count;
     return true;
   }
-  /// Leaves out what follows the first ones. \return false if there are not that many
-  bool cutTo(std::size_t count) {
-    if (count > size) return false;
-    size = count;
-    return true;
-  }
 };
 
 constexpr unsigned kIpv4 = 0x0800, kIpv6 = 0x86DD, kUdp = 17;
@@ -61,7 +55,9 @@ bool skipIpv4(Bytes& packet) {
   const std::size_t header = 4UL * (packet.u8(0) & 0xFU);
   const unsigned fragment = packet.u16(6) & 0x3FFFU;  // more of them follow, or it is not the first
   if (header < 20 || fragment != 0 || packet.u8(9) != kUdp) return false;
-  return packet.cutTo(packet.u16(2)) && packet.skip(header);
+  // The VLP-16's position packets claim to be longer than they are: the UDP header's length decides what is whole.
+  packet.size = std::min<std::size_t>(packet.size, packet.u16(2));
+  return packet.skip(header);
 }
 
 bool skipIpv6(Bytes& packet) {
@@ -69,7 +65,7 @@ bool skipIpv6(Bytes& packet) {
   const std::size_t length = packet.u16(4);
   unsigned next = packet.u8(6);
   packet.skip(40);
-  if (!packet.cutTo(length)) return false;
+  packet.size = std::min(packet.size, length);
   constexpr unsigned kHopByHop = 0, kRouting = 43, kOptions = 60;
   while (next == kHopByHop || next == kRouting || next == kOptions) {
     if (packet.size < 8) return false;
@@ -107,7 +103,10 @@ bool skipToPayload(Bytes& frame, int link_type, std::optional<std::uint16_t> por
   const unsigned version = frame.u8(0) >> 4U;
   if (!(version == 4 ? skipIpv4(frame) : version == 6 && skipIpv6(frame))) return false;
   if (frame.size < 8 || (port && frame.u16(2) != *port)) return false;
-  return frame.cutTo(frame.u16(4)) && frame.skip(8);
+  const std::size_t length = frame.u16(4);
+  if (length > frame.size) return false;
+  frame.size = length;
+  return frame.skip(8);
 }
 
 }  // namespace

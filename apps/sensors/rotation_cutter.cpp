@@ -46,13 +46,12 @@ bool RotationCutter::startsRotation(double azimuth, bool after_break) {
   const Angle shorter_way = ahead > kTurn / 2 ? ahead - kTurn : ahead;
   const bool was_clockwise = isClockwise();
   drift_ = std::clamp(drift_ + std::clamp(shorter_way, -kOneStep, kOneStep), -kDrift, kDrift);
-  if (isClockwise() != was_clockwise && (was_clockwise ? turned_ > 0 : turned_ < 0))
-    turned_ += was_clockwise ? -kTurn : kTurn;
-
   if (isClockwise())
     turned_ += ahead > kTurn - kLongestStepBack ? ahead - kTurn : ahead;
   else
     turned_ += ahead < kLongestStepBack ? ahead : ahead - kTurn;
+  if (isClockwise() != was_clockwise && (was_clockwise ? turned_ > 0 : turned_ < 0))
+    turned_ += was_clockwise ? -kTurn : kTurn;
   if (std::abs(turned_) < kTurn) return false;
   turned_ += turned_ > 0 ? -kTurn : kTurn;
   return true;
