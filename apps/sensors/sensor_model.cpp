@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <system_error>
 
 #include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
@@ -96,14 +98,17 @@ std::vector<Laser> readCalibration(const std::filesystem::path& file) {
     for (const auto& [kind, item] : document.get_child("boost_serialization.DB.points_")) {
       if (kind != "item") continue;
       const tree::ptree& values = item.get_child("px");
-      const auto number = values.get<long>("id_");
-      if (number < 0 || number >= static_cast<long>(kCalibratedLasers))
-        fail("there is no laser " + std::to_string(number));
       const auto value = [&](const char* name) {
-        const auto read = values.get<double>(name);
-        if (!std::isfinite(read)) fail(std::string(name) + " of laser " + std::to_string(number) + " is not finite");
+        const std::string& text = values.get_child(name).data();
+        double read = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), read);
+        if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(read))
+          fail(std::string(name) + " is no number: '" + text + "'");
         return read;
       };
+      const double number = value("id_");
+      if (!(number >= 0 && number < static_cast<double>(kCalibratedLasers)) || number != std::floor(number))
+        fail("there is no laser " + values.get_child("id_").data());
       constexpr double kCentimetre = 0.01;
       Laser laser;
       laser.number = static_cast<std::size_t>(number);

@@ -349,6 +349,16 @@ TEST_F(DecoderTest, RefusesUnknownSensorsAndBadCalibrations) {
   EXPECT_NE(refusal("<boost_serialization/>").find("is no calibration file of an HDL-64E"), std::string::npos);
   EXPECT_EQ(refusal(calibrationXml(usualCalibration, 63)), "says nothing of laser 63");
   EXPECT_EQ(refusal(calibrationXml(usualCalibration, 65)), "there is no laser 64");
+  for (const std::string number : {"nan", "1e999", "", "3 degrees", "0x1"}) {
+    std::string bad = good;
+    bad.insert(bad.find("<vertCorrection_>") + 17, number + "</vertCorrection_><vertCorrection_>");
+    EXPECT_EQ(refusal(bad), "vertCorrection_ is no number: '" + number + "'");
+  }
+  for (const std::string number : {"-1", "64", "1.5", "99999999999999999999"}) {
+    std::string bad = good;
+    bad.replace(bad.find("<id_>7<") + 5, 1, number);
+    EXPECT_EQ(refusal(bad), "there is no laser " + number);
+  }
   EXPECT_NE(refusal(calibrationXml([](int laser) {
               auto values = usualCalibration(laser);
               values.erase("rotCorrection_");
