@@ -185,4 +185,11 @@ double Decoder::stagger() const {
   return most - least;
 }
 
+double stepIn(PacketSource& capture, const SensorModel& model) {
+  Decoder decoder(model);
+  Packet packet;
+  while (capture.next(packet) != PacketSource::Arrival::kEnd) decoder.decode(packet, [](const Column&) {});
+  return decoder.step();
+}
+
 }  // namespace lisco_apps

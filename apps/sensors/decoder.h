@@ -25,8 +25,8 @@ struct Cell {
 /// One firing of all lasers.
 struct Column {
   const std::vector<Cell>& cells;  ///< from the top laser to the bottom one
-  double azimuth;                  ///< of its first laser, as the sensor counts: degrees clockwise, 0 <= azimuth < 360
-  double time_us;                  ///< of its first laser, by the sensor's clock: microseconds past the hour
+  double azimuth;                  ///< when its first laser fires, by the sensor: degrees clockwise, 0 <= azimuth < 360
+  double time_us;                  ///< the same by its clock: microseconds past the hour, and beyond it by little
   /// Whether at least a whole turn is missing before it, or nobody knows how much.
   bool after_break;
 };
@@ -38,14 +38,14 @@ struct Column {
 ///     decoder.decode (packet, [] (const Column& column) { ... });
 ///
 /// The lasers of a column fire one after the other while the sensor turns on, so each gets an azimuth of its own, by how
-/// far the sensor turns from one block to the next: the median of all such steps seen lately, since the azimuth is
-/// a rounded number. Dual returns: the stronger of both is kept, as the sensor by itself sends it if it is to send one.
+/// far the sensor turns from one block to the next: the median of all such steps seen lately, since a single azimuth
+/// is a rounded number. Dual returns: the stronger of both is kept, as the sensor by itself sends it if it is to send one.
 /// Late packets are dropped, see PacketOrder.
 ///
-/// Why not by PCL's grabbers, which read the same packets: they leave out that the lasers fire one after the other,
-/// drop what did not return, so that columns are lost, and know no end of a capture, no position packets in it, no
-/// VLS-128, and of the VLP-16's second firings only azimuths that are rounded down. What they compute of a
-/// calibration, this does too.
+/// Not by PCL's HDLGrabber and VLPGrabber, which read the same packets: they leave out that the lasers fire one after
+/// the other (in the captures of the tests, that moves returns by up to 0.23 m), drop what did not return, so that
+/// columns cannot be told, and know neither the end of a capture nor the VLS-128. What they compute of an HDL-64E's
+/// calibration is computed here too.
 ///
 /// Nothing is allocated from packet to packet. Any bytes are fine.
 class Decoder {
@@ -75,7 +75,7 @@ class Decoder {
 
   /// How far the sensor turns from one block of all lasers to the next, degrees, 0 if that is not known yet.
   double step() const { return step_; }
-  /// Sets it instead of measuring it, as whoever knows a whole capture can.
+  /// Sets it instead of measuring it, as whoever has the whole capture can: see stepIn().
   void setStep(double degrees);
 
   /// Columns of a full turn, and microseconds it takes, as the sensor turns now; 0 if that is not known yet.
@@ -127,5 +127,8 @@ class Decoder {
   std::array<std::uint32_t, kStepLimit> steps_{};  ///< how often each was seen, hundredths of a degree
   std::uint32_t step_count_ = 0;
 };
+
+/// Decoder::step() of all packets of a capture, which is read to its end.
+double stepIn(PacketSource& capture, const SensorModel& model);
 
 }  // namespace lisco_apps

@@ -22,14 +22,16 @@ std::int64_t between(std::uint32_t from, std::uint32_t to) {
 
 PacketOrder::Place PacketOrder::place(std::uint32_t timestamp_us, double period_us) {
   const std::int64_t gap = started_ ? between(newest_, timestamp_us) : 0;
-  const bool is_late = started_ && gap <= 0 && gap >= -kLongestGapUs;
+  clock_stands_ = clock_stands_ && gap == 0;
+  const bool is_late = started_ && !clock_stands_ && gap <= 0 && gap >= -kLongestGapUs;
   if (is_late) {
-    late_in_a_row_ = late_in_a_row_ > 0 && between(newest_late_, timestamp_us) > 0 ? late_in_a_row_ + 1 : 1;
+    late_in_a_row_ = late_in_a_row_ > 0 && between(newest_late_, timestamp_us) >= 0 ? late_in_a_row_ + 1 : 1;
     newest_late_ = timestamp_us;
     if (late_in_a_row_ <= kMostLate) {
       ++late_;
       return Place::kLate;
     }
+    clock_stands_ = gap == 0;
   }
   const bool is_new_clock = started_ && (is_late || std::abs(gap) > kLongestGapUs);
   started_ = true;

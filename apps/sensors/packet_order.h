@@ -37,6 +37,7 @@ class PacketOrder {
   void measureUsualGap();
 
   bool started_ = false;
+  bool clock_stands_ = false;      ///< packets do not tell their times
   std::uint32_t newest_ = 0;       ///< time of the newest packet
   std::uint32_t newest_late_ = 0;  ///< time of the last late one
   unsigned late_in_a_row_ = 0;     ///< and in the order of their times

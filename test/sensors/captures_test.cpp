@@ -144,11 +144,11 @@ TEST_P(RealCapture, GivesTheReturnsOfTheScan) {
 }
 
 TEST_P(RealCapture, GivesThemExactlyByTheStepOfTheWholeCapture) {
-  Decoder first(lisco_apps::makeSensorModel(GetParam().sensor));
-  decodeAll(first, [](const Column&, std::size_t) {});
-  Decoder second(lisco_apps::makeSensorModel(GetParam().sensor));
-  second.setStep(first.step());
-  EXPECT_LE(differenceFromScan(second), 1e-9);
+  const lisco_apps::SensorModel model = lisco_apps::makeSensorModel(GetParam().sensor);
+  CaptureFile source(file());
+  Decoder decoder(model);
+  decoder.setStep(lisco_apps::stepIn(source, model));
+  EXPECT_LE(differenceFromScan(decoder), 1e-9);
 }
 
 TEST_P(RealCapture, IsSeenAsAnotherSensors) {

@@ -72,6 +72,15 @@ TEST(PacketOrder, NoticesThatARecordingStartsAgain) {
   EXPECT_EQ(order.clockJumps(), 1U);
 }
 
+TEST(PacketOrder, GoesOnIfTheClockStands) {
+  PacketOrder order;
+  const std::vector<Place> places = placesOf(order, std::vector<double>(40, 3.));
+  for (std::size_t i = 0; i < places.size(); ++i)
+    EXPECT_EQ(places[i], i == 0 || i > 17 ? Place::kNext : i < 17 ? Place::kLate : Place::kNewClock) << i;
+  EXPECT_EQ(placesOf(order, {4, 4, 5}), (std::vector{Place::kNext, Place::kLate, Place::kNext}));
+  EXPECT_EQ(order.missing(), 0U);
+}
+
 TEST(PacketOrder, TellsTheUsualGap) {
   PacketOrder order;
   std::vector<double> periods;

@@ -9,13 +9,20 @@
 
 #include <chrono>
 #include <string>
+#include <vector>
 
 #include "packets.h"
+#include "random.h"
+#include "sensors/decoder.h"
 #include "temporary_folder.h"
 
 namespace lisco_test {
 namespace {
 
+using lisco_apps::Cell;
+using lisco_apps::Column;
+using lisco_apps::Decoder;
+using lisco_apps::makeSensorModel;
 using lisco_apps::Packet;
 using lisco_apps::UdpReceiver;
 using Arrival = lisco_apps::PacketSource::Arrival;
@@ -45,6 +52,32 @@ TEST(UdpReceiver, GivesWhatComes) {
     EXPECT_GE(packet.time_us, std::chrono::duration_cast<std::chrono::microseconds>(before).count());
   }
   EXPECT_EQ(receiver.packets(), 4U);
+}
+
+TEST(UdpReceiver, GivesTheColumnsThatWereSent) {
+  UdpReceiver receiver(0);
+  Decoder live(makeSensorModel("vls128")), direct(makeSensorModel("vls128"));
+  std::vector<float> came, sent;
+  const auto saveIn = [](std::vector<float>& cells) {
+    return [&cells](const Column& column) {
+      for (const Cell& cell : column.cells) cells.insert(cells.end(), {cell.x, cell.y, cell.z, cell.intensity});
+    };
+  };
+  PacketEncoder encoder("vls128");
+  Random random(4);
+  for (int i = 0; i < 600; ++i) {  // a turn
+    const Bytes payload = encoder.next([&](std::size_t, std::size_t, bool) {
+      return Measured{static_cast<std::uint16_t>(1 + random.below(60000)), 1};
+    });
+    direct.decode(asPacket(payload), saveIn(sent));
+    send(payload, receiver.port());
+    Packet packet;
+    ASSERT_EQ(receiver.next(packet), Arrival::kPacket);
+    live.decode(packet, saveIn(came));
+  }
+  EXPECT_EQ(came, sent);
+  EXPECT_EQ(came.size(), 600U * 3 * 128 * 4);
+  EXPECT_EQ(live.order().missing() + live.counts().late, 0U);
 }
 
 TEST(UdpReceiver, DoesNotWaitForLong) {
