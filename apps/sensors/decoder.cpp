@@ -86,9 +86,9 @@ void Decoder::setStep(double degrees) {
 void Decoder::measureStep(const std::uint8_t* data, const Layout& layout) {
   for (std::size_t g = 0; g < layout.groups; ++g) {
     const unsigned azimuth = azimuthOf(data + kBlockBytes * g * layout.group) % kTurn;
-    const unsigned step = last_azimuth_ ? (azimuth + kTurn - *last_azimuth_) % kTurn : 0;
+    const unsigned step = last_azimuth_ ? (azimuth + kTurn - *last_azimuth_) % kTurn : kTurn;
     last_azimuth_ = azimuth;
-    if (step == 0 || step >= kStepLimit) continue;  // it stands still, or packets are missing
+    if (step >= kStepLimit) continue;  // packets are missing before it
     ++steps_[step];
     ++step_count_;
   }

@@ -73,12 +73,13 @@ class Decoder {
   const Counts& counts() const { return counts_; }
   const PacketOrder& order() const { return order_; }
 
-  /// How far the sensor turns from one block of all lasers to the next, degrees, 0 if that is not known yet.
+  /// How far the sensor turns from one block of all lasers to the next, degrees, 0 if it stands still or that is not
+  /// known yet.
   double step() const { return step_; }
   /// Sets it instead of measuring it, as whoever has the whole capture can: see stepIn().
   void setStep(double degrees);
 
-  /// Columns of a full turn, and microseconds it takes, as the sensor turns now; 0 if that is not known yet.
+  /// Columns of a full turn, and microseconds it takes, as the sensor turns now; 0 if step() is 0.
   double columnsPerTurn() const;
   double turnUs() const { return columnsPerTurn() * model_.firing_period_us; }
   /// How far the azimuths of a column's lasers lie apart, degrees.

@@ -304,7 +304,7 @@ TEST_F(DecoderTest, FollowsAMotorThatChangesItsSpeed) {
   Decoder decoder(makeSensorModel("hdl32e"));
   PacketEncoder encoder("hdl32e");
   std::vector<SavedColumn> columns;
-  for (const unsigned step : {20U, 40U, 10U}) {
+  for (const unsigned step : {20U, 40U, 10U, 0U}) {
     encoder.step = step;
     for (int i = 0; i < 20000; ++i) {
       columns.clear();

@@ -94,12 +94,15 @@ TEST(RotationCutter, ForgivesMissingColumns) {
 }
 
 TEST(RotationCutter, StartsAnewAfterABreak) {
-  RotationCutter cutter;
-  EXPECT_TRUE(cutter.startsRotation(10));
-  EXPECT_FALSE(cutter.startsRotation(11));
-  EXPECT_TRUE(cutter.startsRotation(12, true));
-  EXPECT_FALSE(cutter.startsRotation(200));
-  EXPECT_TRUE(cutter.startsRotation(10)) << "the cut stays where it is";
+  for (const double direction : {1., -1.}) {
+    RotationCutter cutter;
+    EXPECT_TRUE(cutter.startsRotation(0));
+    EXPECT_FALSE(cutter.startsRotation(wrapped(direction)));
+    EXPECT_TRUE(cutter.startsRotation(wrapped(2 * direction), true));
+    EXPECT_FALSE(cutter.startsRotation(wrapped(200 * direction)));
+    EXPECT_FALSE(cutter.startsRotation(wrapped(359 * direction)));
+    EXPECT_TRUE(cutter.startsRotation(0)) << "the cut stays where it is";
+  }
 }
 
 TEST(RotationCutter, StaysWithASensorThatStandsStill) {
