@@ -4,7 +4,7 @@
 # if all of it is there.
 set -euo pipefail
 
-packages=(g++ cmake ninja-build pkg-config libpcl-dev libhwy-dev libboost-program-options-dev nlohmann-json3-dev libcairo2-dev
+packages=(g++ cmake ninja-build pkg-config libpcl-dev libhwy-dev libboost-program-options-dev nlohmann-json3-dev libcairo2-dev libpcap-dev
           fonts-dejavu-core gnuplot-nox libgtest-dev liblz4-dev)
 
 missing=()

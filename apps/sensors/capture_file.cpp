@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "capture_file.h"
+
+#include <pcap/pcap.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+namespace lisco_apps {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
+  throw std::runtime_error(file.string() + ": " + what);
+}
+
+/// Bytes that are left of a frame. Numbers are big-endian, as everywhere on a network.
+struct Bytes {
+  const std::uint8_t* data;
+  std::size_t size;
+
+  unsigned u8(std::size_t at) const { return data[at]; }
+  unsigned u16(std::size_t at) const { return u8(at) << 8U | u8(at + 1); }
+  /// Leaves out the first ones. \return false if there are not that many
+  bool skip(std::size_t count) {
+    if (count > size) return false;
+    data += count;
+    size -= count;
+    return true;
+  }
+};
+
+constexpr unsigned kIpv4 = 0x0800, kIpv6 = 0x86DD, kUdp = 17;
+constexpr std::array<unsigned, 3> kVlanTags{0x8100, 0x88A8, 0x9100};
+
+/// Skips a header that ends with an EtherType, and VLAN tags after it. \return false if that is not IP
+bool skipLink(Bytes& frame, std::size_t type_at, std::size_t header) {
+  if (frame.size < header) return false;
+  unsigned type = frame.u16(type_at);
+  frame.skip(header);
+  while (std::find(kVlanTags.begin(), kVlanTags.end(), type) != kVlanTags.end()) {
+    if (frame.size < 4) return false;
+    type = frame.u16(2);
+    frame.skip(4);
+  }
+  return type == kIpv4 || type == kIpv6;
+}
+
+bool skipIpv4(Bytes& packet) {
+  if (packet.size < 20) return false;
+  const std::size_t header = 4UL * (packet.u8(0) & 0xFU);
+  const unsigned fragment = packet.u16(6) & 0x3FFFU;  // more of them follow, or it is not the first
+  if (header < 20 || fragment != 0 || packet.u8(9) != kUdp) return false;
+  // The VLP-16's position packets claim to be longer than they are: the UDP header's length decides what is whole.
+  packet.size = std::min<std::size_t>(packet.size, packet.u16(2));
+  return packet.skip(header);
+}
+
+bool skipIpv6(Bytes& packet) {
+  if (packet.size < 40) return false;
+  const std::size_t length = packet.u16(4);
+  unsigned next = packet.u8(6);
+  packet.skip(40);
+  packet.size = std::min(packet.size, length);
+  constexpr unsigned kHopByHop = 0, kRouting = 43, kOptions = 60;
+  while (next == kHopByHop || next == kRouting || next == kOptions) {
+    if (packet.size < 8) return false;
+    next = packet.u8(0);
+    if (!packet.skip(8 * (packet.u8(1) + 1UL))) return false;
+  }
+  return next == kUdp;
+}
+
+/// \return false if the network is of a kind that is not known
+bool isKnown(int link_type) {
+  return link_type == DLT_EN10MB || link_type == DLT_LINUX_SLL || link_type == DLT_LINUX_SLL2 || link_type == DLT_RAW ||
+         link_type == DLT_IPV4 || link_type == DLT_IPV6 || link_type == DLT_NULL || link_type == DLT_LOOP;
+}
+
+bool skipToIp(Bytes& frame, int link_type) {
+  switch (link_type) {
+    case DLT_EN10MB:
+      return skipLink(frame, 12, 14);
+    case DLT_LINUX_SLL:
+      return skipLink(frame, 14, 16);
+    case DLT_LINUX_SLL2:
+      return skipLink(frame, 0, 20);
+    case DLT_NULL:
+    case DLT_LOOP:
+      return frame.skip(4);
+    default:
+      return true;
+  }
+}
+
+/// Makes a frame the payload of its UDP packet. \return false if it holds no whole one to this port
+bool skipToPayload(Bytes& frame, int link_type, std::optional<std::uint16_t> port) {
+  if (!skipToIp(frame, link_type) || frame.size == 0) return false;
+  const unsigned version = frame.u8(0) >> 4U;
+  if (!(version == 4 ? skipIpv4(frame) : version == 6 && skipIpv6(frame))) return false;
+  if (frame.size < 8 || (port && frame.u16(2) != *port)) return false;
+  const std::size_t length = frame.u16(4);
+  if (length > frame.size) return false;
+  frame.size = length;
+  return frame.skip(8);
+}
+
+}  // namespace
+
+void CaptureFile::Close::operator()(pcap* capture) const {
+  pcap_close(capture);
+}
+
+CaptureFile::CaptureFile(const std::filesystem::path& file, std::optional<std::uint16_t> port)
+    : file_(file), port_(port) {
+  // By a stream: libpcap takes a file named "-" for the standard input.
+  std::FILE* const stream = std::fopen(file.c_str(), "rb");
+  if (stream == nullptr) fail(file, std::strerror(errno));
+  std::array<char, PCAP_ERRBUF_SIZE> why{};
+  capture_.reset(pcap_fopen_offline(stream, why.data()));
+  if (!capture_) {
+    std::fclose(stream);
+    fail(file, std::string("is no capture of packets: ") + why.data());
+  }
+  link_type_ = pcap_datalink(capture_.get());
+  if (!isKnown(link_type_)) {
+    const char* const name = pcap_datalink_val_to_name(link_type_);
+    fail(file, "is a capture of another kind of network: " + (name ? name : std::to_string(link_type_)));
+  }
+}
+
+PacketSource::Arrival CaptureFile::next(Packet& packet) {
+  pcap_pkthdr* header = nullptr;
+  const u_char* data = nullptr;
+  while (error_.empty() && pcap_next_ex(capture_.get(), &header, &data) == 1) {
+    Bytes payload{data, header->caplen};
+    if (!skipToPayload(payload, link_type_, port_)) {
+      ++foreign_;
+      continue;
+    }
+    ++packets_;
+    packet = {payload.data, payload.size, std::int64_t{1000000} * header->ts.tv_sec + header->ts.tv_usec};
+    return Arrival::kPacket;
+  }
+  if (const char* const why = pcap_geterr(capture_.get()); error_.empty() && *why != '\0')
+    error_ = file_.string() + ": breaks off: " + why;
+  return Arrival::kEnd;
+}
+
+}  // namespace lisco_apps

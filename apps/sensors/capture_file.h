@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "packet_source.h"
+
+struct pcap;
+
+namespace lisco_apps {
+
+/// The UDP packets of a capture, as fast as they can be read: pcap or pcapng, of Ethernet (with VLAN tags too), Linux
+/// "cooked", loopback or raw IP, over IPv4 or IPv6. Fragments of packets are not put together; they count as foreign.
+///
+/// A file that breaks off or goes bad ends there, and error() says so.
+class CaptureFile : public PacketSource {
+ public:
+  /// \param port only packets to this port; nullopt: to any
+  /// \throws std::runtime_error with one line if the file is missing, or no capture, or of another kind of network
+  explicit CaptureFile(const std::filesystem::path& file, std::optional<std::uint16_t> port = std::nullopt);
+
+  Arrival next(Packet& packet) override;
+
+ private:
+  struct Close {
+    void operator()(pcap* capture) const;
+  };
+
+  std::filesystem::path file_;
+  std::optional<std::uint16_t> port_;
+  std::unique_ptr<pcap, Close> capture_;
+  int link_type_ = 0;
+};
+
+}  // namespace lisco_apps

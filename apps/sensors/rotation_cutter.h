@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace lisco_apps {
+
+/// Cuts endless columns into rotations. The sensor may turn either way; columns may step back a little, and any number
+/// of them may be missing. No rotation holds more than a full turn (and a step back).
+class RotationCutter {
+ public:
+  /// \param cut azimuth at which each rotation begins, degrees; nullopt: where the first column lies
+  explicit RotationCutter(std::optional<double> cut = std::nullopt);
+
+  /// \param azimuth of the next column, degrees, finite; steps of more than 350 degrees are steps back
+  /// \param after_break whether a whole turn or more is missing before it, which the azimuth cannot tell
+  /// \return whether a rotation starts with it; so it does with the very first column
+  bool startsRotation(double azimuth, bool after_break = false);
+
+ private:
+  using Angle = std::int64_t;  ///< millionths of a degree: sums are exact
+
+  bool isClockwise() const { return drift_ >= 0; }
+  void placeFromCut(Angle azimuth);
+
+  std::optional<Angle> cut_;
+  bool started_ = false;
+  Angle last_ = 0;    ///< azimuth of the last column
+  Angle turned_ = 0;  ///< from the cut to the last column, clockwise
+  Angle drift_ = 0;   ///< which way the sensor has been turning lately
+};
+
+}  // namespace lisco_apps

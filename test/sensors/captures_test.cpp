@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+// Captures of real sensors against organized scans that others decoded of them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "sensors/capture_file.h"
+#include "sensors/decoder.h"
+#include "sensors/rotation_cutter.h"
+
+namespace lisco_test {
+namespace {
+
+namespace fs = std::filesystem;
+using lisco_apps::CaptureFile;
+using lisco_apps::Cell;
+using lisco_apps::Column;
+using lisco_apps::Decoder;
+using lisco_apps::Packet;
+
+struct Case {
+  const char *capture, *sensor, *scan;
+  std::size_t rotation;           ///< of the capture's rotations, cut where it begins
+  std::uint64_t data, positions;  ///< packets
+  bool says_other_model;
+  /// How far a return may lie from the scan's if the turning is measured while decoding, metres. The scan was decoded
+  /// with the median step of the whole capture.
+  double tolerance;
+};
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.scan;
+}
+
+const Case kCases[] = {
+    {"hdl32e_outdoor", "hdl32e", "hdl32e_outdoor_0", 2, 2702, 299, false, 1e-6},
+    {"hdl32e_outdoor", "hdl32e", "hdl32e_outdoor_1", 12, 2702, 299, false, 1e-6},
+    {"vlp16_close", "vlp16", "vlp16_close_0", 10, 1902, 367, true, 3e-3},
+    {"vlp16_street", "vlp16", "vlp16_street_0", 0, 84, 16, true, 1e-6},
+    {"vls128_street", "vls128", "vls128_street_0", 0, 2193, 0, false, 1e-6},
+};
+
+/// x, y, z and intensity, row by row.
+struct Scan {
+  std::size_t width = 0, height = 0;
+  std::vector<Cell> cells;
+};
+
+Scan readPcd(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  Scan scan;
+  for (std::string key; key != "DATA" && stream >> key;) {
+    if (key == "WIDTH") stream >> scan.width;
+    if (key == "HEIGHT") stream >> scan.height;
+  }
+  std::string rest;
+  std::getline(stream, rest);
+  scan.cells.resize(scan.width * scan.height);
+  stream.read(reinterpret_cast<char*>(scan.cells.data()),
+              static_cast<std::streamsize>(scan.cells.size() * sizeof(Cell)));
+  EXPECT_TRUE(stream.good()) << file;
+  return scan;
+}
+
+fs::path dataFolder() {
+  const char* const folder = std::getenv("LISCO_TEST_DATA");
+  return folder != nullptr ? folder : LISCO_TEST_DATA_DEFAULT;
+}
+
+class RealCapture : public testing::TestWithParam<Case> {
+ protected:
+  void SetUp() override {
+    if (!fs::is_directory(dataFolder() / "captures"))
+      GTEST_SKIP() << "no real captures: there is no folder " << dataFolder() / "captures"
+                   << "; set LISCO_TEST_DATA to the data folder";
+  }
+  fs::path file() const { return dataFolder() / "captures" / (std::string(GetParam().capture) + ".pcap"); }
+
+  /// Gives all columns, with the number of their rotation, to visit (column, rotation).
+  template <typename Visit>
+  void decodeAll(Decoder& decoder, Visit&& visit) const {
+    CaptureFile source(file());
+    lisco_apps::RotationCutter cutter;
+    std::size_t rotations = 0;
+    Packet packet;
+    while (source.next(packet) == CaptureFile::Arrival::kPacket)
+      decoder.decode(packet, [&](const Column& column) {
+        if (cutter.startsRotation(column.azimuth, column.after_break)) ++rotations;
+        visit(column, rotations - 1);
+      });
+    EXPECT_EQ(source.error(), "");
+    EXPECT_EQ(source.foreign(), 0U);
+  }
+
+  /// Decodes the rotation of the scan and holds it against it: the same cells without returns, the same intensities.
+  /// \return by how much the coordinates differ at most, metres
+  double differenceFromScan(Decoder& decoder) const {
+    const Scan scan = readPcd(dataFolder() / "scans" / (std::string(GetParam().scan) + ".pcd"));
+    double most = 0;
+    std::size_t width = 0, unlike = 0, differing = 0, returns = 0;
+    decodeAll(decoder, [&](const Column& column, std::size_t rotation) {
+      if (rotation != GetParam().rotation) return;
+      const std::size_t x = width++;
+      if (x >= scan.width || column.cells.size() != scan.height) return;
+      for (std::size_t row = 0; row < scan.height; ++row) {
+        const Cell &ours = column.cells[row], &theirs = scan.cells[row * scan.width + x];
+        if (std::isnan(ours.x) != std::isnan(theirs.x)) ++unlike;
+        if (std::isnan(ours.x) || std::isnan(theirs.x)) continue;
+        ++returns;
+        if (ours.intensity != theirs.intensity) ++unlike;
+        const double difference = std::hypot(ours.x - theirs.x, ours.y - theirs.y, ours.z - theirs.z);
+        if (difference > 0) ++differing;
+        most = std::max(most, difference);
+      }
+    });
+    EXPECT_EQ(width, scan.width);
+    EXPECT_EQ(decoder.model().lasers.size(), scan.height);
+    EXPECT_EQ(unlike, 0U);
+    EXPECT_GT(returns, 10000U);
+    std::printf("%s: %zu of %zu returns differ, by up to %g m\n", GetParam().scan, differing, returns, most);
+    return most;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Captures, RealCapture, testing::ValuesIn(kCases),
+                         [](const auto& test) { return std::string(test.param.scan); });
+
+TEST_P(RealCapture, GivesTheReturnsOfTheScan) {
+  Decoder decoder(lisco_apps::makeSensorModel(GetParam().sensor));
+  EXPECT_LE(differenceFromScan(decoder), GetParam().tolerance);
+  const Decoder::Counts& counts = decoder.counts();
+  EXPECT_EQ(counts.data, GetParam().data);
+  EXPECT_EQ(counts.position, GetParam().positions);
+  EXPECT_EQ(counts.foreign + counts.late + counts.dual, 0U);
+  EXPECT_EQ(counts.says_other_model, GetParam().says_other_model ? counts.data : 0U);
+  EXPECT_EQ(decoder.order().clockJumps(), 0U);
+}
+
+TEST_P(RealCapture, GivesThemExactlyByTheStepOfTheWholeCapture) {
+  const lisco_apps::SensorModel model = lisco_apps::makeSensorModel(GetParam().sensor);
+  CaptureFile source(file());
+  Decoder decoder(model);
+  decoder.setStep(lisco_apps::stepIn(source, model));
+  EXPECT_LE(differenceFromScan(decoder), 1e-9);
+}
+
+TEST_P(RealCapture, IsSeenAsAnotherSensors) {
+  for (const std::string other : {"vlp16", "hdl32e", "vls128"}) {
+    if (other == GetParam().sensor) continue;
+    Decoder decoder(lisco_apps::makeSensorModel(other));
+    decodeAll(decoder, [](const Column&, std::size_t) {});
+    if (other == "vls128" || GetParam().sensor == std::string("vls128")) {
+      EXPECT_EQ(decoder.counts().foreign, GetParam().data);
+    } else {
+      EXPECT_GT(std::abs(decoder.order().usualGap() / decoder.packetPeriodUs() - 1), 0.5);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lisco_test

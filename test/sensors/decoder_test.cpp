@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "sensors/decoder.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "calibration.h"
+#include "packets.h"
+#include "random.h"
+#include "temporary_folder.h"
+
+namespace lisco_test {
+namespace {
+
+using lisco_apps::Cell;
+using lisco_apps::Column;
+using lisco_apps::Decoder;
+using lisco_apps::makeSensorModel;
+using Kind = Decoder::Kind;
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// A column that stays.
+struct SavedColumn {
+  std::vector<Cell> cells;
+  double azimuth, time_us;
+  bool after_break;
+};
+
+Kind decode(Decoder& decoder, const Bytes& payload, std::vector<SavedColumn>& columns) {
+  return decoder.decode(asPacket(payload), [&](const Column& column) {
+    columns.push_back({column.cells, column.azimuth, column.time_us, column.after_break});
+  });
+}
+std::vector<SavedColumn> columnsOf(Decoder& decoder, const Bytes& payload) {
+  std::vector<SavedColumn> columns;
+  EXPECT_EQ(decode(decoder, payload, columns), Kind::kData);
+  return columns;
+}
+
+/// Clockwise from straight ahead, degrees.
+double azimuthOf(const Cell& cell) {
+  return std::atan2(-cell.y, cell.x) * 180 / kPi;
+}
+double rangeOf(const Cell& cell) {
+  return std::hypot(cell.x, cell.y, cell.z);
+}
+bool isReturn(const Cell& cell) {
+  return std::isfinite(cell.x) && std::isfinite(cell.y) && std::isfinite(cell.z) && std::isfinite(cell.intensity);
+}
+bool isNoReturn(const Cell& cell) {
+  return std::isnan(cell.x) && std::isnan(cell.y) && std::isnan(cell.z) && std::isnan(cell.intensity);
+}
+
+class DecoderTest : public InTemporaryFolder {
+ protected:
+  std::filesystem::path calibration(const std::string& xml) const {
+    writeFile(folder_ / "db.xml", Bytes(xml.begin(), xml.end()));
+    return folder_ / "db.xml";
+  }
+  Decoder decoderOf(const std::string& name) const {
+    return Decoder(makeSensorModel(
+        name, name == "hdl64e" ? calibration(calibrationXml(usualCalibration)) : std::filesystem::path()));
+  }
+};
+
+class EachSensor : public DecoderTest, public testing::WithParamInterface<const char*> {
+ protected:
+  Decoder decoder() const { return decoderOf(GetParam()); }
+};
+INSTANTIATE_TEST_SUITE_P(Sensors, EachSensor, testing::Values("vlp16", "hdl32e", "hdl64e", "vls128"),
+                         [](const auto& test) { return std::string(test.param); });
+
+TEST_P(EachSensor, GivesAColumnForEachFiring) {
+  for (const bool is_dual : {false, true}) {
+    Decoder decoder = this->decoder();
+    PacketEncoder encoder(GetParam(), is_dual);
+    std::vector<SavedColumn> columns;
+    constexpr int kPackets = 40;
+    for (int i = 0; i < kPackets; ++i)
+      EXPECT_EQ(decode(decoder, encoder.next(constantWorld({2500, 9})), columns), Kind::kData);
+    ASSERT_EQ(columns.size(), kPackets * encoder.firingsPerPacket());
+    const double unit = decoder.model().distance_unit;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const SavedColumn& column = columns[i];
+      ASSERT_EQ(column.cells.size(), encoder.lasers());
+      EXPECT_NEAR(column.time_us, 5e6 + static_cast<double>(i) * decoder.model().firing_period_us, 1);
+      EXPECT_FALSE(column.after_break);
+      for (std::size_t row = 0; row < column.cells.size(); ++row) {
+        const Cell& cell = column.cells[row];
+        ASSERT_TRUE(isReturn(cell));
+        EXPECT_EQ(cell.intensity, 9);
+        if (GetParam() == std::string("hdl64e")) continue;  // its rays do not start at the origin
+        EXPECT_NEAR(rangeOf(cell), 2500 * unit, 1e-5);
+        EXPECT_NEAR(std::asin(cell.z / rangeOf(cell)) * 180 / kPi, decoder.model().lasers[row].elevation, 1e-4);
+        EXPECT_TRUE(row == 0 || cell.z < column.cells[row - 1].z) << "not from top to bottom";
+      }
+    }
+    const Decoder::Counts& counts = decoder.counts();
+    EXPECT_EQ(counts.data, 40U);
+    EXPECT_EQ(counts.dual, is_dual ? 40U : 0U);
+    EXPECT_EQ(counts.columns, columns.size());
+    EXPECT_EQ(counts.late + counts.position + counts.foreign + counts.says_other_model, 0U);
+    EXPECT_EQ(decoder.order().missing(), 0U);
+    EXPECT_NEAR(decoder.packetPeriodUs(), encoder.packetPeriodUs(), 1e-6);
+    EXPECT_NEAR(decoder.order().usualGap(), encoder.packetPeriodUs(), 1);
+    EXPECT_DOUBLE_EQ(decoder.step(), 0.2);
+    EXPECT_DOUBLE_EQ(decoder.columnsPerTurn(), 360 / 0.2 * (GetParam() == std::string("vlp16") ? 2 : 1));
+  }
+}
+
+TEST_P(EachSensor, PutsEachMeasurementIntoItsCell) {
+  Decoder decoder = this->decoder();
+  PacketEncoder encoder(GetParam());
+  // One laser alone returns in each firing.
+  const std::vector<lisco_apps::Laser>& lasers = decoder.model().lasers;
+  std::size_t firing = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Bytes payload = encoder.next([](std::size_t number, std::size_t laser, bool) {
+      return Measured{static_cast<std::uint16_t>(laser == number % 128 ? 1000 : 0), static_cast<std::uint8_t>(laser)};
+    });
+    for (const SavedColumn& column : columnsOf(decoder, payload)) {
+      for (std::size_t row = 0; row < column.cells.size(); ++row) {
+        const bool has_one = lasers[row].number == firing % 128;
+        ASSERT_TRUE(has_one ? isReturn(column.cells[row]) : isNoReturn(column.cells[row])) << firing << ' ' << row;
+        EXPECT_TRUE(!has_one || column.cells[row].intensity == static_cast<float>(lasers[row].number));
+      }
+      ++firing;
+    }
+  }
+}
+
+TEST_P(EachSensor, WrapsTheAzimuth) {
+  Decoder decoder = this->decoder();
+  PacketEncoder encoder(GetParam());
+  encoder.step = 23;
+  encoder.azimuth = 36000 - 23 * 30;
+  double expected = encoder.azimuth / 100.;
+  const bool has_two = GetParam() == std::string("vlp16");
+  for (int i = 0; i < 12; ++i)
+    for (const SavedColumn& column : columnsOf(decoder, encoder.next(constantWorld({5000, 1})))) {
+      EXPECT_GE(column.azimuth, 0);
+      EXPECT_LT(column.azimuth, 360);
+      EXPECT_NEAR(std::remainder(column.azimuth - expected, 360.), 0, 1e-9);
+      expected += has_two ? 0.115 : 0.23;
+    }
+  // Some sensors write 360.00.
+  encoder.azimuth = 36000;
+  EXPECT_EQ(columnsOf(decoder, encoder.next(constantWorld({5000, 1}))).front().azimuth, 0);
+}
+
+TEST_P(EachSensor, KeepsTheStrongerOfTwoReturns) {
+  Decoder decoder = this->decoder();
+  PacketEncoder encoder(GetParam(), true);
+  const auto only = [&](Measured first, Measured second) {
+    std::vector<SavedColumn> columns = columnsOf(
+        decoder, encoder.next([&](std::size_t, std::size_t, bool is_second) { return is_second ? second : first; }));
+    return columns.front().cells.front();
+  };
+  EXPECT_EQ(only({5000, 30}, {6000, 40}).intensity, 40);
+  EXPECT_EQ(only({5000, 50}, {6000, 40}).intensity, 50);
+  EXPECT_EQ(only({5000, 0}, {0, 40}).intensity, 0) << "what did not return is not stronger";
+  EXPECT_EQ(only({0, 50}, {6000, 0}).intensity, 0);
+  EXPECT_TRUE(isNoReturn(only({0, 50}, {0, 60})));
+}
+
+TEST_P(EachSensor, CountsWhatIsForeign) {
+  Decoder decoder = this->decoder();
+  PacketEncoder encoder(GetParam());
+  const Bytes good = encoder.next(constantWorld({5000, 1}));
+  std::vector<SavedColumn> columns;
+  EXPECT_EQ(decode(decoder, Bytes(512), columns), Kind::kPosition);
+  for (const std::size_t size : {0U, 1U, 1205U, 1207U, 1248U, 2048U}) {
+    Bytes resized = good;
+    resized.resize(size);
+    resized.shrink_to_fit();
+    EXPECT_EQ(decode(decoder, resized, columns), Kind::kForeign) << size;
+  }
+  for (std::size_t block = 0; block < 12; ++block) {
+    Bytes wrong_flag = good, wrong_azimuth = good;
+    wrong_flag[100 * block] ^= 1;
+    wrong_azimuth[100 * block + 3] = 0x8C;  // 360.01 or more
+    wrong_azimuth[100 * block + 2] = 0xFF;
+    EXPECT_EQ(decode(decoder, wrong_flag, columns), Kind::kForeign) << block;
+    EXPECT_EQ(decode(decoder, wrong_azimuth, columns), Kind::kForeign) << block;
+  }
+  EXPECT_TRUE(columns.empty());
+  EXPECT_EQ(decode(decoder, good, columns), Kind::kData);
+  EXPECT_EQ(decoder.counts().position, 1U);
+  EXPECT_EQ(decoder.counts().foreign, 30U);
+  EXPECT_EQ(decoder.counts().data, 1U);
+}
+
+TEST_P(EachSensor, SeesThatPacketsAreOfAnotherSensor) {
+  for (const std::string other : {"vlp16", "hdl32e", "hdl64e", "vls128"}) {
+    if (other == GetParam()) continue;
+    Decoder decoder = this->decoder();
+    PacketEncoder encoder(other);
+    std::vector<SavedColumn> columns;
+    for (int i = 0; i < 20; ++i) decode(decoder, encoder.next(constantWorld({5000, 1})), columns);
+    const bool same_flags = (other == "vlp16" || other == "hdl32e") && decoder.model().flags.size() == 1;
+    if (same_flags) {
+      EXPECT_EQ(decoder.counts().says_other_model, 20U) << other;
+      EXPECT_GT(std::abs(decoder.order().usualGap() / decoder.packetPeriodUs() - 1), 0.5) << other;
+    } else {
+      EXPECT_EQ(decoder.counts().foreign, 20U) << other;
+      EXPECT_TRUE(columns.empty());
+    }
+  }
+}
+
+TEST_P(EachSensor, LeavesOutLatePackets) {
+  Decoder decoder = this->decoder();
+  PacketEncoder encoder(GetParam());
+  std::vector<Bytes> payloads;
+  for (int i = 0; i < 10; ++i) payloads.push_back(encoder.next(constantWorld({5000, 1})));
+  std::vector<SavedColumn> columns;
+  for (const std::size_t i : {0U, 1U, 4U, 2U, 5U, 5U, 9U}) decode(decoder, payloads[i], columns);
+  EXPECT_EQ(columns.size(), 5 * encoder.firingsPerPacket());
+  EXPECT_EQ(decoder.counts().late, 2U);
+  EXPECT_EQ(decoder.order().missing(), 5U);
+  for (const SavedColumn& column : columns) EXPECT_FALSE(column.after_break);
+}
+
+TEST_P(EachSensor, MarksABreak) {
+  Decoder decoder = this->decoder();
+  PacketEncoder encoder(GetParam());
+  columnsOf(decoder, encoder.next(constantWorld({5000, 1})));
+  for (const double seconds : {0.7, 100.}) {  // more than a turn; more than can be counted
+    encoder.time_us += seconds * 1e6;
+    const std::vector<SavedColumn> columns = columnsOf(decoder, encoder.next(constantWorld({5000, 1})));
+    for (std::size_t i = 0; i < columns.size(); ++i) EXPECT_EQ(columns[i].after_break, i == 0);
+  }
+  EXPECT_EQ(decoder.order().clockJumps(), 1U);
+}
+
+TEST_P(EachSensor, SurvivesAnyBytes) {
+  constexpr std::uint64_t kSeed = 3;
+  Random random(kSeed);
+  Decoder decoder = this->decoder();
+  for (int run = 0; run < 3000; ++run) {
+    PacketEncoder encoder(GetParam(), random.chance(0.5));
+    Bytes payload = encoder.next([&](std::size_t, std::size_t, bool) {
+      return Measured{static_cast<std::uint16_t>(random.below(65536)), static_cast<std::uint8_t>(random.below(256))};
+    });
+    for (std::size_t i = random.below(4); i > 0; --i)
+      payload[random.below(payload.size())] = static_cast<std::uint8_t>(random.below(256));
+    if (random.chance(0.1))
+      for (std::uint8_t& byte : payload) byte = static_cast<std::uint8_t>(random.below(256));
+    if (random.chance(0.1)) payload.resize(random.below(payload.size()));
+    payload.shrink_to_fit();
+    std::vector<SavedColumn> columns;
+    const Kind kind = decode(decoder, payload, columns);
+    EXPECT_EQ(columns.empty(), kind != Kind::kData) << "seed " << kSeed << ", run " << run;
+    for (const SavedColumn& column : columns) {
+      EXPECT_GE(column.azimuth, 0);
+      EXPECT_LT(column.azimuth, 360);
+      for (const Cell& cell : column.cells) EXPECT_TRUE(isReturn(cell) || isNoReturn(cell));
+    }
+  }
+}
+
+TEST_F(DecoderTest, FindsTheAxes) {
+  Decoder decoder(makeSensorModel("vlp16"));
+  PacketEncoder encoder("vlp16");
+  // The laser 15 degrees up is the last one of a firing.
+  const double side = 10 * std::cos(15 * kPi / 180), up = 10 * std::sin(15 * kPi / 180);
+  const struct {
+    unsigned azimuth;
+    double x, y;
+  } cases[] = {{0, side, 0}, {9000, 0, -side}, {18000, -side, 0}, {27000, 0, side}};
+  for (const auto& c : cases) {
+    encoder.azimuth = c.azimuth;
+    decoder.setStep(0);
+    const Cell cell = columnsOf(decoder, encoder.next(constantWorld({5000, 1}))).front().cells.front();
+    EXPECT_NEAR(cell.x, c.x, 1e-5) << c.azimuth;
+    EXPECT_NEAR(cell.y, c.y, 1e-5) << c.azimuth;
+    EXPECT_NEAR(cell.z, up, 1e-5) << c.azimuth;
+  }
+}
+
+TEST_F(DecoderTest, TurnsOnWhileTheLasersFire) {
+  // By the manuals: a VLP-16's laser fires each 2.304 us, an HDL-32E's each 1.152 us.
+  const struct {
+    const char* name;
+    double share;  ///< of a step from one laser to the next
+  } cases[] = {{"vlp16", 2.304 / 110.592}, {"hdl32e", 1.152 / 46.08}};
+  for (const auto& c : cases) {
+    Decoder decoder(makeSensorModel(c.name));
+    PacketEncoder encoder(c.name);
+    encoder.step = 40;
+    const SavedColumn column = columnsOf(decoder, encoder.next(constantWorld({5000, 1}))).front();
+    for (std::size_t row = 0; row < column.cells.size(); ++row)
+      EXPECT_NEAR(azimuthOf(column.cells[row]), 0.4 * c.share * static_cast<double>(decoder.model().lasers[row].number),
+                  1e-4);
+    EXPECT_NEAR(decoder.stagger(), 0.4 * c.share * static_cast<double>(encoder.lasers() - 1), 1e-9);
+  }
+  EXPECT_NEAR(Decoder(makeSensorModel("vls128")).stagger(), 2 * 6.354, 1e-9);
+}
+
+TEST_F(DecoderTest, FollowsAMotorThatChangesItsSpeed) {
+  Decoder decoder(makeSensorModel("hdl32e"));
+  PacketEncoder encoder("hdl32e");
+  std::vector<SavedColumn> columns;
+  for (const unsigned step : {20U, 40U, 10U, 0U}) {
+    encoder.step = step;
+    for (int i = 0; i < 20000; ++i) {
+      columns.clear();
+      decode(decoder, encoder.next(constantWorld({0, 0})), columns);
+    }
+    EXPECT_DOUBLE_EQ(decoder.step(), step / 100.);
+  }
+}
+
+TEST_F(DecoderTest, DoesNotTrustFactoryBytes) {
+  Decoder decoder(makeSensorModel("vlp16"));
+  PacketEncoder encoder("vlp16");
+  encoder.model_byte = 0x21;
+  EXPECT_EQ(columnsOf(decoder, encoder.next(constantWorld({5000, 1}))).size(), 24U);
+  EXPECT_EQ(decoder.counts().says_other_model, 1U);
+  // Blocks that do not come in pairs are no dual returns, whatever the mode says.
+  Bytes payload = encoder.next(constantWorld({5000, 1}));
+  payload[1204] = 0x39;
+  EXPECT_EQ(columnsOf(decoder, payload).size(), 24U);
+  EXPECT_EQ(decoder.counts().dual, 0U);
+}
+
+TEST_F(DecoderTest, RefusesUnknownSensorsAndBadCalibrations) {
+  EXPECT_EQ(refusalOf([] { makeSensorModel("os1"); }),
+            "there is no sensor 'os1': it is one of vlp16, hdl32e, hdl64e, vls128");
+  EXPECT_EQ(refusalOf([] { makeSensorModel("hdl64e"); }),
+            "the hdl64e needs its calibration file: each of these sensors has its own");
+  EXPECT_EQ(refusalOf([] { makeSensorModel("vlp16", "db.xml"); }),
+            "a calibration file is for the hdl64e only, not for the vlp16");
+
+  const auto refusal = [&](const std::string& xml) {
+    const std::string said = refusalOf([&] { makeSensorModel("hdl64e", calibration(xml)); });
+    EXPECT_EQ(said.find((folder_ / "db.xml").string() + ": "), 0U) << said;
+    EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+    return said.substr((folder_ / "db.xml: ").string().size());
+  };
+  EXPECT_EQ(refusalOf([&] { makeSensorModel("hdl64e", folder_ / "missing.xml"); }),
+            (folder_ / "missing.xml").string() + ": is no calibration file: cannot open file");
+  const std::string good = calibrationXml(usualCalibration);
+  EXPECT_NE(refusal("").find("is no calibration file"), std::string::npos);
+  EXPECT_NE(refusal(good.substr(0, good.size() / 2)).find("is no calibration file"), std::string::npos);
+  EXPECT_NE(refusal("<boost_serialization/>").find("is no calibration file of an HDL-64E"), std::string::npos);
+  EXPECT_EQ(refusal(calibrationXml(usualCalibration, 63)), "says nothing of laser 63");
+  EXPECT_EQ(refusal(calibrationXml(usualCalibration, 65)), "there is no laser 64");
+  for (const std::string number : {"nan", "1e999", "", "3 degrees", "0x1"}) {
+    std::string bad = good;
+    bad.insert(bad.find("<vertCorrection_>") + 17, number + "</vertCorrection_><vertCorrection_>");
+    EXPECT_EQ(refusal(bad), "vertCorrection_ is no number: '" + number + "'");
+  }
+  for (const std::string number : {"-1", "64", "1.5", "99999999999999999999"}) {
+    std::string bad = good;
+    bad.replace(bad.find("<id_>7<") + 5, 1, number);
+    EXPECT_EQ(refusal(bad), "there is no laser " + number);
+  }
+  EXPECT_NE(refusal(calibrationXml([](int laser) {
+              auto values = usualCalibration(laser);
+              values.erase("rotCorrection_");
+              return values;
+            })).find("rotCorrection_"),
+            std::string::npos);
+}
+
+TEST_F(DecoderTest, KeepsPointsBeforeTheSensor) {
+  // A distance that a correction turns around is none.
+  Decoder decoder(makeSensorModel("hdl64e", calibration(calibrationXml([](int laser) {
+                                    auto values = usualCalibration(laser);
+                                    values["distCorrection_"] = -100;
+                                    return values;
+                                  }))));
+  PacketEncoder encoder("hdl64e");
+  const SavedColumn near = columnsOf(decoder, encoder.next(constantWorld({499, 1}))).front();
+  for (const Cell& cell : near.cells) EXPECT_TRUE(isNoReturn(cell));
+  const SavedColumn far = columnsOf(decoder, encoder.next(constantWorld({501, 1}))).front();
+  for (const Cell& cell : far.cells) EXPECT_TRUE(isReturn(cell));
+}
+
+}  // namespace
+}  // namespace lisco_test
