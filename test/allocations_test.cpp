@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+//
+// A program of its own, since it replaces operator new.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#include "lisco/column_clusterer.h"
+#include "lisco/endless_clusterer.h"
+#include "lisco/window_clusterer.h"
+#include "random.h"
+
+namespace {
+
+std::atomic<std::size_t> allocations{0};
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* const memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+namespace lisco_test {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr std::size_t kSteps = 720;
+constexpr std::size_t kLasers = 16;
+
+/// A street with walls, things and near returns: one turn, column by column.
+std::vector<std::vector<lisco::Return>> oneTurn() {
+  Random random(1);
+  std::vector<std::vector<lisco::Return>> columns(kSteps);
+  for (std::size_t step = 0; step < kSteps; ++step)
+    for (std::size_t laser = 0; laser < kLasers; ++laser) {
+      const double azimuth = 2 * kPi * static_cast<double>(step) / static_cast<double>(kSteps);
+      double range = std::min(30.0, 8 / std::fabs(std::sin(azimuth) + 1e-9));
+      if (step / 20 % 3 == 0) range = 4 + static_cast<double>(step % 7) / 100;
+      if (step / 40 % 4 == 1 && laser > 12) range = 0.6;
+      if (random.chance(0.1)) range = 0;
+      const double elevation = 0.03 * (8 - static_cast<double>(laser));
+      columns[step].push_back(
+          {static_cast<float>(range * std::cos(azimuth)), static_cast<float>(range * std::sin(azimuth)),
+           static_cast<float>(range * std::tan(elevation)), static_cast<std::uint32_t>(step * kLasers + laser)});
+    }
+  return columns;
+}
+
+/// Allocations while turn () is called the second half of so many times.
+template <typename Turn>
+std::size_t allocationsOf(int turns, Turn&& turn) {
+  std::size_t before = 0;
+  for (int i = 0; i < turns; ++i) {
+    if (i == turns / 2) before = allocations;
+    turn();
+  }
+  return allocations - before;
+}
+
+TEST(Allocations, AreCounted) {
+  EXPECT_EQ(allocationsOf(2, [] { ::operator delete(::operator new(1)); }), 1U);
+}
+
+TEST(Allocations, NoneForARotationLikeTheLast) {
+  const auto columns = oneTurn();
+  lisco::ColumnClusterer clusterer;
+  lisco::Parameters parameters;
+  parameters.tolerance = 0.5F;
+  for (const int steps_per_turn : {0, static_cast<int>(kSteps)}) {
+    parameters.view.steps_per_turn = steps_per_turn;
+    parameters.view.elevation_step = 0.03F;
+    std::size_t returns = 0;
+    EXPECT_EQ(allocationsOf(4,
+                            [&] {
+                              clusterer.begin(parameters);
+                              for (const auto& column : columns) {
+                                clusterer.addColumn(column.data(), column.size());
+                                if (column.front().source_index % 512 == 0) clusterer.update();
+                              }
+                              clusterer.update();
+                              clusterer.forEachRun(
+                                  [&](const std::uint32_t*, std::size_t count, std::uint32_t) { returns += count; });
+                            }),
+              0U)
+        << steps_per_turn;
+    EXPECT_EQ(returns, 4 * clusterer.returnCount());
+  }
+}
+
+TEST(Allocations, NoneForAnEndlessStreamThatGoesOn) {
+  const auto columns = oneTurn();
+  lisco::EndlessClusterer clusterer;
+  lisco::EndlessParameters parameters;
+  parameters.tolerance = 0.5F;
+  parameters.columns_per_turn = kSteps;
+  std::size_t delivered = 0;
+  std::size_t most_held = 0;
+  clusterer.begin(parameters, [&](const lisco::EndlessCluster& cluster) { delivered += cluster.size(); });
+  EXPECT_EQ(allocationsOf(12,
+                          [&] {
+                            for (const auto& column : columns) clusterer.addColumn(column.data(), column.size());
+                            most_held = std::max(most_held, clusterer.returnsHeld());
+                          }),
+            0U);
+  clusterer.finish();
+  EXPECT_EQ(delivered, clusterer.returnCount());
+  EXPECT_LE(most_held, 2 * kSteps * kLasers + kSteps);
+}
+
+// A window of a turn has 17 panes in memory, each of which must have seen all of the 16 parts of the turn.
+TEST(Allocations, NoneForWindowsThatGoOn) {
+  const auto columns = oneTurn();
+  for (const std::size_t window : {90U, 720U, 1440U}) {
+    lisco::WindowClusterer clusterer;
+    clusterer.begin({0.5F, window, 45, kLasers});
+    std::size_t returns = 0;
+    EXPECT_EQ(allocationsOf(70,
+                            [&] {
+                              for (const auto& column : columns) {
+                                if (!clusterer.addColumn(column.data(), column.size())) continue;
+                                clusterer.forEachRun(
+                                    [&](const std::uint32_t*, std::size_t count, std::uint32_t) { returns += count; });
+                              }
+                            }),
+              0U)
+        << window;
+    EXPECT_GT(returns, 0U);
+  }
+}
+
+}  // namespace
+}  // namespace lisco_test
