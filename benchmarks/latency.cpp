@@ -1,0 +1,548 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+//
+// How long a stream's user waits: for a column to be taken, for the clusters after the last one, for an endless stream's
+// clusters, for the next window.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <omp.h>
+
+#include <pcl/segmentation/extract_clusters.h>  // comparePointClusters
+#include <pcl/segmentation/lisco_cluster_extraction.h>
+
+#include "cloud_file.h"
+#include "compare/comparison.h"
+#include "compare/report.h"
+#include "compare/text.h"
+#include "lisco/column_clusterer.h"
+#include "lisco/endless_clusterer.h"
+#include "lisco/scan_survey.h"
+#include "lisco/window_clusterer.h"
+#include "options.h"
+#include "sensors/capture_file.h"
+#include "sensors/decoder.h"
+#include "sensors/rotation_cutter.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+namespace po = boost::program_options;
+using namespace lisco_apps;
+
+using Timer = std::chrono::steady_clock;
+
+double microsecondsSince(Timer::time_point begin) {
+  return std::chrono::duration<double, std::micro>(Timer::now() - begin).count();
+}
+
+struct Options {
+  std::vector<std::string> inputs;
+  bool windows = false;
+  std::vector<double> tolerances;
+  unsigned min_size = 10;
+  unsigned runs = 5;
+  unsigned rotations = 3;  ///< of a capture
+  GroundHeights ground;
+  std::vector<std::pair<std::string, std::string>> sensors;  ///< begin of a name, model
+};
+
+/// \return false if there is nothing to do but to print help or version, which has been done
+bool parse(int argc, char** argv, Options& options) {
+  po::options_description shown(
+      "Usage: stream_latency SCAN-OR-CAPTURE... [options]\n\n"
+      "How long a stream's user waits, one thread. Scans are fed column by column, captures (.pcap) rotation by "
+      "rotation:\n"
+      "  column    microseconds that a column takes: median, 99th percentile, most; and the 99th percentile in percent "
+      "of "
+      "the\n            time between two columns of the sensor\n"
+      "  clusters  milliseconds from the last column to PCL's vector of clusters\n"
+      "  pcl grid  milliseconds of the whole batch by PCL's KdTree (false) and by the voxel grid, and how many times "
+      "the "
+      "clusters'\n"
+      "  endless   99th percentile of a column, microseconds; and milliseconds from the column that made sure that "
+      "nothing\n            can reach a cluster any more to its delivery, columns coming as the sensor fires: median, "
+      "99th, "
+      "most\n"
+      "or, with --table windows, milliseconds per window that slides on by a 4th, 8th, 16th and 32nd of a turn, and "
+      "how "
+      "many\ntimes that is faster than extracting the window's clusters anew.\n\n"
+      "Exit code: 1 if any clusters are not those of EuclideanClusterExtraction, 2 on bad input or usage.\n\n"
+      "Options");
+  std::string table = "columns";
+  std::string tolerances = "0.4";
+  std::string min_size = "10";
+  std::string runs = "5";
+  std::string rotations = "3";
+  std::vector<std::string> ground;
+  std::vector<std::string> sensors;
+  // clang-format off
+  shown.add_options()
+    ("table", po::value<std::string>(&table)->value_name("NAME"), "columns (default) or windows")
+    ("tolerance,t", po::value<std::string>(&tolerances)->value_name("M[,M...]"), "metres (default 0.4)")
+    ("min-size", po::value<std::string>(&min_size)->value_name("N"), "least returns of a cluster (default 10)")
+    ("runs", po::value<std::string>(&runs)->value_name("N"), "times that each rotation is fed (default 5)")
+    ("rotations", po::value<std::string>(&rotations)->value_name("N"), "whole rotations of each capture (default 3)")
+    ("ground-z", po::value<std::vector<std::string>>(&ground)->value_name("M"),
+     "leave out returns below this height in metres; NAME=M: of the input of this name only")
+    ("sensor", po::value<std::vector<std::string>>(&sensors)->value_name("NAME=MODEL"),
+     "what inputs whose names begin so were recorded with: os1, or as lisco_stream's --sensor");
+  // clang-format on
+  po::variables_map given;
+  if (!readCommandLine(argc, argv, "stream_latency", shown, &options.inputs, given)) return false;
+  if (options.inputs.empty()) throw std::runtime_error("no input; see --help");
+  if (table != "columns" && table != "windows")
+    throw std::runtime_error("--table must be columns or windows, not '" + table + "'");
+  options.windows = table == "windows";
+  for (const std::string& item : itemsOf(tolerances)) {
+    options.tolerances.push_back(numberOf(item, "--tolerance"));
+    if (!(options.tolerances.back() > 0)) throw std::runtime_error("--tolerance must be positive, not '" + item + "'");
+  }
+  options.min_size = countOf(min_size, "--min-size", 1);
+  options.runs = countOf(runs, "--runs", 1);
+  options.rotations = countOf(rotations, "--rotations", 1);
+  options.ground = GroundHeights(ground);
+  for (const std::string& item : sensors) {
+    const std::size_t equals = item.find('=');
+    if (equals == std::string::npos) throw std::runtime_error("--sensor must be NAME=MODEL, not '" + item + "'");
+    options.sensors.emplace_back(item.substr(0, equals), item.substr(equals + 1));
+  }
+  return true;
+}
+
+std::string modelOf(const Options& options, const std::string& name) {
+  for (const auto& [begin, model] : options.sensors)
+    if (name.compare(0, begin.size(), begin) == 0) return model;
+  throw std::runtime_error("no --sensor says what " + name + " was recorded with");
+}
+
+/// The time between two columns where the sensor fires, or turns, as fast as it can, microseconds.
+double columnPeriodOf(const std::string& model) {
+  if (model == "os1") return 1e6 / (20 * 1024);
+  if (model == "hdl64e") return 48.0;  // its calibration file is of no use for that
+  return makeSensorModel(model).firing_period_us;
+}
+
+/// The whole rotations of a capture, the first ones.
+std::vector<Cloud::Ptr> readRotations(const fs::path& file, const std::string& model_name, std::size_t most) {
+  const SensorModel model = makeSensorModel(model_name);
+  CaptureFile first_pass(file);
+  const double step = stepIn(first_pass, model);
+  CaptureFile capture(file);
+  Decoder decoder(model);
+  decoder.setStep(step);
+  RotationCutter cutter;
+  std::vector<Cloud::Ptr> rotations;
+  std::vector<Cell> cells;  // column by column
+  const std::size_t lasers = model.lasers.size();
+  const auto finish = [&] {
+    if (cells.empty() || rotations.size() == most) return;
+    const std::size_t columns = cells.size() / lasers;
+    rotations.push_back(
+        std::make_shared<Cloud>(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(lasers)));
+    rotations.back()->is_dense = false;
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      rotations.back()->points[i % lasers * columns + i / lasers] = {cells[i].x, cells[i].y, cells[i].z};
+  };
+  Packet packet{};
+  while (rotations.size() < most && capture.next(packet) == PacketSource::Arrival::kPacket)
+    decoder.decode(packet, [&](const Column& column) {
+      if (cutter.startsRotation(column.azimuth, column.after_break)) {
+        finish();
+        cells.clear();
+      }
+      cells.insert(cells.end(), column.cells.begin(), column.cells.end());
+    });
+  if (rotations.empty()) throw std::runtime_error(file.string() + ": no whole rotation");
+  return rotations;
+}
+
+/// A rotation as its columns come.
+struct Rotation {
+  Problem problem;
+  Clusters expected;  ///< PCL's
+  std::size_t lasers = 0;
+  std::vector<std::vector<lisco::Return>> columns;
+};
+
+Rotation makeRotation(const Cloud& cloud, float ground_z) {
+  Rotation rotation;
+  const ComparedScan scan = prepareScan(cloud, {}, ground_z, false);
+  rotation.problem.cloud = scan.cloud;
+  rotation.problem.returns = scan.returns;
+  rotation.lasers = scan.cloud->height;
+  rotation.columns.resize(scan.cloud->width);
+  for (std::size_t i = 0; i < scan.cloud->size(); ++i) {
+    const RivalPoint& point = scan.cloud->points[i];
+    rotation.columns[i % scan.cloud->width].push_back({point.x, point.y, point.z, static_cast<std::uint32_t>(i)});
+  }
+  return rotation;
+}
+
+/// One input at one tolerance.
+struct Case {
+  std::string name;
+  double period_us = 0;
+  std::vector<Rotation> rotations;
+
+  void setTolerance(double tolerance, unsigned min_size) {
+    for (Rotation& rotation : rotations) {
+      rotation.problem.tolerance = tolerance;
+      rotation.problem.min_size = min_size;
+      rotation.expected.clear();
+      referenceRival().extract(rotation.problem, rotation.expected);
+    }
+  }
+};
+
+/// \return whether they are PCL's clusters; says on stderr where not
+bool isRight(const Case& one, const Rotation& rotation, const std::string& whose, const Clusters& clusters) {
+  Rival rival;
+  rival.title = whose;
+  const Difference difference = differenceOf(rotation.problem, referenceRival(), rotation.expected, rival, clusters);
+  if (!difference.identical)
+    std::fprintf(stderr, "%s at %g m: %s differs from PCL\n%s", one.name.c_str(), rotation.problem.tolerance,
+                 whose.c_str(), difference.details.c_str());
+  return difference.identical;
+}
+
+/// PCL's vector from what a clusterer found.
+template <typename Clusterer, typename IndexOf>
+Clusters collect(Clusterer& clusterer, const Problem& problem, IndexOf&& index_of) {
+  constexpr std::uint32_t kUndecided = ~std::uint32_t{0};
+  Clusters clusters;
+  std::vector<std::uint32_t> cluster_of(clusterer.subclusterCount(), kUndecided);
+  clusterer.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
+    const std::uint32_t size = clusterer.sizeOf(subcluster);
+    if (size < problem.min_size || size > problem.max_size) return;
+    if (cluster_of[subcluster] == kUndecided) {
+      cluster_of[subcluster] = static_cast<std::uint32_t>(clusters.size());
+      clusters.emplace_back();
+      clusters.back().header = problem.cloud->header;
+      clusters.back().indices.reserve(size);
+    }
+    for (std::size_t i = 0; i < count; ++i) clusters[cluster_of[subcluster]].indices.push_back(index_of(cells[i]));
+  });
+  std::sort(clusters.rbegin(), clusters.rend(), pcl::comparePointClusters);
+  return clusters;
+}
+
+/// What is surveyed of a rotation, for the next one.
+lisco::Parameters surveyed(const Rotation& rotation) {
+  return lisco::surveyScan(rotation.columns.size(), rotation.lasers, {0, 0, 0},
+                           [&](std::size_t laser, std::size_t column) { return rotation.columns[column][laser]; });
+}
+
+class ColumnsTable {
+ public:
+  static void printTitles() {
+    std::printf("%-20s %5s %7s | column us %21s | clusters %9s %7s %8s %7s | endless us %6s %22s\n", "scan", "eps",
+                "columns", "", "pcl", "ratio", "grid", "ratio", "", "ms");
+    std::printf("%-20s %5s %7s | %7s %7s %7s %6s | %8s %9s %7s %8s %7s | %10s %6s %6s %6s\n", "", "m", "", "50%", "99%",
+                "most", "of T", "ms", "ms", "", "ms", "", "99%", "50%", "99%", "most");
+  }
+
+  bool measure(const Case& one, unsigned runs) {
+    std::vector<double> columns, ends, pcls, grids;
+    const std::vector<Rival> rivals = allRivals();
+    const auto grid =
+        std::find_if(rivals.begin(), rivals.end(), [](const Rival& rival) { return rival.key == "grid"; });
+    const Rival pcl = referenceRival();
+    lisco::ColumnClusterer clusterer;
+    for (unsigned run = 0; run <= runs; ++run)  // the first is not timed
+      for (const Rotation& rotation : one.rotations) {
+        if (!feed(rotation, clusterer, run > 0 ? &columns : nullptr, run > 0 ? &ends : nullptr, one)) return false;
+        const auto timeOf = [&](const Rival& rival) {
+          return millisecondsOf([&] {
+            Clusters clusters;
+            rival.extract(rotation.problem, clusters);
+          });
+        };
+        if (run == 0) continue;
+        grids.push_back(timeOf(*grid));
+        if (run <= 2) pcls.push_back(timeOf(pcl));
+      }
+    std::vector<double> endless_columns, deliveries;
+    if (!feedEndlessly(one, runs, endless_columns, deliveries)) return false;
+
+    const double p99 = quantile(columns, 0.99);
+    const double end = median(ends);
+    std::printf(
+        "%-20s %5.2f %7zu | %7.2f %7.2f %7.1f %5.0f%% | %8.3f %9.2f %7.1f %8.3f %7.1f | %10.2f %6.2f %6.2f %6.2f\n",
+        one.name.c_str(), one.rotations.front().problem.tolerance, one.rotations.front().columns.size(),
+        median(columns), p99, *std::max_element(columns.begin(), columns.end()), 100 * p99 / one.period_us, end,
+        median(pcls), median(pcls) / end, median(grids), median(grids) / end, quantile(endless_columns, 0.99),
+        median(deliveries), quantile(deliveries, 0.99), *std::max_element(deliveries.begin(), deliveries.end()));
+    pcl_ratios_.push_back(median(pcls) / end);
+    grid_ratios_.push_back(median(grids) / end);
+    shares_.push_back(p99 / one.period_us);
+    return true;
+  }
+
+  void printEnd() const {
+    if (shares_.empty()) return;
+    std::printf("99%% of the columns take at most %.0f%% of the time between two\n",
+                100 * *std::max_element(shares_.begin(), shares_.end()));
+    const auto print = [](const char* whose, const std::vector<double>& ratios) {
+      std::printf(
+          "%s's batch takes %.0f times as long as from the last column to the clusters (geometric mean; least %.1f)\n",
+          whose, geometricMean(ratios), *std::min_element(ratios.begin(), ratios.end()));
+    };
+    print("PCL", pcl_ratios_);
+    print("the grid", grid_ratios_);
+  }
+
+ private:
+  /// Feeds a rotation, checks the clusters, and appends microseconds of each column and milliseconds of the end.
+  static bool feed(const Rotation& rotation, lisco::ColumnClusterer& clusterer, std::vector<double>* columns,
+                   std::vector<double>* ends, const Case& one) {
+    lisco::Parameters parameters = surveyed(rotation);
+    parameters.tolerance = static_cast<float>(rotation.problem.tolerance);
+    for (std::size_t i = 0; i < rotation.columns.size(); ++i) {
+      const Timer::time_point begin = Timer::now();
+      if (i == 0) clusterer.begin(parameters);
+      clusterer.addColumn(rotation.columns[i].data(), rotation.columns[i].size());
+      const double time = microsecondsSince(begin);
+      if (columns != nullptr) columns->push_back(time);
+    }
+    const Timer::time_point begin = Timer::now();
+    clusterer.update();
+    const Clusters clusters =
+        collect(clusterer, rotation.problem, [](std::uint32_t cell) { return static_cast<int>(cell); });
+    const double time = microsecondsSince(begin);
+    if (ends != nullptr) ends->push_back(time / 1000);
+    return isRight(one, rotation, "Lisco, column by column,", clusters);
+  }
+
+  /// Feeds the rotations again and again without an end, in virtual time: a column comes when the sensor fires it, or when
+  /// the one before has been taken.
+  static bool feedEndlessly(const Case& one, unsigned runs, std::vector<double>& columns,
+                            std::vector<double>& deliveries) {
+    const Rotation& first = one.rotations.front();
+    const lisco::Parameters survey = surveyed(first);
+    lisco::EndlessParameters parameters;
+    parameters.tolerance = static_cast<float>(first.problem.tolerance);
+    parameters.min_size = first.problem.min_size;
+    parameters.clockwise = survey.view.clockwise;
+    const double per_turn =
+        survey.view.steps_per_turn > 0 ? survey.view.steps_per_turn : static_cast<double>(first.columns.size());
+    parameters.start_azimuth = startAzimuthOf(first, parameters.clockwise, per_turn);
+    std::vector<double> came;  // when the columns of each position did, microseconds
+    double now = 0;            // the time when the column at hand is taken
+    Timer::time_point taken;
+    std::size_t before = 0;  // columns of the rotations before
+    const auto turnsOf = [&](std::size_t column) { return static_cast<double>(column) / per_turn; };
+    std::size_t delivered = 0;
+    std::uint64_t returns = 0;
+    bool measured = false;
+    lisco::EndlessClusterer clusterer;
+    clusterer.begin(parameters, [&](const lisco::EndlessCluster& cluster) {
+      delivered += cluster.size();
+      if (!measured || cluster.isCut()) return;
+      const auto column = static_cast<std::size_t>(std::ceil(cluster.reachEnd() * per_turn));
+      if (column >= came.size()) return;
+      deliveries.push_back((now + microsecondsSince(taken) - came[column]) / 1000);
+    });
+    for (unsigned run = 0; run <= runs; ++run) {
+      measured = run > 0;
+      const Rotation& rotation = one.rotations[run % one.rotations.size()];
+      // A rotation may hold a little less or more than a turn.
+      const std::size_t count = std::min(rotation.columns.size(), static_cast<std::size_t>(std::lround(per_turn)));
+      for (std::size_t i = 0; i < count; ++i) {
+        const double comes = static_cast<double>(before + i) * one.period_us;
+        came.push_back(comes);
+        now = std::max(now, comes);
+        taken = Timer::now();
+        clusterer.addColumn(rotation.columns[i].data(), rotation.columns[i].size(), turnsOf(before + i));
+        const double time = microsecondsSince(taken);
+        now += time;
+        if (measured) columns.push_back(time);
+        for (const lisco::Return& cell : rotation.columns[i])
+          returns += lisco::isReturn(cell.x, cell.y, cell.z) ? 1 : 0;
+      }
+      before += count;
+    }
+    measured = false;
+    clusterer.finish();
+    if (clusterer.returnCount() == returns && delivered <= returns && !deliveries.empty()) return true;
+    std::fprintf(stderr, "%s: of %zu returns, %zu were taken and %zu delivered\n", one.name.c_str(),
+                 static_cast<std::size_t>(returns), static_cast<std::size_t>(clusterer.returnCount()), delivered);
+    return false;
+  }
+
+  /// The azimuth of the first column, from all.
+  static double startAzimuthOf(const Rotation& rotation, bool clockwise, double per_turn) {
+    double east = 0;
+    double north = 0;
+    for (std::size_t column = 0; column < rotation.columns.size(); ++column)
+      for (const lisco::Return& cell : rotation.columns[column]) {
+        if (!lisco::isReturn(cell.x, cell.y, cell.z)) continue;
+        const double turned = 2 * M_PI * static_cast<double>(column) / per_turn * (clockwise ? -1 : 1);
+        const double azimuth = std::atan2(static_cast<double>(cell.y), static_cast<double>(cell.x)) - turned;
+        east += std::cos(azimuth);
+        north += std::sin(azimuth);
+      }
+    return std::atan2(north, east);
+  }
+
+  std::vector<double> shares_, pcl_ratios_, grid_ratios_;
+};
+
+class WindowsTable {
+ public:
+  static void printTitles() {
+    std::printf("%-20s %5s %8s", "scan", "eps", "anew ms");
+    for (const std::size_t part : kParts) std::printf(" | 1/%-2zu ms %7s", part, "ratio");
+    std::printf("\n");
+  }
+
+  bool measure(const Case& one, unsigned runs) {
+    const Rotation& rotation = one.rotations.front();
+    std::string row;
+    std::vector<double> anew_all;
+    for (std::size_t k = 0; k < kParts.size(); ++k) {
+      const std::size_t hop = rotation.columns.size() / kParts[k];
+      lisco::WindowClusterer clusterer;
+      clusterer.begin({static_cast<float>(rotation.problem.tolerance), hop * kParts[k], hop, rotation.lasers});
+      pcl::LiscoClusterExtraction<RivalPoint> extraction;
+      std::vector<double> hops, anew;
+      std::size_t column = 0;
+      for (unsigned window = 0; window < (runs + 1) * kParts[k]; ++window) {
+        double time = 0;
+        Clusters clusters;
+        const auto width = hop * kParts[k];
+        for (std::size_t i = 0; i < hop; ++i, ++column) {
+          const auto& cells = rotation.columns[column % width];
+          const Timer::time_point begin = Timer::now();
+          const bool ends = clusterer.addColumn(cells.data(), cells.size());
+          if (ends) clusters = collectWindow(clusterer, rotation, column + 1 - clusterer.columnCount(), width);
+          time += microsecondsSince(begin) / 1000;
+        }
+        if (window < kParts[k]) continue;
+        hops.push_back(time);
+        const RivalCloud::Ptr cloud = windowOf(rotation, column - width, width);
+        Clusters expected;
+        anew.push_back(millisecondsOf([&] {
+          extraction.setInputCloud(cloud);
+          extraction.setClusterTolerance(rotation.problem.tolerance);
+          extraction.setMinClusterSize(rotation.problem.min_size);
+          extraction.extract(expected);
+        }));
+        if (!same(expected, clusters)) {
+          std::fprintf(stderr, "%s at %g m: a window's clusters are not those extracted from it\n", one.name.c_str(),
+                       rotation.problem.tolerance);
+          return false;
+        }
+      }
+      const double ratio = median(anew) / median(hops);
+      ratios_[k].push_back(ratio);
+      row += formatted(" | %7.3f %7.2f", median(hops), ratio);
+      anew_all.push_back(median(anew));
+    }
+    std::printf("%-20s %5.2f %8.3f%s\n", one.name.c_str(), rotation.problem.tolerance, median(anew_all), row.c_str());
+    return true;
+  }
+
+  void printEnd() const {
+    if (ratios_[0].empty()) return;
+    std::printf("%-35s", "geometric mean");
+    for (const auto& ratios : ratios_) std::printf(" | %7s %7.2f", "", geometricMean(ratios));
+    std::printf("\n");
+  }
+
+ private:
+  static constexpr std::array<std::size_t, 4> kParts{4, 8, 16, 32};
+
+  /// The cloud of the columns of a window, which begins somewhere in the rotation and goes on around it.
+  static RivalCloud::Ptr windowOf(const Rotation& rotation, std::size_t first, std::size_t width) {
+    const auto cloud =
+        std::make_shared<RivalCloud>(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(rotation.lasers));
+    cloud->is_dense = false;
+    for (std::size_t laser = 0; laser < rotation.lasers; ++laser)
+      for (std::size_t i = 0; i < width; ++i) {
+        const lisco::Return& cell = rotation.columns[(first + i) % width][laser];
+        RivalPoint& point = cloud->points[laser * width + i];
+        point.x = cell.x;
+        point.y = cell.y;
+        point.z = cell.z;
+      }
+    return cloud;
+  }
+
+  static Clusters collectWindow(lisco::WindowClusterer& clusterer, const Rotation& rotation, std::size_t first,
+                                std::size_t width) {
+    const std::size_t all = rotation.columns.size();
+    return collect(clusterer, rotation.problem, [&](std::uint32_t cell) {
+      return static_cast<int>(cell / all * width + (cell % all + width - first % width) % width);
+    });
+  }
+
+  static bool same(const Clusters& a, const Clusters& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const auto& one, const auto& other) { return one.indices == other.indices; });
+  }
+
+  std::array<std::vector<double>, kParts.size()> ratios_;
+};
+
+template <typename Table>
+int run(const Options& options, Table table) {
+  std::vector<fs::path> files(options.inputs.begin(), options.inputs.end());
+  const std::vector<std::string> names = namesOf(files);
+  CompareSettings unlimited;
+  unlimited.runs = 0;
+  std::fputs(describeRun(unlimited).c_str(), stdout);
+  table.printTitles();
+  bool good = true;
+  std::vector<std::string> failures;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    try {
+      Case one;
+      one.name = names[i];
+      const float ground_z = options.ground.of(files[i].stem().string());
+      const std::string model = modelOf(options, one.name);
+      one.period_us = columnPeriodOf(model);
+      if (files[i].extension() == ".pcap") {
+        for (const Cloud::Ptr& cloud : readRotations(files[i], model, options.rotations))
+          one.rotations.push_back(makeRotation(*cloud, ground_z));
+      } else {
+        one.rotations.push_back(makeRotation(*readCloudFile(files[i]), ground_z));
+      }
+      for (const double tolerance : options.tolerances) {
+        one.setTolerance(tolerance, options.min_size);
+        if (!table.measure(one, options.runs)) {
+          std::printf("%-20s %5.2f NOT the right clusters\n", one.name.c_str(), tolerance);
+          good = false;
+        }
+        std::fflush(stdout);
+      }
+    } catch (const std::exception& error) {
+      failures.emplace_back(error.what());
+    }
+  }
+  table.printEnd();
+  std::fflush(stdout);
+  for (const std::string& failure : failures) std::fprintf(stderr, "stream_latency: %s\n", failure.c_str());
+  return !good ? 1 : failures.empty() ? 0 : 2;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  omp_set_num_threads(1);
+  return runProgram("stream_latency", [&] {
+    Options options;
+    if (!parse(argc, argv, options)) return 0;
+    return options.windows ? run(options, WindowsTable()) : run(options, ColumnsTable());
+  });
+}
