@@ -48,7 +48,7 @@ double microsecondsSince(Timer::time_point begin) {
 
 struct Options {
   std::vector<std::string> inputs;
-  bool windows = false;
+  std::string table;
   std::vector<double> tolerances;
   unsigned min_size = 10;
   unsigned runs = 5;
@@ -76,10 +76,11 @@ bool parse(int argc, char** argv, Options& options) {
       "most\n"
       "or, with --table windows, milliseconds per window that slides on by a 4th, 8th, 16th and 32nd of a turn, and "
       "how "
-      "many\ntimes that is faster than extracting the window's clusters anew.\n\n"
+      "many\ntimes that is faster than extracting the window's clusters anew,\n"
+      "or, with --table timeline, when work is done while a sensor turns ten times a second, for timeline.gp.\n\n"
       "Exit code: 1 if any clusters are not those of EuclideanClusterExtraction, 2 on bad input or usage.\n\n"
       "Options");
-  std::string table = "columns";
+  options.table = "columns";
   std::string tolerances = "0.4";
   std::string min_size = "10";
   std::string runs = "5";
@@ -88,7 +89,8 @@ bool parse(int argc, char** argv, Options& options) {
   std::vector<std::string> sensors;
   // clang-format off
   shown.add_options()
-    ("table", po::value<std::string>(&table)->value_name("NAME"), "columns (default) or windows")
+    ("table", po::value<std::string>(&options.table)->value_name("NAME"),
+     "columns (default), windows or timeline")
     ("tolerance,t", po::value<std::string>(&tolerances)->value_name("M[,M...]"), "metres (default 0.4)")
     ("min-size", po::value<std::string>(&min_size)->value_name("N"), "least returns of a cluster (default 10)")
     ("runs", po::value<std::string>(&runs)->value_name("N"), "times that each rotation is fed (default 5)")
@@ -101,9 +103,8 @@ bool parse(int argc, char** argv, Options& options) {
   po::variables_map given;
   if (!readCommandLine(argc, argv, "stream_latency", shown, &options.inputs, given)) return false;
   if (options.inputs.empty()) throw std::runtime_error("no input; see --help");
-  if (table != "columns" && table != "windows")
-    throw std::runtime_error("--table must be columns or windows, not '" + table + "'");
-  options.windows = table == "windows";
+  if (options.table != "columns" && options.table != "windows" && options.table != "timeline")
+    throw std::runtime_error("--table must be columns, windows or timeline, not '" + options.table + "'");
   for (const std::string& item : itemsOf(tolerances)) {
     options.tolerances.push_back(numberOf(item, "--tolerance"));
     if (!(options.tolerances.back() > 0)) throw std::runtime_error("--tolerance must be positive, not '" + item + "'");
@@ -302,7 +303,6 @@ class ColumnsTable {
     print("the grid", grid_ratios_);
   }
 
- private:
   /// Feeds a rotation, checks the clusters, and appends microseconds of each column and milliseconds of the end.
   static bool feed(const Rotation& rotation, lisco::ColumnClusterer& clusterer, std::vector<double>* columns,
                    std::vector<double>* ends, const Case& one) {
@@ -324,6 +324,7 @@ class ColumnsTable {
     return isRight(one, rotation, "Lisco, column by column,", clusters);
   }
 
+ private:
   /// Feeds the rotations again and again without an end, in virtual time: a column comes when the sensor fires it, or when
   /// the one before has been taken.
   static bool feedEndlessly(const Case& one, unsigned runs, std::vector<double>& columns,
@@ -396,6 +397,57 @@ class ColumnsTable {
   }
 
   std::vector<double> shares_, pcl_ratios_, grid_ratios_;
+};
+
+/// Who works when, in milliseconds since the first turn began, for two turns.
+class TimelineTable {
+ public:
+  static void printTitles() { std::printf("# lane, begin and end in ms, share of that time at work\n"); }
+
+  bool measure(const Case& one, unsigned runs) {
+    const Rotation& rotation = one.rotations.front();
+    lisco::ColumnClusterer clusterer;
+    std::vector<std::vector<double>> runs_of_column(rotation.columns.size());
+    std::vector<double> ends;
+    for (unsigned run = 0; run < runs; ++run) {
+      std::vector<double> columns;
+      if (!ColumnsTable::feed(rotation, clusterer, &columns, &ends, one)) return false;
+      for (std::size_t i = 0; i < columns.size(); ++i) runs_of_column[i].push_back(columns[i]);
+    }
+    std::array<double, kTurnMs> work{};  // microseconds of each millisecond of the turn
+    for (std::size_t i = 0; i < runs_of_column.size(); ++i)
+      work[i * kTurnMs / runs_of_column.size()] += median(runs_of_column[i]);
+    for (std::size_t turn = 0; turn < 2; ++turn) {
+      for (std::size_t ms = 0; ms < kTurnMs; ++ms)
+        print("Lisco", static_cast<double>(turn * kTurnMs + ms), 1, work[ms] / 1000);
+      print("Lisco", static_cast<double>((turn + 1) * kTurnMs), median(ends), 1);
+    }
+    for (const Rival& rival : allRivals()) {
+      if (rival.key != kReferenceKey && rival.key != "grid") continue;
+      std::vector<double> times;
+      for (unsigned run = 0; run < runs; ++run)
+        times.push_back(millisecondsOf([&] {
+          Clusters clusters;
+          rival.extract(rotation.problem, clusters);
+        }));
+      double free_from = 0;
+      for (std::size_t turn = 1; turn <= 2; ++turn) {
+        const double begin = std::max(free_from, static_cast<double>(turn * kTurnMs));
+        print(rival.key.c_str(), begin, median(times), 1);
+        free_from = begin + median(times);
+      }
+    }
+    return true;
+  }
+
+  void printEnd() const {}
+
+ private:
+  static constexpr std::size_t kTurnMs = 100;
+
+  static void print(const char* lane, double begin, double time, double share) {
+    std::printf("%s %.3f %.3f %.4f\n", lane, begin, begin + time, share);
+  }
 };
 
 class WindowsTable {
@@ -501,7 +553,7 @@ int run(const Options& options, Table table) {
   const std::vector<std::string> names = namesOf(files);
   CompareSettings unlimited;
   unlimited.runs = 0;
-  std::fputs(describeRun(unlimited).c_str(), stdout);
+  if (options.table != "timeline") std::fputs(describeRun(unlimited).c_str(), stdout);
   table.printTitles();
   bool good = true;
   std::vector<std::string> failures;
@@ -543,6 +595,7 @@ int main(int argc, char** argv) {
   return runProgram("stream_latency", [&] {
     Options options;
     if (!parse(argc, argv, options)) return 0;
-    return options.windows ? run(options, WindowsTable()) : run(options, ColumnsTable());
+    if (options.table == "windows") return run(options, WindowsTable());
+    return options.table == "timeline" ? run(options, TimelineTable()) : run(options, ColumnsTable());
   });
 }

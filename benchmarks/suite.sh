@@ -6,12 +6,12 @@
 #
 #   benchmarks/suite.sh [--runs N] [SECTION...]     --runs: timed runs of each rival (default 5)
 #
-# Sections: real vehicle worst growth memory threads stages
+# Sections: real vehicle worst growth memory threads stages, and latency, whose tables and picture are in doc/streaming.md
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/benchmarks/tools.sh"
 
-all_sections=(real vehicle worst growth memory threads stages)
+all_sections=(real vehicle worst growth memory threads stages latency)
 runs=5
 sections=()
 while [ $# -gt 0 ]; do
@@ -141,6 +141,22 @@ measure_engine() {
   report "$out/$table.txt" "$build/benchmarks/engine_stages" --table "$table" --runs $((4 * runs)) --tolerance 0.1,0.4,1 \
     "${ground[@]}" "${rotating[@]}" &&
     code_block <"$out/$table.txt" | replace_section "$document" "$table" && cat "$out/$table.txt"
+}
+
+# The captures, and scans of the sensors of which there is none, column by column.
+measure_latency() {
+  local streams=("$data"/captures/*.pcap "$data"/scans/{hdl64e_city_0,vls128_street_0,os1_128_outdoor_0,os1_64_sparse_0}.pcd)
+  local heights=("${ground[@]}" --ground-z hdl32e_outdoor=-2.10 --ground-z vlp16_close=-0.57 --ground-z vlp16_street=-1.99
+    --ground-z vls128_street=-1.74)
+  local sensors=(--sensor hdl32e=hdl32e --sensor hdl64e=hdl64e --sensor vlp16=vlp16 --sensor vls128=vls128 --sensor os1=os1)
+  local latency=("$build/benchmarks/stream_latency" --runs "$runs" "${sensors[@]}" "${heights[@]}")
+  local streaming=$root/doc/streaming.md
+  report "$out/latency.txt" "${latency[@]}" --tolerance 0.1,0.4,1 "${streams[@]}" &&
+    code_block <"$out/latency.txt" | replace_section "$streaming" "latency" && cat "$out/latency.txt" &&
+    report "$out/windows.txt" "${latency[@]}" --table windows --tolerance 0.4 "$data"/scans/{hdl,os1,vl}*.pcd &&
+    code_block <"$out/windows.txt" | replace_section "$streaming" "windows" && cat "$out/windows.txt" &&
+    report "$out/timeline.txt" "${latency[@]}" --table timeline "$data/scans/vls128_street_0.pcd" &&
+    gnuplot -e "data='$out/timeline.txt'; image='$root/doc/images/timeline.png'" "$root/benchmarks/timeline.gp"
 }
 
 measure_threads() { measure_engine threads; }
