@@ -24,6 +24,21 @@ struct CubeNumbers {
   std::uint32_t of[3][1 + Row::kColumns];
 };
 
+/// The points of a unit, side by side.
+struct PointsOfUnit {
+  const float* x;
+  const float* y;
+  const float* z;
+  std::size_t count;
+};
+
+/// Some of a unit's.
+struct GatheredPoints {
+  static constexpr std::size_t kMost = 64;
+  float x[kMost], y[kMost], z[kMost];
+  std::size_t count = 0;
+};
+
 // Up to here, numbers computed in float are good enough; see kSide.
 constexpr float kSafeNumbers = 1 << 20;
 
@@ -62,9 +77,34 @@ bool numberCubes(const Row& row, std::uint64_t which, float per_metre, CubeNumbe
   return hn::GetLane(hn::MaxOfLanes(kFloats, farthest)) <= kSafeNumbers;
 }
 
-/// Whether any two points of two lists are neighbours.
-bool anyNeighbours(const VoxelPoints& a, VoxelPoints& b, float squared_tolerance) {
+/// Gathers the points of a unit, from one on, that may be neighbours of something in a box.
+/// \return where to go on
+std::size_t gather(const PointsOfUnit& unit, std::size_t from, const Box& box, float squared_tolerance,
+                   GatheredPoints& points) {
   const FloatVector r2 = hn::Set(kFloats, squared_tolerance);
+  const auto gap = [](FloatVector coordinate, float lo, float hi) {
+    const FloatVector outside =
+        hn::Max(hn::Sub(coordinate, hn::Set(kFloats, hi)), hn::Sub(hn::Set(kFloats, lo), coordinate));
+    return hn::Max(outside, hn::Zero(kFloats));
+  };
+  points.count = 0;
+  for (; from < unit.count && points.count <= GatheredPoints::kMost - kLanes; from += kLanes) {
+    const FloatVector x = hn::LoadU(kFloats, unit.x + from);
+    const FloatVector y = hn::LoadU(kFloats, unit.y + from);
+    const FloatVector z = hn::LoadU(kFloats, unit.z + from);
+    // Box::squaredGap, lane by lane
+    const FloatMask near =
+        areNeighbours(gap(x, box.lo[0], box.hi[0]), gap(y, box.lo[1], box.hi[1]), gap(z, box.lo[2], box.hi[2]), r2);
+    const FloatMask chosen = hn::And(near, hn::FirstN(kFloats, unit.count - from));
+    hn::CompressStore(x, chosen, kFloats, points.x + points.count);
+    hn::CompressStore(y, chosen, kFloats, points.y + points.count);
+    points.count += hn::CompressStore(z, chosen, kFloats, points.z + points.count);
+  }
+  return from;
+}
+
+/// Whether any two points of two lists are neighbours.
+bool anyNeighbours(const GatheredPoints& a, GatheredPoints& b, FloatVector r2) {
   for (std::size_t i = b.count; i % kLanes != 0; ++i) b.x[i] = std::numeric_limits<float>::quiet_NaN();
   for (std::size_t i = 0; i < a.count; ++i) {
     const FloatVector x = hn::Set(kFloats, a.x[i]);
@@ -79,6 +119,22 @@ bool anyNeighbours(const VoxelPoints& a, VoxelPoints& b, float squared_tolerance
   return false;
 }
 
+/// Whether any point of one unit is a neighbour of any point of another.
+bool comparePoints(const PointsOfUnit& a, const Box& a_box, const PointsOfUnit& b, const Box& b_box,
+                   float squared_tolerance) {
+  GatheredPoints some_of_a;
+  GatheredPoints some_of_b;
+  for (std::size_t at_a = 0; at_a < a.count;) {
+    at_a = gather(a, at_a, b_box, squared_tolerance, some_of_a);
+    if (some_of_a.count == 0) continue;
+    for (std::size_t at_b = 0; at_b < b.count;) {
+      at_b = gather(b, at_b, a_box, squared_tolerance, some_of_b);
+      if (anyNeighbours(some_of_a, some_of_b, hn::Set(kFloats, squared_tolerance))) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace lisco
 HWY_AFTER_NAMESPACE();
@@ -88,7 +144,7 @@ namespace lisco {
 namespace {
 
 HWY_EXPORT(numberCubes);
-HWY_EXPORT(anyNeighbours);
+HWY_EXPORT(comparePoints);
 
 // A little less than eps / sqrt (3). Rounding moves a return by less than an eighth of a cube, so that
 // neighbours, which are 1.7323 sides apart at most, lie in cubes whose numbers differ by 2 at most.
@@ -97,6 +153,7 @@ constexpr double kMostNumber = 2251799813685248.0;  // 2^51: up to here, numbers
 constexpr std::uint32_t kBlockMask = (std::uint32_t{1} << 30) - 1;
 constexpr std::size_t kFewestSlots = 256;
 constexpr std::size_t kNeighbourBlocks = 27;
+constexpr std::size_t kMostLanes = 16;  // read behind the last point
 
 /// masks[cube][i]: those cubes of neighbour block i whose numbers differ by 2 at most from the cube's.
 struct Neighbourhood {
@@ -147,7 +204,7 @@ void Voxels::prepare(const Tolerance& tolerance) {
   tolerance_ = tolerance;
   cubes_per_metre_ = 1.0 / (kSide * std::max(tolerance.reach(), 1e-22));
   safe_ = cubes_per_metre_ > 1e-30 && cubes_per_metre_ < 1e30;
-  for (auto* coordinate : {&x_, &y_, &z_}) coordinate->clear();
+  points_ = 0;
   pieces_.clear();
   units_.clear();
   blocks_.clear();
@@ -184,8 +241,7 @@ void Voxels::add(const Row& row, const MeasuredRow& measured, std::uint64_t whic
   // A piece goes on where the return before is there, in the same run and in the same cube.
   const std::uint64_t begins = which & ~(which << 1 & ~measured.starts & ~changes);
   const std::uint64_t ends = ~which | begins;
-  std::size_t point = x_.size();
-  for (auto* coordinate : {&x_, &y_, &z_}) coordinate->resize(point + static_cast<std::size_t>(countBits(which)));
+  std::size_t point = newPoints(countBits(which));
   for (std::uint64_t left = begins; left != 0; left &= left - 1) {
     const auto begin = static_cast<std::size_t>(__builtin_ctzll(left));
     const std::uint64_t after = begin == Row::kColumns - 1 ? 0 : ends & ~std::uint64_t{0} << (begin + 1);
@@ -202,6 +258,16 @@ void Voxels::add(const Row& row, const MeasuredRow& measured, std::uint64_t whic
     addPiece({numbers.of[0][1 + begin], numbers.of[1][1 + begin], numbers.of[2][1 + begin]}, box, piece,
              measured.run[begin], subclusters);
   }
+}
+
+/// Makes room for so many points more. \return the first of them
+std::size_t Voxels::newPoints(std::size_t count) {
+  const std::size_t first = points_;
+  points_ += count;
+  const std::size_t size = points_ + kMostLanes;
+  if (x_.size() < size)
+    for (auto* coordinate : {&x_, &y_, &z_}) coordinate->resize(size + size / 4);
+  return first;
 }
 
 void Voxels::addPiece(const Key& cube, const Box& box, std::uint32_t piece, std::uint32_t element,
@@ -281,11 +347,11 @@ std::uint32_t& Voxels::firstUnit(Block& block, std::uint32_t cube) {
 }
 
 void Voxels::absorb(Voxels& other, DisjointSets& subclusters) {
-  const auto points = static_cast<std::uint32_t>(x_.size());
+  const auto points = static_cast<std::uint32_t>(newPoints(other.points_));
   const auto pieces = static_cast<std::uint32_t>(pieces_.size());
-  x_.insert(x_.end(), other.x_.begin(), other.x_.end());
-  y_.insert(y_.end(), other.y_.begin(), other.y_.end());
-  z_.insert(z_.end(), other.z_.begin(), other.z_.end());
+  std::copy_n(other.x_.begin(), other.points_, x_.begin() + points);
+  std::copy_n(other.y_.begin(), other.points_, y_.begin() + points);
+  std::copy_n(other.z_.begin(), other.points_, z_.begin() + points);
   for (Piece piece : other.pieces_) {
     piece.first_point += points;
     if (piece.next_in_unit != kNone) piece.next_in_unit += pieces;
@@ -388,39 +454,35 @@ void Voxels::linkBlock(const Block& block, bool all_new, DisjointSets& subcluste
   }
 }
 
-/// Gathers the points of a unit, from the cursor on, that may be neighbours of something in a box.
-void Voxels::gather(Cursor& cursor, const Box& box, VoxelPoints& points) const {
-  const float squared_tolerance = tolerance_.squared();
-  points.count = 0;
-  for (; cursor.piece != kNone && points.count < VoxelPoints::kMost; ++cursor.point) {
-    if (cursor.point == pieces_[cursor.piece].count) {
-      cursor = {pieces_[cursor.piece].next_in_unit, ~std::uint32_t{0}};
-      continue;
+/// Makes one piece of all that a unit has, so that its points lie side by side.
+void Voxels::unite(Unit& unit) {
+  if (unit.first_piece == unit.last_piece) return;
+  std::uint32_t count = 0;
+  for (std::uint32_t i = unit.first_piece; i != kNone; i = pieces_[i].next_in_unit) count += pieces_[i].count;
+  const std::size_t first = newPoints(count);
+  std::size_t point = first;
+  for (std::uint32_t i = unit.first_piece; i != kNone; i = pieces_[i].next_in_unit)
+    for (std::uint32_t k = pieces_[i].first_point; k < pieces_[i].first_point + pieces_[i].count; ++k, ++point) {
+      x_[point] = x_[k];
+      y_[point] = y_[k];
+      z_[point] = z_[k];
     }
-    const std::size_t i = pieces_[cursor.piece].first_point + cursor.point;
-    points.x[points.count] = x_[i];
-    points.y[points.count] = y_[i];
-    points.z[points.count] = z_[i];
-    points.count += Box::squaredGap(Box::around(x_[i], y_[i], z_[i]), box) < squared_tolerance ? 1 : 0;
-  }
+  pieces_[unit.first_piece] = {static_cast<std::uint32_t>(first), count, kNone};
+  unit.last_piece = unit.first_piece;
 }
 
 /// Whether any return of one unit is a neighbour of any return of the other.
-bool Voxels::haveNeighbours(const Unit& a, const Unit& b) const {
+bool Voxels::haveNeighbours(Unit& a, Unit& b) {
   const float squared_tolerance = tolerance_.squared();
   if (!(Box::squaredGap(a.box, b.box) < squared_tolerance)) return false;
   if (Box::squaredSpan(a.box, b.box) < squared_tolerance) return true;
-  VoxelPoints some_of_a;
-  VoxelPoints some_of_b;
-  for (Cursor at_a{a.first_piece, 0}; at_a.piece != kNone;) {
-    gather(at_a, b.box, some_of_a);
-    if (some_of_a.count == 0) continue;
-    for (Cursor at_b{b.first_piece, 0}; at_b.piece != kNone;) {
-      gather(at_b, a.box, some_of_b);
-      if (HWY_DYNAMIC_DISPATCH(anyNeighbours)(some_of_a, some_of_b, squared_tolerance)) return true;
-    }
-  }
-  return false;
+  unite(a);
+  unite(b);
+  const auto pointsOf = [this](const Unit& unit) {
+    const Piece& piece = pieces_[unit.first_piece];
+    return PointsOfUnit{&x_[piece.first_point], &y_[piece.first_point], &z_[piece.first_point], piece.count};
+  };
+  return HWY_DYNAMIC_DISPATCH(comparePoints)(pointsOf(a), a.box, pointsOf(b), b.box, squared_tolerance);
 }
 
 }  // namespace lisco

@@ -14,13 +14,6 @@
 
 namespace lisco {
 
-/// A few points side by side.
-struct VoxelPoints {
-  static constexpr std::size_t kMost = 64;
-  float x[kMost], y[kMost], z[kMost];
-  std::size_t count = 0;
-};
-
 /// Cubes of space for returns that have no place in a view: those near the sensor, seen under so wide a mask that
 /// angles tell nothing, and all those of a cloud that no single place has seen.
 ///
@@ -59,11 +52,6 @@ class Voxels {
     std::uint32_t next_in_cube;
     bool is_new;  ///< something in it has not been compared yet
   };
-  /// A point of a unit.
-  struct Cursor {
-    std::uint32_t piece;
-    std::uint32_t point;
-  };
   struct Block {
     Key key;
     std::uint32_t units;     ///< where the list of its cubes' first units begins
@@ -79,13 +67,15 @@ class Voxels {
   std::uint32_t& firstUnit(Block& block, std::uint32_t cube);
   void addPiece(const Key& cube, const Box& box, std::uint32_t piece, std::uint32_t element, DisjointSets& subclusters);
   void linkBlock(const Block& block, bool all_new, DisjointSets& subclusters);
-  void gather(Cursor& cursor, const Box& box, VoxelPoints& points) const;
-  bool haveNeighbours(const Unit& a, const Unit& b) const;
+  std::size_t newPoints(std::size_t count);
+  void unite(Unit& unit);
+  bool haveNeighbours(Unit& a, Unit& b);
 
   Tolerance tolerance_;
   double cubes_per_metre_ = 1;
-  bool safe_ = false;  ///< cubes may be numbered in float
-  std::vector<float> x_, y_, z_;
+  bool safe_ = false;             ///< cubes may be numbered in float
+  std::vector<float> x_, y_, z_;  ///< of all points, and some room
+  std::size_t points_ = 0;
   std::vector<Piece> pieces_;
   std::vector<Unit> units_;
   std::vector<Block> blocks_;
