@@ -153,12 +153,12 @@ constexpr double kMostNumber = 2251799813685248.0;  // 2^51: up to here, numbers
 constexpr std::uint32_t kBlockMask = (std::uint32_t{1} << 30) - 1;
 constexpr std::size_t kFewestSlots = 256;
 constexpr std::size_t kNeighbourBlocks = 27;
+constexpr unsigned kOrderBits = 21;     // of a block's number along an axis; safe ones have less
 constexpr std::size_t kMostLanes = 16;  // read behind the last point
 
 /// masks[cube][i]: those cubes of neighbour block i whose numbers differ by 2 at most from the cube's.
 struct Neighbourhood {
   std::uint64_t all[64][kNeighbourBlocks] = {};
-  std::uint64_t later[64][kNeighbourBlocks] = {};  ///< half of them: each pair once
 
   Neighbourhood() {
     for (int cube = 0; cube < 64; ++cube)
@@ -172,7 +172,6 @@ struct Neighbourhood {
             const std::size_t i = static_cast<std::size_t>(block(z) * 9 + block(y) * 3 + block(x));
             const std::uint64_t bit = std::uint64_t{1} << ((x & 3) | (y & 3) << 2 | (z & 3) << 4);
             all[cube][i] |= bit;
-            if (dz > 0 || (dz == 0 && (dy > 0 || (dy == 0 && dx > 0)))) later[cube][i] |= bit;
           }
   }
 };
@@ -211,6 +210,7 @@ void Voxels::prepare(const Tolerance& tolerance) {
   first_units_.clear();
   new_blocks_.clear();
   latest_block_ = kNone;
+  all_safe_ = true;
   anything_linked_ = false;
   if (slots_.size() < kFewestSlots)
     slots_.assign(kFewestSlots, kNone);
@@ -237,6 +237,7 @@ void Voxels::add(const Row& row, const MeasuredRow& measured, std::uint64_t whic
       }
     }
     changes = ~std::uint64_t{0};
+    all_safe_ = false;
   }
   // A piece goes on where the return before is there, in the same run and in the same cube.
   const std::uint64_t begins = which & ~(which << 1 & ~measured.starts & ~changes);
@@ -388,11 +389,15 @@ void Voxels::absorb(Voxels& other, DisjointSets& subclusters) {
         }
       }
   }
+  all_safe_ = all_safe_ && other.all_safe_;
   other.prepare(tolerance_);
 }
 
 void Voxels::link(DisjointSets& subclusters) {
-  for (const std::uint32_t block : new_blocks_) linkBlock(blocks_[block], !anything_linked_, subclusters);
+  if (!anything_linked_ && all_safe_)
+    linkInOrder(subclusters);
+  else
+    for (const std::uint32_t block : new_blocks_) linkNew(blocks_[block], subclusters);
   for (const std::uint32_t block : new_blocks_) {
     blocks_[block].is_new = false;
     const auto used = countBits(blocks_[block].occupied);
@@ -404,54 +409,108 @@ void Voxels::link(DisjointSets& subclusters) {
   new_blocks_.clear();
 }
 
-/// Compares the new units of a block with all units around them; each pair of new ones once.
-void Voxels::linkBlock(const Block& block, bool all_new, DisjointSets& subclusters) {
-  const auto& masks = all_new ? kNeighbourhood.later : kNeighbourhood.all;
-  struct Near {
-    std::size_t mask;
-    std::uint64_t occupied;
-    std::uint32_t units;
+/// Compares all with all. Blocks are sorted by z, y and x, so that those around one are found by going along with it in the
+/// rows of blocks next to its own, without the hash table.
+void Voxels::linkInOrder(DisjointSets& subclusters) {
+  constexpr std::uint32_t kMiddle = std::uint32_t{1} << (kOrderBits - 1);
+  const auto number = [](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    return (std::uint64_t{z} << kOrderBits | y) << kOrderBits | x;
   };
-  Near near[kNeighbourBlocks];
+  ordered_.clear();
+  for (std::uint32_t block = 0; block < blocks_.size(); ++block) {
+    const auto along = [&](std::size_t axis) { return (blocks_[block].key[axis] + kMiddle) & kBlockMask; };
+    ordered_.push_back({number(along(0), along(1), along(2)), block});
+  }
+  std::sort(ordered_.begin(), ordered_.end(), [](const Ordered& a, const Ordered& b) { return a.number < b.number; });
+
+  constexpr std::size_t kRows = 4;  // in which a block has neighbours behind it, beside its own
+  const std::uint64_t row_at[kRows] = {number(0, 1, 0), number(0, 0, 1) - number(0, 1, 0), number(0, 0, 1),
+                                       number(0, 1, 1)};
+  constexpr std::size_t kFirstMask[kRows] = {15, 18, 21, 24};
+  std::size_t cursors[kRows] = {};
+  NearBlock near[kNeighbourBlocks];
+  for (std::size_t i = 0; i < ordered_.size(); ++i) {
+    const Ordered& own = ordered_[i];
+    std::size_t count = 0;
+    const auto add = [&](std::size_t mask, const Ordered& other) {
+      const Block& block = blocks_[other.block];
+      near[count++] = {mask, block.occupied, block.units};
+    };
+    add(kNeighbourBlocks / 2, own);
+    if (i + 1 < ordered_.size() && ordered_[i + 1].number == own.number + 1)
+      add(kNeighbourBlocks / 2 + 1, ordered_[i + 1]);
+    for (std::size_t row = 0; row < kRows; ++row) {
+      const std::uint64_t first = own.number + row_at[row] - 1;
+      std::size_t& at = cursors[row];
+      while (at < ordered_.size() && ordered_[at].number < first) ++at;
+      for (std::size_t k = at; k < ordered_.size() && ordered_[k].number <= first + 2; ++k)
+        add(kFirstMask[row] + static_cast<std::size_t>(ordered_[k].number - first), ordered_[k]);
+    }
+    linkBlock(blocks_[own.block], near, count, subclusters);
+  }
+}
+
+/// Compares the new units of a block with all units around them; each pair of new ones once.
+void Voxels::linkNew(const Block& block, DisjointSets& subclusters) {
+  NearBlock near[kNeighbourBlocks];
   std::size_t count = 0;
-  for (std::size_t i = all_new ? kNeighbourBlocks / 3 : 0; i < kNeighbourBlocks; ++i) {
+  for (std::size_t i = 0; i < kNeighbourBlocks; ++i) {
     const auto step = [](std::size_t which) { return static_cast<std::uint32_t>(which) - 1U; };
     const Key key{(block.key[0] + step(i % 3)) & kBlockMask, (block.key[1] + step(i / 3 % 3)) & kBlockMask,
                   (block.key[2] + step(i / 9)) & kBlockMask};
     const std::uint32_t number = findBlock(key);
     if (number != kNone) near[count++] = {i, blocks_[number].occupied, blocks_[number].units};
   }
-
-  const auto compare = [&](std::uint32_t a_number, std::uint32_t b_number) {
-    Unit& a = units_[a_number];
-    Unit& b = units_[b_number];
-    if (a.head == b.head || (!all_new && b.is_new && b_number > a_number)) return;
-    a.head = subclusters.head(a.head);
-    b.head = subclusters.head(b.head);
-    if (a.head != b.head && haveNeighbours(a, b)) a.head = b.head = subclusters.merge(a.head, b.head);
-  };
-
   std::uint32_t rank = 0;
   for (std::uint64_t left = block.occupied; left != 0; left &= left - 1, ++rank) {
     const auto cube = static_cast<std::size_t>(__builtin_ctzll(left));
     for (std::uint32_t unit = first_units_[block.units + rank]; unit != kNone; unit = units_[unit].next_in_cube) {
       if (!units_[unit].is_new) continue;
-      for (std::uint32_t other = all_new ? units_[unit].next_in_cube : first_units_[block.units + rank]; other != kNone;
-           other = units_[other].next_in_cube)
-        compare(unit, other);
-      for (std::size_t i = 0; i < count; ++i) {
-        std::uint64_t around = near[i].occupied & masks[cube][near[i].mask];
-        if (near[i].mask == kNeighbourBlocks / 2) around &= ~(std::uint64_t{1} << cube);
-        for (; around != 0; around &= around - 1) {
-          const std::uint64_t before = (around & -around) - 1;
-          const auto place = countBits(near[i].occupied & before);
-          for (std::uint32_t other = first_units_[near[i].units + place]; other != kNone;
-               other = units_[other].next_in_cube)
-            compare(unit, other);
-        }
-      }
+      forEachAround(cube, near, count, ~std::uint64_t{0}, [&](std::uint32_t other) {
+        if (!units_[other].is_new || other < unit) compare(unit, other, subclusters);
+      });
     }
   }
+}
+
+/// Compares all units of a block with those that come after them, there and in the blocks given.
+void Voxels::linkBlock(const Block& block, const NearBlock* near, std::size_t count, DisjointSets& subclusters) {
+  std::uint32_t rank = 0;
+  for (std::uint64_t left = block.occupied; left != 0; left &= left - 1, ++rank) {
+    const auto cube = static_cast<std::size_t>(__builtin_ctzll(left));
+    for (std::uint32_t unit = first_units_[block.units + rank]; unit != kNone; unit = units_[unit].next_in_cube) {
+      for (std::uint32_t other = units_[unit].next_in_cube; other != kNone; other = units_[other].next_in_cube)
+        compare(unit, other, subclusters);
+      forEachAround(cube, near, count, left & (left - 1),
+                    [&](std::uint32_t other) { compare(unit, other, subclusters); });
+    }
+  }
+}
+
+/// Calls visit for each unit in the cubes around one, of its own block in some only.
+template <typename Visit>
+void Voxels::forEachAround(std::size_t cube, const NearBlock* near, std::size_t count, std::uint64_t of_own,
+                           Visit&& visit) const {
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint64_t around = near[i].occupied & kNeighbourhood.all[cube][near[i].mask];
+    if (near[i].mask == kNeighbourBlocks / 2) around &= of_own;
+    for (; around != 0; around &= around - 1) {
+      const std::uint64_t before = (around & -around) - 1;
+      const auto place = countBits(near[i].occupied & before);
+      for (std::uint32_t other = first_units_[near[i].units + place]; other != kNone;
+           other = units_[other].next_in_cube)
+        visit(other);
+    }
+  }
+}
+
+void Voxels::compare(std::uint32_t a_number, std::uint32_t b_number, DisjointSets& subclusters) {
+  Unit& a = units_[a_number];
+  Unit& b = units_[b_number];
+  if (a.head == b.head) return;
+  a.head = subclusters.head(a.head);
+  b.head = subclusters.head(b.head);
+  if (a.head != b.head && haveNeighbours(a, b)) a.head = b.head = subclusters.merge(a.head, b.head);
 }
 
 /// Makes one piece of all that a unit has, so that its points lie side by side.

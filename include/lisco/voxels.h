@@ -59,6 +59,16 @@ class Voxels {
     std::uint64_t occupied;  ///< bit i: cube i
     bool is_new;
   };
+  /// A block next to another, or that one.
+  struct NearBlock {
+    std::size_t mask;  ///< which of the 27
+    std::uint64_t occupied;
+    std::uint32_t units;
+  };
+  struct Ordered {
+    std::uint64_t number;  ///< by z, y and x
+    std::uint32_t block;
+  };
 
   std::uint32_t findBlock(const Key& key) const;
   std::uint32_t makeBlock(const Key& key);
@@ -66,7 +76,13 @@ class Voxels {
   void takeSlot(std::uint32_t block);
   std::uint32_t& firstUnit(Block& block, std::uint32_t cube);
   void addPiece(const Key& cube, const Box& box, std::uint32_t piece, std::uint32_t element, DisjointSets& subclusters);
-  void linkBlock(const Block& block, bool all_new, DisjointSets& subclusters);
+  void linkInOrder(DisjointSets& subclusters);
+  void linkNew(const Block& block, DisjointSets& subclusters);
+  void linkBlock(const Block& block, const NearBlock* near, std::size_t count, DisjointSets& subclusters);
+  template <typename Visit>
+  void forEachAround(std::size_t cube, const NearBlock* near, std::size_t count, std::uint64_t of_own,
+                     Visit&& visit) const;
+  void compare(std::uint32_t a_number, std::uint32_t b_number, DisjointSets& subclusters);
   std::size_t newPoints(std::size_t count);
   void unite(Unit& unit);
   bool haveNeighbours(Unit& a, Unit& b);
@@ -82,6 +98,8 @@ class Voxels {
   std::vector<std::uint32_t> first_units_;
   std::vector<std::uint32_t> slots_;  ///< hash table of blocks
   std::uint32_t latest_block_ = kNone;
+  std::vector<Ordered> ordered_;           ///< blocks
+  bool all_safe_ = true;                   ///< all cubes were numbered in float
   std::vector<std::uint32_t> new_blocks_;  ///< that hold new units
   bool anything_linked_ = false;
 };
