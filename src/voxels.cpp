@@ -64,15 +64,19 @@ bool numberCubes(const Row& row, std::uint64_t which, float per_metre, CubeNumbe
     if ((which >> k & ((std::uint64_t{1} << kLanes) - 1)) == 0) continue;
     const FloatVector x = hn::LoadU(kFloats, coordinates[0] + k);
     const FloatMask returned = hn::Eq(x, x);
-    FloatMask changed = hn::Lt(farthest, farthest);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const FloatVector number = hn::Mul(hn::LoadU(kFloats, coordinates[axis] + k), scale);
       farthest = hn::Max(farthest, hn::IfThenElseZero(returned, hn::Abs(number)));
-      std::uint32_t* const own = numbers.of[axis] + 1 + k;
-      hn::StoreU(hn::BitCast(kWords, hn::ConvertTo(signed_words, hn::Floor(number))), kWords, own);
-      changed = hn::Or(changed, differ(own, hn::LoadU(kWords, own - 1)));
+      hn::StoreU(hn::BitCast(kWords, hn::ConvertTo(signed_words, hn::Floor(number))), kWords, numbers.of[axis] + 1 + k);
     }
-    changes |= std::uint64_t{bitsOf(changed)} << k;
+  }
+  // Not at once: what has just been stored is slow to be read at another offset.
+  for (std::size_t k = 0; k < Row::kColumns; k += kLanes) {
+    if ((which >> k & ((std::uint64_t{1} << kLanes) - 1)) == 0) continue;
+    const auto changed = [&](std::size_t axis) {
+      return differ(numbers.of[axis] + k, hn::LoadU(kWords, numbers.of[axis] + k + 1));
+    };
+    changes |= std::uint64_t{bitsOf(hn::Or(changed(0), hn::Or(changed(1), changed(2))))} << k;
   }
   return hn::GetLane(hn::MaxOfLanes(kFloats, farthest)) <= kSafeNumbers;
 }
