@@ -213,7 +213,7 @@ void Voxels::prepare(const Tolerance& tolerance) {
   blocks_.clear();
   first_units_.clear();
   new_blocks_.clear();
-  latest_block_ = kNone;
+  recent_units_.fill({Key{}, kNone});
   all_safe_ = true;
   anything_linked_ = false;
   if (slots_.size() < kFewestSlots)
@@ -277,27 +277,42 @@ std::size_t Voxels::newPoints(std::size_t count) {
 
 void Voxels::addPiece(const Key& cube, const Box& box, std::uint32_t piece, std::uint32_t element,
                       DisjointSets& subclusters) {
+  // Most cubes have been met a little before.
+  RecentUnit& recent = recent_units_[hashOf(cube) % kRecentUnits];
+  if (recent.unit != kNone && sameKey(recent.cube, cube)) {
+    Unit& unit = units_[recent.unit];
+    if (unit.is_new && Box::squaredSpan(unit.box, box) < tolerance_.squared()) {
+      addTo(unit, box, piece, element, subclusters);
+      return;
+    }
+  }
   const Key key{cube[0] >> 2, cube[1] >> 2, cube[2] >> 2};
-  if (latest_block_ == kNone || !sameKey(blocks_[latest_block_].key, key)) latest_block_ = makeBlock(key);
-  Block& block = blocks_[latest_block_];
+  const std::uint32_t block_number = makeBlock(key);
+  Block& block = blocks_[block_number];
   if (!block.is_new) {
     block.is_new = true;
-    new_blocks_.push_back(latest_block_);
+    new_blocks_.push_back(block_number);
   }
   std::uint32_t& first = firstUnit(block, (cube[0] & 3U) | (cube[1] & 3U) << 2 | (cube[2] & 3U) << 4);
   for (std::uint32_t i = first; i != kNone; i = units_[i].next_in_cube) {
     Unit& unit = units_[i];
     if (!(Box::squaredSpan(unit.box, box) < tolerance_.squared())) continue;
-    unit.box.add(box);
-    unit.is_new = true;
-    pieces_[unit.last_piece].next_in_unit = piece;
-    unit.last_piece = piece;
-    if (unit.head != element) unit.head = subclusters.merge(unit.head, element);
+    addTo(unit, box, piece, element, subclusters);
+    recent = {cube, i};
     return;
   }
   const auto number = static_cast<std::uint32_t>(units_.size());
   units_.push_back({box, element, piece, piece, first, true});
   first = number;
+  recent = {cube, number};
+}
+
+void Voxels::addTo(Unit& unit, const Box& box, std::uint32_t piece, std::uint32_t element, DisjointSets& subclusters) {
+  unit.box.add(box);
+  unit.is_new = true;
+  pieces_[unit.last_piece].next_in_unit = piece;
+  unit.last_piece = piece;
+  if (unit.head != element) unit.head = subclusters.merge(unit.head, element);
 }
 
 std::uint32_t Voxels::findBlock(const Key& key) const {

@@ -59,6 +59,12 @@ class Voxels {
     std::uint64_t occupied;  ///< bit i: cube i
     bool is_new;
   };
+  /// Where a cube's latest piece went.
+  struct RecentUnit {
+    Key cube;
+    std::uint32_t unit;
+  };
+  static constexpr std::size_t kRecentUnits = 1024;
   /// A block next to another, or that one.
   struct NearBlock {
     std::size_t mask;  ///< which of the 27
@@ -76,6 +82,7 @@ class Voxels {
   void takeSlot(std::uint32_t block);
   std::uint32_t& firstUnit(Block& block, std::uint32_t cube);
   void addPiece(const Key& cube, const Box& box, std::uint32_t piece, std::uint32_t element, DisjointSets& subclusters);
+  void addTo(Unit& unit, const Box& box, std::uint32_t piece, std::uint32_t element, DisjointSets& subclusters);
   void linkInOrder(DisjointSets& subclusters);
   void linkNew(const Block& block, DisjointSets& subclusters);
   void linkBlock(const Block& block, const NearBlock* near, std::size_t count, DisjointSets& subclusters);
@@ -96,11 +103,11 @@ class Voxels {
   std::vector<Unit> units_;
   std::vector<Block> blocks_;
   std::vector<std::uint32_t> first_units_;
-  std::vector<std::uint32_t> slots_;  ///< hash table of blocks
-  std::uint32_t latest_block_ = kNone;
-  std::vector<Ordered> ordered_;           ///< blocks
-  bool all_safe_ = true;                   ///< all cubes were numbered in float
-  std::vector<std::uint32_t> new_blocks_;  ///< that hold new units
+  std::vector<std::uint32_t> slots_;                     ///< hash table of blocks
+  std::array<RecentUnit, kRecentUnits> recent_units_{};  ///< by the hash of the cube
+  std::vector<Ordered> ordered_;                         ///< blocks
+  bool all_safe_ = true;                                 ///< all cubes were numbered in float
+  std::vector<std::uint32_t> new_blocks_;                ///< that hold new units
   bool anything_linked_ = false;
 };
 
