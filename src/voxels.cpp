@@ -535,17 +535,17 @@ void Voxels::compare(std::uint32_t a_number, std::uint32_t b_number, DisjointSet
 /// Makes one piece of all that a unit has, so that its points lie side by side.
 void Voxels::unite(Unit& unit) {
   if (unit.first_piece == unit.last_piece) return;
-  std::uint32_t count = 0;
-  for (std::uint32_t i = unit.first_piece; i != kNone; i = pieces_[i].next_in_unit) count += pieces_[i].count;
-  const std::size_t first = newPoints(count);
-  std::size_t point = first;
-  for (std::uint32_t i = unit.first_piece; i != kNone; i = pieces_[i].next_in_unit)
-    for (std::uint32_t k = pieces_[i].first_point; k < pieces_[i].first_point + pieces_[i].count; ++k, ++point) {
+  const std::size_t first = points_;
+  for (std::uint32_t i = unit.first_piece; i != kNone; i = pieces_[i].next_in_unit) {
+    const Piece& piece = pieces_[i];
+    std::size_t point = newPoints(piece.count);
+    for (std::uint32_t k = piece.first_point; k < piece.first_point + piece.count; ++k, ++point) {
       x_[point] = x_[k];
       y_[point] = y_[k];
       z_[point] = z_[k];
     }
-  pieces_[unit.first_piece] = {static_cast<std::uint32_t>(first), count, kNone};
+  }
+  pieces_[unit.first_piece] = {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(points_ - first), kNone};
   unit.last_piece = unit.first_piece;
 }
 
