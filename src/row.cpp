@@ -44,10 +44,6 @@ void measureRow(Row& row, float squared_tolerance, const FarRange& range, Measur
     hn::StoreU(x, kFloats, px);
     if (returns == 0) continue;
     measured.returns |= returns << k;
-    const FloatMask link = areNeighbours(hn::Sub(x, hn::LoadU(kFloats, px - 1)), hn::Sub(y, hn::LoadU(kFloats, py - 1)),
-                                         hn::Sub(z, hn::LoadU(kFloats, pz - 1)), r2);
-    linked |= std::uint64_t{bitsOf(link)} << k;
-
     const FloatVector east = hn::Sub(x, hn::Set(kFloats, range.origin[0]));
     const FloatVector north = hn::Sub(y, hn::Set(kFloats, range.origin[1]));
     const FloatVector rho = hn::Sqrt(hn::Add(hn::Mul(east, east), hn::Mul(north, north)));
@@ -61,6 +57,15 @@ void measureRow(Row& row, float squared_tolerance, const FarRange& range, Measur
     const FloatVector slope = hn::Div(hn::Sub(z, hn::Set(kFloats, range.origin[2])), rho);
     lowest = hn::Min(lowest, hn::IfThenElse(far, slope, infinity));
     highest = hn::Max(highest, hn::IfThenElse(far, slope, hn::Neg(infinity)));
+  }
+  // Not at once: what has just been stored is slow to be read at another offset.
+  for (std::size_t k = 0; k < Row::kColumns; k += kLanes) {
+    if ((measured.returns >> k & ((std::uint64_t{1} << kLanes) - 1)) == 0) continue;
+    const auto step = [k](const float* coordinate) {
+      const float* const here = coordinate + Row::kMargin + k;
+      return hn::Sub(hn::LoadU(kFloats, here), hn::LoadU(kFloats, here - 1));
+    };
+    linked |= std::uint64_t{bitsOf(areNeighbours(step(row.x), step(row.y), step(row.z), r2))} << k;
   }
   measured.starts = measured.returns & ~linked;
   measured.lowest = hn::GetLane(hn::MinOfLanes(kFloats, lowest));

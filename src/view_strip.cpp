@@ -518,20 +518,19 @@ class Windows {
     const std::uint32_t begin = other.begin[window.first_laser];
     const std::uint32_t end = std::min(limit, other.begin[window.last_laser + 1]);
     for (std::uint32_t i = begin; i < end; i += std::uint32_t{kLanes}) {
-      // Most of what is around belongs together already.
-      const FloatMask unlike = differ(&other.head[i], hn::Set(kWords, window.head));
-      std::uint32_t left = bitsOf(unlike);
-      if (end - i < kLanes) left &= (1U << (end - i)) - 1;
-      if (left == 0) continue;
       const auto load = [&](const std::vector<float>& bound) { return hn::LoadU(kFloats, &bound[i]); };
       const auto all = [](float value) { return hn::Set(kFloats, value); };
       const FloatMask range =
           hn::And(hn::Le(load(other.nearest), all(window.farthest)), hn::Ge(load(other.farthest), all(window.nearest)));
+      // Most of what is around belongs together already.
+      std::uint32_t left = bitsOf(hn::And(range, differ(&other.head[i], hn::Set(kWords, window.head))));
+      if (end - i < kLanes) left &= (1U << (end - i)) - 1;
+      if (left == 0) continue;
       const FloatMask height =
           hn::And(hn::Le(load(other.lowest), all(window.highest)), hn::Ge(load(other.highest), all(window.lowest)));
       const FloatMask places =
           hn::And(hn::Le(load(other.first), all(window.last)), hn::Ge(load(other.last), all(window.first)));
-      left &= bitsOf(hn::And(range, hn::And(height, places)));
+      left &= bitsOf(hn::And(height, places));
       for (; left != 0; left &= left - 1) {
         const std::uint32_t candidate = i + static_cast<std::uint32_t>(__builtin_ctz(left));
         const std::uint32_t other_head = subclusters_.head(other.head[candidate]);

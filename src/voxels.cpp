@@ -24,6 +24,21 @@ struct CubeNumbers {
   std::uint32_t of[3][1 + Row::kColumns];
 };
 
+/// The points of a unit, side by side.
+struct PointsOfUnit {
+  const float* x;
+  const float* y;
+  const float* z;
+  std::size_t count;
+};
+
+/// Some of a unit's.
+struct GatheredPoints {
+  static constexpr std::size_t kMost = 64;
+  float x[kMost], y[kMost], z[kMost];
+  std::size_t count = 0;
+};
+
 // Up to here, numbers computed in float are good enough; see kSide.
 constexpr float kSafeNumbers = 1 << 20;
 
@@ -49,22 +64,51 @@ bool numberCubes(const Row& row, std::uint64_t which, float per_metre, CubeNumbe
     if ((which >> k & ((std::uint64_t{1} << kLanes) - 1)) == 0) continue;
     const FloatVector x = hn::LoadU(kFloats, coordinates[0] + k);
     const FloatMask returned = hn::Eq(x, x);
-    FloatMask changed = hn::Lt(farthest, farthest);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const FloatVector number = hn::Mul(hn::LoadU(kFloats, coordinates[axis] + k), scale);
       farthest = hn::Max(farthest, hn::IfThenElseZero(returned, hn::Abs(number)));
-      std::uint32_t* const own = numbers.of[axis] + 1 + k;
-      hn::StoreU(hn::BitCast(kWords, hn::ConvertTo(signed_words, hn::Floor(number))), kWords, own);
-      changed = hn::Or(changed, differ(own, hn::LoadU(kWords, own - 1)));
+      hn::StoreU(hn::BitCast(kWords, hn::ConvertTo(signed_words, hn::Floor(number))), kWords, numbers.of[axis] + 1 + k);
     }
-    changes |= std::uint64_t{bitsOf(changed)} << k;
+  }
+  // Not at once: what has just been stored is slow to be read at another offset.
+  for (std::size_t k = 0; k < Row::kColumns; k += kLanes) {
+    if ((which >> k & ((std::uint64_t{1} << kLanes) - 1)) == 0) continue;
+    const auto changed = [&](std::size_t axis) {
+      return differ(numbers.of[axis] + k, hn::LoadU(kWords, numbers.of[axis] + k + 1));
+    };
+    changes |= std::uint64_t{bitsOf(hn::Or(changed(0), hn::Or(changed(1), changed(2))))} << k;
   }
   return hn::GetLane(hn::MaxOfLanes(kFloats, farthest)) <= kSafeNumbers;
 }
 
-/// Whether any two points of two lists are neighbours.
-bool anyNeighbours(const VoxelPoints& a, VoxelPoints& b, float squared_tolerance) {
+/// Gathers the points of a unit, from one on, that may be neighbours of something in a box.
+/// \return where to go on
+std::size_t gather(const PointsOfUnit& unit, std::size_t from, const Box& box, float squared_tolerance,
+                   GatheredPoints& points) {
   const FloatVector r2 = hn::Set(kFloats, squared_tolerance);
+  const auto gap = [](FloatVector coordinate, float lo, float hi) {
+    const FloatVector outside =
+        hn::Max(hn::Sub(coordinate, hn::Set(kFloats, hi)), hn::Sub(hn::Set(kFloats, lo), coordinate));
+    return hn::Max(outside, hn::Zero(kFloats));
+  };
+  points.count = 0;
+  for (; from < unit.count && points.count <= GatheredPoints::kMost - kLanes; from += kLanes) {
+    const FloatVector x = hn::LoadU(kFloats, unit.x + from);
+    const FloatVector y = hn::LoadU(kFloats, unit.y + from);
+    const FloatVector z = hn::LoadU(kFloats, unit.z + from);
+    // Box::squaredGap, lane by lane
+    const FloatMask near =
+        areNeighbours(gap(x, box.lo[0], box.hi[0]), gap(y, box.lo[1], box.hi[1]), gap(z, box.lo[2], box.hi[2]), r2);
+    const FloatMask chosen = hn::And(near, hn::FirstN(kFloats, unit.count - from));
+    hn::CompressStore(x, chosen, kFloats, points.x + points.count);
+    hn::CompressStore(y, chosen, kFloats, points.y + points.count);
+    points.count += hn::CompressStore(z, chosen, kFloats, points.z + points.count);
+  }
+  return from;
+}
+
+/// Whether any two points of two lists are neighbours.
+bool anyNeighbours(const GatheredPoints& a, GatheredPoints& b, FloatVector r2) {
   for (std::size_t i = b.count; i % kLanes != 0; ++i) b.x[i] = std::numeric_limits<float>::quiet_NaN();
   for (std::size_t i = 0; i < a.count; ++i) {
     const FloatVector x = hn::Set(kFloats, a.x[i]);
@@ -79,6 +123,22 @@ bool anyNeighbours(const VoxelPoints& a, VoxelPoints& b, float squared_tolerance
   return false;
 }
 
+/// Whether any point of one unit is a neighbour of any point of another.
+bool comparePoints(const PointsOfUnit& a, const Box& a_box, const PointsOfUnit& b, const Box& b_box,
+                   float squared_tolerance) {
+  GatheredPoints some_of_a;
+  GatheredPoints some_of_b;
+  for (std::size_t at_a = 0; at_a < a.count;) {
+    at_a = gather(a, at_a, b_box, squared_tolerance, some_of_a);
+    if (some_of_a.count == 0) continue;
+    for (std::size_t at_b = 0; at_b < b.count;) {
+      at_b = gather(b, at_b, a_box, squared_tolerance, some_of_b);
+      if (anyNeighbours(some_of_a, some_of_b, hn::Set(kFloats, squared_tolerance))) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace lisco
 HWY_AFTER_NAMESPACE();
@@ -88,7 +148,7 @@ namespace lisco {
 namespace {
 
 HWY_EXPORT(numberCubes);
-HWY_EXPORT(anyNeighbours);
+HWY_EXPORT(comparePoints);
 
 // A little less than eps / sqrt (3). Rounding moves a return by less than an eighth of a cube, so that
 // neighbours, which are 1.7323 sides apart at most, lie in cubes whose numbers differ by 2 at most.
@@ -97,11 +157,12 @@ constexpr double kMostNumber = 2251799813685248.0;  // 2^51: up to here, numbers
 constexpr std::uint32_t kBlockMask = (std::uint32_t{1} << 30) - 1;
 constexpr std::size_t kFewestSlots = 256;
 constexpr std::size_t kNeighbourBlocks = 27;
+constexpr unsigned kOrderBits = 21;     // of a block's number along an axis; safe ones have less
+constexpr std::size_t kMostLanes = 16;  // read behind the last point
 
 /// masks[cube][i]: those cubes of neighbour block i whose numbers differ by 2 at most from the cube's.
 struct Neighbourhood {
   std::uint64_t all[64][kNeighbourBlocks] = {};
-  std::uint64_t later[64][kNeighbourBlocks] = {};  ///< half of them: each pair once
 
   Neighbourhood() {
     for (int cube = 0; cube < 64; ++cube)
@@ -115,7 +176,6 @@ struct Neighbourhood {
             const std::size_t i = static_cast<std::size_t>(block(z) * 9 + block(y) * 3 + block(x));
             const std::uint64_t bit = std::uint64_t{1} << ((x & 3) | (y & 3) << 2 | (z & 3) << 4);
             all[cube][i] |= bit;
-            if (dz > 0 || (dz == 0 && (dy > 0 || (dy == 0 && dx > 0)))) later[cube][i] |= bit;
           }
   }
 };
@@ -147,14 +207,15 @@ void Voxels::prepare(const Tolerance& tolerance) {
   tolerance_ = tolerance;
   cubes_per_metre_ = 1.0 / (kSide * std::max(tolerance.reach(), 1e-22));
   safe_ = cubes_per_metre_ > 1e-30 && cubes_per_metre_ < 1e30;
-  for (auto* coordinate : {&x_, &y_, &z_}) coordinate->clear();
+  points_ = 0;
   pieces_.clear();
   units_.clear();
   blocks_.clear();
   first_units_.clear();
   new_blocks_.clear();
-  latest_block_ = kNone;
-  bounds_ = Box::nothing();
+  footprint_.clear();
+  recent_units_.fill({Key{}, kNone});
+  all_safe_ = true;
   anything_linked_ = false;
   if (slots_.size() < kFewestSlots)
     slots_.assign(kFewestSlots, kNone);
@@ -181,12 +242,12 @@ void Voxels::add(const Row& row, const MeasuredRow& measured, std::uint64_t whic
       }
     }
     changes = ~std::uint64_t{0};
+    all_safe_ = false;
   }
   // A piece goes on where the return before is there, in the same run and in the same cube.
   const std::uint64_t begins = which & ~(which << 1 & ~measured.starts & ~changes);
   const std::uint64_t ends = ~which | begins;
-  std::size_t point = x_.size();
-  for (auto* coordinate : {&x_, &y_, &z_}) coordinate->resize(point + static_cast<std::size_t>(countBits(which)));
+  std::size_t point = newPoints(countBits(which));
   for (std::uint64_t left = begins; left != 0; left &= left - 1) {
     const auto begin = static_cast<std::size_t>(__builtin_ctzll(left));
     const std::uint64_t after = begin == Row::kColumns - 1 ? 0 : ends & ~std::uint64_t{0} << (begin + 1);
@@ -205,30 +266,54 @@ void Voxels::add(const Row& row, const MeasuredRow& measured, std::uint64_t whic
   }
 }
 
+/// Makes room for so many points more. \return the first of them
+std::size_t Voxels::newPoints(std::size_t count) {
+  const std::size_t first = points_;
+  points_ += count;
+  const std::size_t size = points_ + kMostLanes;
+  if (x_.size() < size)
+    for (auto* coordinate : {&x_, &y_, &z_}) coordinate->resize(size + size / 4);
+  return first;
+}
+
 void Voxels::addPiece(const Key& cube, const Box& box, std::uint32_t piece, std::uint32_t element,
                       DisjointSets& subclusters) {
+  // Most cubes have been met a little before.
+  RecentUnit& recent = recent_units_[hashOf(cube) % kRecentUnits];
+  if (recent.unit != kNone && sameKey(recent.cube, cube)) {
+    Unit& unit = units_[recent.unit];
+    if (unit.is_new && Box::squaredSpan(unit.box, box) < tolerance_.squared()) {
+      addTo(unit, box, piece, element, subclusters);
+      return;
+    }
+  }
   const Key key{cube[0] >> 2, cube[1] >> 2, cube[2] >> 2};
-  if (latest_block_ == kNone || !sameKey(blocks_[latest_block_].key, key)) latest_block_ = makeBlock(key);
-  Block& block = blocks_[latest_block_];
+  const std::uint32_t block_number = makeBlock(key);
+  Block& block = blocks_[block_number];
   if (!block.is_new) {
     block.is_new = true;
-    new_blocks_.push_back(latest_block_);
+    new_blocks_.push_back(block_number);
   }
-  bounds_.add(box);
   std::uint32_t& first = firstUnit(block, (cube[0] & 3U) | (cube[1] & 3U) << 2 | (cube[2] & 3U) << 4);
   for (std::uint32_t i = first; i != kNone; i = units_[i].next_in_cube) {
     Unit& unit = units_[i];
     if (!(Box::squaredSpan(unit.box, box) < tolerance_.squared())) continue;
-    unit.box.add(box);
-    unit.is_new = true;
-    pieces_[unit.last_piece].next_in_unit = piece;
-    unit.last_piece = piece;
-    if (unit.head != element) unit.head = subclusters.merge(unit.head, element);
+    addTo(unit, box, piece, element, subclusters);
+    recent = {cube, i};
     return;
   }
   const auto number = static_cast<std::uint32_t>(units_.size());
   units_.push_back({box, element, piece, piece, first, true});
   first = number;
+  recent = {cube, number};
+}
+
+void Voxels::addTo(Unit& unit, const Box& box, std::uint32_t piece, std::uint32_t element, DisjointSets& subclusters) {
+  unit.box.add(box);
+  unit.is_new = true;
+  pieces_[piece].next_in_unit = unit.first_piece;
+  unit.first_piece = piece;
+  if (unit.head != element) unit.head = subclusters.merge(unit.head, element);
 }
 
 std::uint32_t Voxels::findBlock(const Key& key) const {
@@ -242,6 +327,7 @@ std::uint32_t Voxels::makeBlock(const Key& key) {
   if (found != kNone) return found;
   const auto number = static_cast<std::uint32_t>(blocks_.size());
   blocks_.push_back({key, 0, 0, 0, false});
+  footprint_.add(key);
   if (2 * blocks_.size() > slots_.size())
     rehash(2 * slots_.size());
   else
@@ -283,17 +369,16 @@ std::uint32_t& Voxels::firstUnit(Block& block, std::uint32_t cube) {
 }
 
 void Voxels::absorb(Voxels& other, DisjointSets& subclusters) {
-  const auto points = static_cast<std::uint32_t>(x_.size());
+  const auto points = static_cast<std::uint32_t>(newPoints(other.points_));
   const auto pieces = static_cast<std::uint32_t>(pieces_.size());
-  x_.insert(x_.end(), other.x_.begin(), other.x_.end());
-  y_.insert(y_.end(), other.y_.begin(), other.y_.end());
-  z_.insert(z_.end(), other.z_.begin(), other.z_.end());
+  std::copy_n(other.x_.begin(), other.points_, x_.begin() + points);
+  std::copy_n(other.y_.begin(), other.points_, y_.begin() + points);
+  std::copy_n(other.z_.begin(), other.points_, z_.begin() + points);
   for (Piece piece : other.pieces_) {
     piece.first_point += points;
     if (piece.next_in_unit != kNone) piece.next_in_unit += pieces;
     pieces_.push_back(piece);
   }
-  bounds_.add(other.bounds_);
   for (const Block& block : other.blocks_) {
     const std::uint32_t own_number = makeBlock(block.key);
     Block& own = blocks_[own_number];
@@ -315,8 +400,8 @@ void Voxels::absorb(Voxels& other, DisjointSets& subclusters) {
         if (like != nullptr) {
           like->box.add(unit.box);
           like->is_new = true;
-          pieces_[like->last_piece].next_in_unit = unit.first_piece;
-          like->last_piece = unit.last_piece;
+          pieces_[unit.last_piece].next_in_unit = like->first_piece;
+          like->first_piece = unit.first_piece;
           like->head = subclusters.merge(like->head, unit.head);
         } else {
           unit.next_in_cube = first;
@@ -325,11 +410,15 @@ void Voxels::absorb(Voxels& other, DisjointSets& subclusters) {
         }
       }
   }
+  all_safe_ = all_safe_ && other.all_safe_;
   other.prepare(tolerance_);
 }
 
 void Voxels::link(DisjointSets& subclusters) {
-  for (const std::uint32_t block : new_blocks_) linkBlock(blocks_[block], !anything_linked_, subclusters);
+  if (!anything_linked_ && all_safe_)
+    linkInOrder(subclusters);
+  else
+    for (const std::uint32_t block : new_blocks_) linkNew(blocks_[block], subclusters);
   for (const std::uint32_t block : new_blocks_) {
     blocks_[block].is_new = false;
     const auto used = countBits(blocks_[block].occupied);
@@ -341,11 +430,52 @@ void Voxels::link(DisjointSets& subclusters) {
   new_blocks_.clear();
 }
 
+/// Compares all with all. Blocks are sorted by z, y and x, so that those around one are found by going along with it in the
+/// rows of blocks next to its own, without the hash table.
+void Voxels::linkInOrder(DisjointSets& subclusters) {
+  constexpr std::uint32_t kMiddle = std::uint32_t{1} << (kOrderBits - 1);
+  const auto number = [](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    return (std::uint64_t{z} << kOrderBits | y) << kOrderBits | x;
+  };
+  ordered_.clear();
+  for (std::uint32_t block = 0; block < blocks_.size(); ++block) {
+    const auto along = [&](std::size_t axis) { return (blocks_[block].key[axis] + kMiddle) & kBlockMask; };
+    ordered_.push_back({number(along(0), along(1), along(2)), block});
+  }
+  std::sort(ordered_.begin(), ordered_.end(), [](const Ordered& a, const Ordered& b) { return a.number < b.number; });
+
+  constexpr std::size_t kRows = 4;  // in which a block has neighbours behind it, beside its own
+  const std::uint64_t row_at[kRows] = {number(0, 1, 0), number(0, 0, 1) - number(0, 1, 0), number(0, 0, 1),
+                                       number(0, 1, 1)};
+  constexpr std::size_t kFirstMask[kRows] = {15, 18, 21, 24};
+  std::size_t cursors[kRows] = {};
+  NearBlock near[kNeighbourBlocks];
+  for (std::size_t i = 0; i < ordered_.size(); ++i) {
+    const Ordered& own = ordered_[i];
+    std::size_t count = 0;
+    const auto add = [&](std::size_t mask, const Ordered& other) {
+      const Block& block = blocks_[other.block];
+      near[count++] = {mask, block.occupied, block.units};
+    };
+    add(kNeighbourBlocks / 2, own);
+    if (i + 1 < ordered_.size() && ordered_[i + 1].number == own.number + 1)
+      add(kNeighbourBlocks / 2 + 1, ordered_[i + 1]);
+    for (std::size_t row = 0; row < kRows; ++row) {
+      const std::uint64_t first = own.number + row_at[row] - 1;
+      std::size_t& at = cursors[row];
+      while (at < ordered_.size() && ordered_[at].number < first) ++at;
+      for (std::size_t k = at; k < ordered_.size() && ordered_[k].number <= first + 2; ++k)
+        add(kFirstMask[row] + static_cast<std::size_t>(ordered_[k].number - first), ordered_[k]);
+    }
+    linkBlock(blocks_[own.block], near, count, subclusters);
+  }
+}
+
+/// Compares the new units of a block with all units around them; each pair of new ones once.
 /// Finds the blocks around one that hold anything.
-/// \param first the first of the 27 to look at
-std::size_t Voxels::findNear(const Key& key, std::size_t first, Near* near) const {
+std::size_t Voxels::findNear(const Key& key, NearBlock* near) const {
   std::size_t count = 0;
-  for (std::size_t i = first; i < kNeighbourBlocks; ++i) {
+  for (std::size_t i = 0; i < kNeighbourBlocks; ++i) {
     const auto step = [](std::size_t which) { return static_cast<std::uint32_t>(which) - 1U; };
     const std::uint32_t number =
         findBlock({(key[0] + step(i % 3)) & kBlockMask, (key[1] + step(i / 3 % 3)) & kBlockMask,
@@ -355,112 +485,135 @@ std::size_t Voxels::findNear(const Key& key, std::size_t first, Near* near) cons
   return count;
 }
 
-/// Calls visit(unit) for all units of some cubes of a block.
-template <typename Visit>
-void Voxels::forEachUnitNear(const Near& near, std::uint64_t cubes, Visit&& visit) const {
-  for (std::uint64_t left = near.occupied & cubes; left != 0; left &= left - 1) {
-    const auto rank = countBits(near.occupied & ((left & -left) - 1));
-    for (std::uint32_t unit = first_units_[near.units + rank]; unit != kNone; unit = units_[unit].next_in_cube)
-      visit(unit);
-  }
-}
-
-/// Compares the new units of a block with all units around them; each pair of new ones once.
-void Voxels::linkBlock(const Block& block, bool all_new, DisjointSets& subclusters) {
-  const auto& masks = all_new ? kNeighbourhood.later : kNeighbourhood.all;
-  Near near[kNeighbourBlocks];
-  const std::size_t count = findNear(block.key, all_new ? kNeighbourBlocks / 3 : 0, near);
-
-  const auto compare = [&](std::uint32_t a_number, std::uint32_t b_number) {
-    Unit& a = units_[a_number];
-    Unit& b = units_[b_number];
-    if (a.head == b.head || (!all_new && b.is_new && b_number > a_number)) return;
-    a.head = subclusters.head(a.head);
-    b.head = subclusters.head(b.head);
-    if (a.head != b.head && haveNeighbours(a, *this, b)) a.head = b.head = subclusters.merge(a.head, b.head);
-  };
-
+void Voxels::linkNew(const Block& block, DisjointSets& subclusters) {
+  NearBlock near[kNeighbourBlocks];
+  const std::size_t count = findNear(block.key, near);
   std::uint32_t rank = 0;
   for (std::uint64_t left = block.occupied; left != 0; left &= left - 1, ++rank) {
     const auto cube = static_cast<std::size_t>(__builtin_ctzll(left));
     for (std::uint32_t unit = first_units_[block.units + rank]; unit != kNone; unit = units_[unit].next_in_cube) {
       if (!units_[unit].is_new) continue;
-      for (std::uint32_t other = all_new ? units_[unit].next_in_cube : first_units_[block.units + rank]; other != kNone;
-           other = units_[other].next_in_cube)
-        compare(unit, other);
-      for (std::size_t i = 0; i < count; ++i) {
-        std::uint64_t around = masks[cube][near[i].place];
-        if (near[i].place == kNeighbourBlocks / 2) around &= ~(std::uint64_t{1} << cube);
-        forEachUnitNear(near[i], around, [&](std::uint32_t other) { compare(unit, other); });
-      }
+      forEachAround(cube, near, count, ~std::uint64_t{0}, [&](std::uint32_t other) {
+        if (!units_[other].is_new || other < unit) compare(unit, other, subclusters);
+      });
     }
   }
 }
 
-void Voxels::linkTo(const Voxels& other, Part part, Joiner& joiner) const {
-  if (part == Part::kNew) {
-    for (const std::uint32_t block : new_blocks_) linkBlockTo(blocks_[block], other, part, joiner);
-  } else {
-    for (const Block& block : blocks_) linkBlockTo(block, other, part, joiner);
+/// Compares all units of a block with those that come after them, there and in the blocks given.
+void Voxels::linkBlock(const Block& block, const NearBlock* near, std::size_t count, DisjointSets& subclusters) {
+  std::uint32_t rank = 0;
+  for (std::uint64_t left = block.occupied; left != 0; left &= left - 1, ++rank) {
+    const auto cube = static_cast<std::size_t>(__builtin_ctzll(left));
+    for (std::uint32_t unit = first_units_[block.units + rank]; unit != kNone; unit = units_[unit].next_in_cube) {
+      for (std::uint32_t other = units_[unit].next_in_cube; other != kNone; other = units_[other].next_in_cube)
+        compare(unit, other, subclusters);
+      forEachAround(cube, near, count, left & (left - 1),
+                    [&](std::uint32_t other) { compare(unit, other, subclusters); });
+    }
   }
 }
 
-void Voxels::linkBlockTo(const Block& block, const Voxels& other, Part part, Joiner& joiner) const {
-  const auto mayBeNeighbours = [this](const Box& a, const Box& b) {
-    return Box::squaredGap(a, b) < tolerance_.squared();
+/// Calls visit for each unit in the cubes around one, of its own block in some only.
+template <typename Visit>
+void Voxels::forEachAround(std::size_t cube, const NearBlock* near, std::size_t count, std::uint64_t of_own,
+                           Visit&& visit) const {
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint64_t around = near[i].occupied & kNeighbourhood.all[cube][near[i].mask];
+    if (near[i].mask == kNeighbourBlocks / 2) around &= of_own;
+    for (; around != 0; around &= around - 1) {
+      const std::uint64_t before = (around & -around) - 1;
+      const auto place = countBits(near[i].occupied & before);
+      for (std::uint32_t other = first_units_[near[i].units + place]; other != kNone;
+           other = units_[other].next_in_cube)
+        visit(other);
+    }
+  }
+}
+
+void Voxels::compare(std::uint32_t a_number, std::uint32_t b_number, DisjointSets& subclusters) {
+  Unit& a = units_[a_number];
+  Unit& b = units_[b_number];
+  if (a.head == b.head) return;
+  a.head = subclusters.head(a.head);
+  b.head = subclusters.head(b.head);
+  if (a.head != b.head && haveNeighbours(a, *this, b)) a.head = b.head = subclusters.merge(a.head, b.head);
+}
+
+bool Voxels::Footprint::isNear(const Key& block) const {
+  // Three blocks in a row lie in two pairs at most.
+  for (const std::uint32_t x : {((block[0] - 1) & kBlockMask) / 2, ((block[0] + 1) & kBlockMask) / 2})
+    for (const std::uint32_t y : {((block[1] - 1) & kBlockMask) / 2, ((block[1] + 1) & kBlockMask) / 2})
+      if ((bits_[wordOf(x, y)] & bitOf(x, y)) != 0) return true;
+  return false;
+}
+
+void Voxels::linkTo(Voxels& other, Part part, Joiner& joiner) {
+  const auto link = [&](const Block& block) {
+    if (other.footprint_.isNear(block.key)) linkBlockTo(block, other, part, joiner);
   };
-  Near near[kNeighbourBlocks];
-  std::size_t count = kNeighbourBlocks + 1;  // not looked for yet
+  if (part == Part::kAll)
+    std::for_each(blocks_.begin(), blocks_.end(), link);
+  else
+    for (const std::uint32_t block : new_blocks_) link(blocks_[block]);
+}
+
+void Voxels::linkBlockTo(const Block& block, Voxels& other, Part part, Joiner& joiner) {
+  NearBlock near[kNeighbourBlocks];
+  const std::size_t count = other.findNear(block.key, near);
+  if (count == 0) return;
   std::uint32_t rank = 0;
   for (std::uint64_t left = block.occupied; left != 0; left &= left - 1, ++rank) {
     const auto cube = static_cast<std::size_t>(__builtin_ctzll(left));
     for (std::uint32_t i = first_units_[block.units + rank]; i != kNone; i = units_[i].next_in_cube) {
-      const Unit& unit = units_[i];
-      if ((part == Part::kNew && !unit.is_new) || !mayBeNeighbours(unit.box, other.bounds_)) continue;
-      if (count > kNeighbourBlocks) count = other.findNear(block.key, 0, near);
-      for (std::size_t k = 0; k < count; ++k)
-        other.forEachUnitNear(near[k], kNeighbourhood.all[cube][near[k].place], [&](std::uint32_t j) {
-          const Unit& others = other.units_[j];
-          if (mayBeNeighbours(unit.box, others.box) && joiner.areApart(unit.head, others.head) &&
-              haveNeighbours(unit, other, others))
-            joiner.join(unit.head, others.head);
-        });
+      Unit& unit = units_[i];
+      if (part == Part::kNew && !unit.is_new) continue;
+      other.forEachAround(cube, near, count, ~std::uint64_t{0}, [&](std::uint32_t j) {
+        Unit& others = other.units_[j];
+        if (Box::squaredGap(unit.box, others.box) < tolerance_.squared() && joiner.areApart(unit.head, others.head) &&
+            haveNeighbours(unit, other, others))
+          joiner.join(unit.head, others.head);
+      });
     }
   }
 }
 
-/// Gathers the points of a unit, from the cursor on, that may be neighbours of something in a box.
-void Voxels::gather(Cursor& cursor, const Box& box, VoxelPoints& points) const {
-  const float squared_tolerance = tolerance_.squared();
-  points.count = 0;
-  for (; cursor.piece != kNone && points.count < VoxelPoints::kMost; ++cursor.point) {
-    if (cursor.point == pieces_[cursor.piece].count) {
-      cursor = {pieces_[cursor.piece].next_in_unit, ~std::uint32_t{0}};
-      continue;
+/// Makes few pieces of the many that a unit may have, so that points lie side by side: the newest is joined with those that
+/// are not more than twice as large, so that each of the others is more than twice as large as the one before, and
+/// no point moves often.
+void Voxels::unite(Unit& unit) {
+  std::uint32_t count = pieces_[unit.first_piece].count;
+  std::uint32_t end = pieces_[unit.first_piece].next_in_unit;
+  if (end == kNone || pieces_[end].count > 2 * count) return;
+  for (; end != kNone && pieces_[end].count <= 2 * count; end = pieces_[end].next_in_unit) count += pieces_[end].count;
+  const std::size_t first = newPoints(count);
+  std::size_t point = first;
+  for (std::uint32_t i = unit.first_piece; i != end; i = pieces_[i].next_in_unit)
+    for (std::uint32_t k = pieces_[i].first_point; k < pieces_[i].first_point + pieces_[i].count; ++k, ++point) {
+      x_[point] = x_[k];
+      y_[point] = y_[k];
+      z_[point] = z_[k];
     }
-    const std::size_t i = pieces_[cursor.piece].first_point + cursor.point;
-    points.x[points.count] = x_[i];
-    points.y[points.count] = y_[i];
-    points.z[points.count] = z_[i];
-    points.count += Box::squaredGap(Box::around(x_[i], y_[i], z_[i]), box) < squared_tolerance ? 1 : 0;
-  }
+  pieces_[unit.first_piece] = {static_cast<std::uint32_t>(first), count, end};
+  if (end == kNone) unit.last_piece = unit.first_piece;
 }
 
 /// Whether any return of one unit is a neighbour of any return of another one's.
-bool Voxels::haveNeighbours(const Unit& own, const Voxels& other, const Unit& others) const {
+bool Voxels::haveNeighbours(Unit& own, Voxels& other, Unit& others) {
   const float squared_tolerance = tolerance_.squared();
   if (!(Box::squaredGap(own.box, others.box) < squared_tolerance)) return false;
   if (Box::squaredSpan(own.box, others.box) < squared_tolerance) return true;
-  VoxelPoints some;
-  VoxelPoints some_others;
-  for (Cursor at{own.first_piece, 0}; at.piece != kNone;) {
-    gather(at, others.box, some);
-    if (some.count == 0) continue;
-    for (Cursor at_others{others.first_piece, 0}; at_others.piece != kNone;) {
-      other.gather(at_others, own.box, some_others);
-      if (HWY_DYNAMIC_DISPATCH(anyNeighbours)(some, some_others, squared_tolerance)) return true;
-    }
-  }
+  unite(own);
+  other.unite(others);
+  const auto pointsOf = [](const Voxels& voxels, const Piece& piece) {
+    const std::size_t first = piece.first_point;
+    return PointsOfUnit{&voxels.x_[first], &voxels.y_[first], &voxels.z_[first], piece.count};
+  };
+  for (std::uint32_t i = own.first_piece; i != kNone; i = pieces_[i].next_in_unit)
+    for (std::uint32_t k = others.first_piece; k != kNone; k = other.pieces_[k].next_in_unit)
+      if (HWY_DYNAMIC_DISPATCH(comparePoints)(pointsOf(*this, pieces_[i]), own.box, pointsOf(other, other.pieces_[k]),
+                                              others.box, squared_tolerance))
+        return true;
   return false;
 }
 

@@ -521,6 +521,56 @@ TEST(Voxels, ABlockOfAllItsCubes) {
 }
 
 // More blocks than the table has slots at first; each is found again, before and after the table has grown.
+// Blocks of cubes that touch along a face, an edge or at a corner, all of them at once or one after the other: around
+// the origin, where numbers change their sign, and where numbers are last computed in float.
+TEST(Voxels, BlocksInEveryDirection) {
+  constexpr float kTolerance = 1.0F;
+  const double block = 4 * 0.9999 / std::sqrt(3.0);
+  for (const double corner : {0.0, -7.0, 200.0, 262143.0, -262143.0, 262144.0, -262144.0})
+    for (const bool linked_between : {false, true})
+      for (int direction = 0; direction < 27; ++direction) {
+        SCOPED_TRACE("block " + std::to_string(corner) + ", direction " + std::to_string(direction));
+        const std::array<int, 3> to{direction % 3 - 1, direction / 3 % 3 - 1, direction / 9 - 1};
+        const auto at = [&](double side) {  // how far from the corner, in tolerances
+          const auto along = [&](std::size_t axis) {
+            return static_cast<float>(corner * block + (to[axis] == 0 ? 1.0 : side * to[axis]));
+          };
+          return Point{along(0), along(1), along(2)};
+        };
+        const Point near = at(0.25);
+        const Point nearer = at(-0.25);
+        Probe probe(kTolerance);
+        probe.add(near);
+        if (linked_between) probe.link();
+        probe.add(nearer);
+        probe.add(at(2.0));
+        probe.link();
+        EXPECT_EQ(probe.joined(0, 1), areNeighbours(near, nearer, kTolerance));
+        EXPECT_EQ(probe.wrong(kTolerance), "");
+      }
+}
+
+// Two crowds of returns that are all but neighbours: each has more of them near the other than are looked at together.
+TEST(Voxels, CrowdsApart) {
+  constexpr float kTolerance = 1.0F;
+  for (const std::string& level : levels())
+    for (const std::size_t bridge : {0, 1, 100, 399}) {
+      SCOPED_TRACE(level + ", " + std::to_string(bridge));
+      const SimdLevel used(level);
+      Random random(bridge + 1);
+      Probe probe(kTolerance);
+      for (std::size_t i = 0; i < 400; ++i)
+        for (const double side : {-0.501, 0.501}) {
+          const double x = i == bridge && bridge > 0 ? 0.9 * side : side;
+          const auto across = [&random] { return static_cast<float>(random.between(0.01, 0.04)); };
+          probe.add({static_cast<float>(x), across(), across()});
+        }
+      probe.link();
+      EXPECT_EQ(probe.wrong(kTolerance), "");
+      EXPECT_EQ(probe.joined(0, 1), bridge > 0);
+    }
+}
+
 TEST(Voxels, TheTableGrows) {
   constexpr float kTolerance = 1.0F;
   Probe probe(kTolerance);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 
 #include "lisco/tolerance.h"
 
@@ -14,11 +13,6 @@ namespace lisco {
 struct Box {
   float lo[3], hi[3];
 
-  /// Of no returns: a gap that no tolerance bridges lies around it.
-  static Box nothing() {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    return {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-  }
   static Box around(float x, float y, float z) { return {{x, y, z}, {x, y, z}}; }
 
   void add(const Box& other) {

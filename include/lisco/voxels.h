@@ -14,13 +14,6 @@
 
 namespace lisco {
 
-/// A few points side by side.
-struct VoxelPoints {
-  static constexpr std::size_t kMost = 64;
-  float x[kMost], y[kMost], z[kMost];
-  std::size_t count = 0;
-};
-
 /// Cubes of space for returns that have no place in a view: those near the sensor, seen under so wide a mask that
 /// angles tell nothing, and all those of a cloud that no single place has seen.
 ///
@@ -52,12 +45,29 @@ class Voxels {
   };
   enum class Part { kAll, kNew };  ///< new: what has come since the last link ()
   /// Compares a part of these with all of another one's, both of the same tolerance.
-  void linkTo(const Voxels& other, Part part, Joiner& joiner) const;
+  void linkTo(Voxels& other, Part part, Joiner& joiner);
 
  private:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
   using Key = std::array<std::uint32_t, 3>;
+
+  /// Where there may be blocks, seen from above: a bit for four of them side by side. Others may have the same bit.
+  class Footprint {
+   public:
+    void clear() { bits_.fill(0); }
+    void add(const Key& block) { bits_[wordOf(block[0] / 2, block[1] / 2)] |= bitOf(block[0] / 2, block[1] / 2); }
+    /// Whether there may be a block around this place, or there.
+    bool isNear(const Key& block) const;
+
+   private:
+    static constexpr std::size_t kWords = 256;
+    static std::uint32_t hashOf(std::uint32_t x, std::uint32_t y) { return x * 73856093U ^ y * 19349663U; }
+    static std::size_t wordOf(std::uint32_t x, std::uint32_t y) { return hashOf(x, y) >> 6 & (kWords - 1); }
+    static std::uint64_t bitOf(std::uint32_t x, std::uint32_t y) { return std::uint64_t{1} << (hashOf(x, y) & 63U); }
+
+    std::array<std::uint64_t, kWords> bits_{};
+  };
 
   struct Piece {
     std::uint32_t first_point;
@@ -67,15 +77,10 @@ class Voxels {
   /// Pieces of one cube that are neighbours all of them; nearly always all of the cube.
   struct Unit {
     Box box;
-    std::uint32_t head;  ///< of its subcluster, perhaps not the newest
-    std::uint32_t first_piece, last_piece;
+    std::uint32_t head;                     ///< of its subcluster, perhaps not the newest
+    std::uint32_t first_piece, last_piece;  ///< the newest, the oldest
     std::uint32_t next_in_cube;
     bool is_new;  ///< something in it has not been compared yet
-  };
-  /// A point of a unit.
-  struct Cursor {
-    std::uint32_t piece;
-    std::uint32_t point;
   };
   struct Block {
     Key key;
@@ -84,6 +89,22 @@ class Voxels {
     std::uint64_t occupied;  ///< bit i: cube i
     bool is_new;
   };
+  /// Where a cube's latest piece went.
+  struct RecentUnit {
+    Key cube;
+    std::uint32_t unit;
+  };
+  static constexpr std::size_t kRecentUnits = 1024;
+  /// A block next to another, or that one.
+  struct NearBlock {
+    std::size_t mask;  ///< which of the 27
+    std::uint64_t occupied;
+    std::uint32_t units;
+  };
+  struct Ordered {
+    std::uint64_t number;  ///< by z, y and x
+    std::uint32_t block;
+  };
 
   std::uint32_t findBlock(const Key& key) const;
   std::uint32_t makeBlock(const Key& key);
@@ -91,32 +112,35 @@ class Voxels {
   void takeSlot(std::uint32_t block);
   std::uint32_t& firstUnit(Block& block, std::uint32_t cube);
   void addPiece(const Key& cube, const Box& box, std::uint32_t piece, std::uint32_t element, DisjointSets& subclusters);
-  /// A block beside another one.
-  struct Near {
-    std::size_t place;  ///< in kNeighbourhood's masks
-    std::uint64_t occupied;
-    std::uint32_t units;
-  };
-  void linkBlockTo(const Block& block, const Voxels& other, Part part, Joiner& joiner) const;
-  std::size_t findNear(const Key& key, std::size_t first, Near* near) const;
+  void addTo(Unit& unit, const Box& box, std::uint32_t piece, std::uint32_t element, DisjointSets& subclusters);
+  void linkInOrder(DisjointSets& subclusters);
+  void linkNew(const Block& block, DisjointSets& subclusters);
+  void linkBlockTo(const Block& block, Voxels& other, Part part, Joiner& joiner);
+  std::size_t findNear(const Key& key, NearBlock* near) const;
+  void linkBlock(const Block& block, const NearBlock* near, std::size_t count, DisjointSets& subclusters);
   template <typename Visit>
-  void forEachUnitNear(const Near& near, std::uint64_t cubes, Visit&& visit) const;
-  void linkBlock(const Block& block, bool all_new, DisjointSets& subclusters);
-  void gather(Cursor& cursor, const Box& box, VoxelPoints& points) const;
-  bool haveNeighbours(const Unit& own, const Voxels& other, const Unit& others) const;
+  void forEachAround(std::size_t cube, const NearBlock* near, std::size_t count, std::uint64_t of_own,
+                     Visit&& visit) const;
+  void compare(std::uint32_t a_number, std::uint32_t b_number, DisjointSets& subclusters);
+  std::size_t newPoints(std::size_t count);
+  void unite(Unit& unit);
+  bool haveNeighbours(Unit& own, Voxels& other, Unit& others);
 
   Tolerance tolerance_;
   double cubes_per_metre_ = 1;
-  bool safe_ = false;  ///< cubes may be numbered in float
-  std::vector<float> x_, y_, z_;
+  bool safe_ = false;             ///< cubes may be numbered in float
+  std::vector<float> x_, y_, z_;  ///< of all points, and some room
+  std::size_t points_ = 0;
   std::vector<Piece> pieces_;
   std::vector<Unit> units_;
   std::vector<Block> blocks_;
   std::vector<std::uint32_t> first_units_;
   std::vector<std::uint32_t> slots_;  ///< hash table of blocks
-  Box bounds_;                        ///< of all points
-  std::uint32_t latest_block_ = kNone;
-  std::vector<std::uint32_t> new_blocks_;  ///< that hold new units
+  Footprint footprint_;
+  std::array<RecentUnit, kRecentUnits> recent_units_{};  ///< by the hash of the cube
+  std::vector<Ordered> ordered_;                         ///< blocks
+  bool all_safe_ = true;                                 ///< all cubes were numbered in float
+  std::vector<std::uint32_t> new_blocks_;                ///< that hold new units
   bool anything_linked_ = false;
 };
 
