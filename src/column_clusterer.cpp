@@ -157,6 +157,7 @@ void ColumnClusterer::update() {
   Voxels& voxels = readings_.front().voxels;
   for (std::size_t thread = 1; thread < threads_; ++thread) voxels.absorb(readings_[thread].voxels, subclusters);
   voxels.link(subclusters);
+  voxels.settle();
 
   // A head is the first element of its set.
   subcluster_sizes_.clear();

@@ -148,14 +148,14 @@ void EndlessClusterer::readBlock() {
     return measured.returns & ~strays;
   });
   returns_ += pane.runs.returns - before;
+  pane.voxels.link(pane.subclusters);
   replayMerges(pane);
   for (std::int64_t older = current_ - kComparable + 1; older < current_; ++older)
     if (this->pane(older).in_use && this->pane(older).number == older) {
       PaneJoiner joiner(*this, older);
       pane.voxels.linkTo(this->pane(older).voxels, Voxels::Part::kNew, joiner);
     }
-  pane.voxels.link(pane.subclusters);
-  replayMerges(pane);
+  pane.voxels.settle();
   pane.subclusters.logTo(nullptr);
   for (std::size_t run = first_run; run < pane.sets.size(); ++run) {
     const Element element = elementOf(current_, static_cast<std::uint32_t>(run));

@@ -326,7 +326,7 @@ std::uint32_t Voxels::makeBlock(const Key& key) {
   const std::uint32_t found = findBlock(key);
   if (found != kNone) return found;
   const auto number = static_cast<std::uint32_t>(blocks_.size());
-  blocks_.push_back({key, 0, 0, 0, false});
+  blocks_.push_back({key, 0, 0, kNone, 0, false});
   footprint_.add(key);
   if (2 * blocks_.size() > slots_.size())
     rehash(2 * slots_.size());
@@ -414,17 +414,28 @@ void Voxels::absorb(Voxels& other, DisjointSets& subclusters) {
   other.prepare(tolerance_);
 }
 
+/// Calls visit(cube, unit) for all units of a block.
+template <typename Visit>
+void Voxels::forEachUnit(const Block& block, Visit&& visit) const {
+  std::uint32_t rank = 0;
+  for (std::uint64_t left = block.occupied; left != 0; left &= left - 1, ++rank)
+    for (std::uint32_t unit = first_units_[block.units + rank]; unit != kNone; unit = units_[unit].next_in_cube)
+      visit(static_cast<std::size_t>(__builtin_ctzll(left)), unit);
+}
+
 void Voxels::link(DisjointSets& subclusters) {
-  if (!anything_linked_ && all_safe_)
+  if (!anything_linked_ && all_safe_) {
     linkInOrder(subclusters);
-  else
+  } else {
+    for (const std::uint32_t block : new_blocks_) blocks_[block].head = commonHead(blocks_[block], subclusters);
     for (const std::uint32_t block : new_blocks_) linkNew(blocks_[block], subclusters);
+  }
+}
+
+void Voxels::settle() {
   for (const std::uint32_t block : new_blocks_) {
     blocks_[block].is_new = false;
-    const auto used = countBits(blocks_[block].occupied);
-    for (std::uint32_t rank = 0; rank < used; ++rank)
-      for (std::uint32_t i = first_units_[blocks_[block].units + rank]; i != kNone; i = units_[i].next_in_cube)
-        units_[i].is_new = false;
+    forEachUnit(blocks_[block], [&](std::size_t, std::uint32_t unit) { units_[unit].is_new = false; });
   }
   anything_linked_ = anything_linked_ || !new_blocks_.empty();
   new_blocks_.clear();
@@ -472,32 +483,50 @@ void Voxels::linkInOrder(DisjointSets& subclusters) {
 }
 
 /// Compares the new units of a block with all units around them; each pair of new ones once.
-/// Finds the blocks around one that hold anything.
-std::size_t Voxels::findNear(const Key& key, NearBlock* near) const {
+/// Finds the blocks around one that hold anything, and that somebody wants: wanted(block) says which.
+template <typename Wanted>
+std::size_t Voxels::findNear(const Key& key, NearBlock* near, Wanted&& wanted) const {
   std::size_t count = 0;
   for (std::size_t i = 0; i < kNeighbourBlocks; ++i) {
     const auto step = [](std::size_t which) { return static_cast<std::uint32_t>(which) - 1U; };
     const std::uint32_t number =
         findBlock({(key[0] + step(i % 3)) & kBlockMask, (key[1] + step(i / 3 % 3)) & kBlockMask,
                    (key[2] + step(i / 9)) & kBlockMask});
-    if (number != kNone) near[count++] = {i, blocks_[number].occupied, blocks_[number].units};
+    if (number != kNone && wanted(blocks_[number]))
+      near[count++] = {i, blocks_[number].occupied, blocks_[number].units};
   }
   return count;
 }
 
+/// The head of all units of a block, kNone if they have several.
+std::uint32_t Voxels::commonHead(const Block& block, DisjointSets& subclusters) {
+  std::uint32_t head = kNone;
+  bool common = true;
+  forEachUnit(block, [&](std::size_t, std::uint32_t number) {
+    Unit& unit = units_[number];
+    if (unit.head == head || !common) return;
+    unit.head = subclusters.head(unit.head);
+    common = head == kNone || unit.head == head;
+    head = unit.head;
+  });
+  return common ? head : kNone;
+}
+
+/// Compares the new units of a block with all units around them; each pair of new ones once. Most of what has grown belongs
+/// together with all around it already: that is seen block by block.
 void Voxels::linkNew(const Block& block, DisjointSets& subclusters) {
   NearBlock near[kNeighbourBlocks];
-  const std::size_t count = findNear(block.key, near);
-  std::uint32_t rank = 0;
-  for (std::uint64_t left = block.occupied; left != 0; left &= left - 1, ++rank) {
-    const auto cube = static_cast<std::size_t>(__builtin_ctzll(left));
-    for (std::uint32_t unit = first_units_[block.units + rank]; unit != kNone; unit = units_[unit].next_in_cube) {
-      if (!units_[unit].is_new) continue;
-      forEachAround(cube, near, count, ~std::uint64_t{0}, [&](std::uint32_t other) {
-        if (!units_[other].is_new || other < unit) compare(unit, other, subclusters);
-      });
-    }
-  }
+  const std::size_t count = findNear(block.key, near, [&](const Block& other) {
+    if (block.head == kNone || other.head == kNone) return true;
+    return subclusters.head(block.head) != subclusters.head(other.head);
+  });
+  if (count == 0) return;
+  forEachUnit(block, [&](std::size_t cube, std::uint32_t unit) {
+    if (!units_[unit].is_new) return;
+    forEachAround(cube, near, count, ~std::uint64_t{0}, [&](std::uint32_t other) {
+      if (!units_[other].is_new || other < unit) compare(unit, other, subclusters);
+    });
+  });
 }
 
 /// Compares all units of a block with those that come after them, there and in the blocks given.
@@ -560,22 +589,20 @@ void Voxels::linkTo(Voxels& other, Part part, Joiner& joiner) {
 
 void Voxels::linkBlockTo(const Block& block, Voxels& other, Part part, Joiner& joiner) {
   NearBlock near[kNeighbourBlocks];
-  const std::size_t count = other.findNear(block.key, near);
+  const std::size_t count = other.findNear(block.key, near, [&](const Block& others) {
+    return block.head == kNone || others.head == kNone || joiner.areApart(block.head, others.head);
+  });
   if (count == 0) return;
-  std::uint32_t rank = 0;
-  for (std::uint64_t left = block.occupied; left != 0; left &= left - 1, ++rank) {
-    const auto cube = static_cast<std::size_t>(__builtin_ctzll(left));
-    for (std::uint32_t i = first_units_[block.units + rank]; i != kNone; i = units_[i].next_in_cube) {
-      Unit& unit = units_[i];
-      if (part == Part::kNew && !unit.is_new) continue;
-      other.forEachAround(cube, near, count, ~std::uint64_t{0}, [&](std::uint32_t j) {
-        Unit& others = other.units_[j];
-        if (Box::squaredGap(unit.box, others.box) < tolerance_.squared() && joiner.areApart(unit.head, others.head) &&
-            haveNeighbours(unit, other, others))
-          joiner.join(unit.head, others.head);
-      });
-    }
-  }
+  forEachUnit(block, [&](std::size_t cube, std::uint32_t number) {
+    Unit& unit = units_[number];
+    if (part == Part::kNew && !unit.is_new) return;
+    other.forEachAround(cube, near, count, ~std::uint64_t{0}, [&](std::uint32_t j) {
+      Unit& others = other.units_[j];
+      if (Box::squaredGap(unit.box, others.box) < tolerance_.squared() && joiner.areApart(unit.head, others.head) &&
+          haveNeighbours(unit, other, others))
+        joiner.join(unit.head, others.head);
+    });
+  });
 }
 
 /// Makes few pieces of the many that a unit may have, so that points lie side by side: the newest is joined with those that

@@ -43,6 +43,7 @@ bool WindowClusterer::addColumn(const Return* cells, std::size_t lasers) {
 /// Gives the subclusters of a pane their numbers.
 void WindowClusterer::numberSubclusters(WindowPane& pane) {
   pane.voxels.link(pane.subclusters);
+  pane.voxels.settle();
   pane.sizes.clear();
   std::vector<Runs::Run>& runs = pane.runs.runs;
   for (std::uint32_t i = 0; i < runs.size(); ++i) {

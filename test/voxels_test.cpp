@@ -214,7 +214,10 @@ class Probe {
   }
   void add(const Point& point) { addRow({point}); }
   void absorb() { voxels_.absorb(others_, subclusters_); }
-  void link() { voxels_.link(subclusters_); }
+  void link() {
+    voxels_.link(subclusters_);
+    voxels_.settle();
+  }
 
   /// Two of the returns added, in their order.
   bool joined(std::size_t a, std::size_t b) {

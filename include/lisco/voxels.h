@@ -31,8 +31,10 @@ class Voxels {
   /// Takes all that another one holds, which is left empty.
   void absorb(Voxels& other, DisjointSets& subclusters);
 
-  /// Compares what has come since the last call with everything. More returns may follow.
+  /// Compares what is new with everything.
   void link(DisjointSets& subclusters);
+  /// From now on, only what comes is new.
+  void settle();
 
   /// What is to be done with neighbours in different voxels.
   class Joiner {
@@ -43,8 +45,8 @@ class Voxels {
     /// They are.
     virtual void join(std::uint32_t own, std::uint32_t others) = 0;
   };
-  enum class Part { kAll, kNew };  ///< new: what has come since the last link ()
-  /// Compares a part of these with all of another one's, both of the same tolerance.
+  enum class Part { kAll, kNew };
+  /// Compares a part of these, which are linked, with all of another one's, both of the same tolerance.
   void linkTo(Voxels& other, Part part, Joiner& joiner);
 
  private:
@@ -84,8 +86,10 @@ class Voxels {
   };
   struct Block {
     Key key;
-    std::uint32_t units;     ///< where the list of its cubes' first units begins
-    std::uint32_t room;      ///< of that list
+    std::uint32_t units;  ///< where the list of its cubes' first units begins
+    std::uint32_t room;   ///< of that list
+    std::uint32_t
+        head;  ///< that all its units had when they were last linked, perhaps not the newest; or kNone: several
     std::uint64_t occupied;  ///< bit i: cube i
     bool is_new;
   };
@@ -115,8 +119,12 @@ class Voxels {
   void addTo(Unit& unit, const Box& box, std::uint32_t piece, std::uint32_t element, DisjointSets& subclusters);
   void linkInOrder(DisjointSets& subclusters);
   void linkNew(const Block& block, DisjointSets& subclusters);
+  template <typename Visit>
+  void forEachUnit(const Block& block, Visit&& visit) const;
+  std::uint32_t commonHead(const Block& block, DisjointSets& subclusters);
   void linkBlockTo(const Block& block, Voxels& other, Part part, Joiner& joiner);
-  std::size_t findNear(const Key& key, NearBlock* near) const;
+  template <typename Wanted>
+  std::size_t findNear(const Key& key, NearBlock* near, Wanted&& wanted) const;
   void linkBlock(const Block& block, const NearBlock* near, std::size_t count, DisjointSets& subclusters);
   template <typename Visit>
   void forEachAround(std::size_t cube, const NearBlock* near, std::size_t count, std::uint64_t of_own,
