@@ -9,269 +9,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <numeric>
-#include <ostream>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <vector>
 
+#include "endless_streams.h"
 #include "engine.h"
-#include "oracle.h"
 #include "random.h"
 
 namespace lisco_test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-struct Column {
-  double position;
-  std::vector<lisco::Return> cells;
-};
-
-struct Stream {
-  lisco::EndlessParameters parameters;
-  std::vector<Column> columns;
-};
-
-/// What is expected of a delivered cluster, or was delivered.
-struct Delivery {
-  std::vector<std::uint32_t> members;
-  bool cut, continued;
-  double first_position, last_position, reach_end;
-  std::size_t column;  ///< that delivered it; the number of columns if the end of the stream did
-
-  bool operator<(const Delivery& other) const { return members < other.members; }
-};
-
-std::ostream& operator<<(std::ostream& out, const Delivery& delivery) {
-  out << (delivery.cut ? "cut " : "") << (delivery.continued ? "continued " : "") << "reached up to "
-      << delivery.reach_end << ", by column " << delivery.column << ":";
-  for (const std::uint32_t member : delivery.members) out << ' ' << member;
-  return out;
-}
-
-/// The definition of doc/streaming.md, return by return.
-class EndlessOracle {
- public:
-  explicit EndlessOracle(const lisco::EndlessParameters& parameters) : parameters_(parameters) {}
-
-  std::vector<Delivery> operator()(const std::vector<Column>& columns) {
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      const double position = columns[c].position;
-      const auto eighth = static_cast<std::int64_t>(std::floor(8 * position));
-      closeUpTo(position, c);
-      if (c > 0 && eighth != static_cast<std::int64_t>(std::floor(8 * columns[c - 1].position)))
-        for (std::size_t head = 0; head < members_.size(); ++head)
-          if (isOpen(head) && firstOf(head).eighth <= eighth - 8) close(head, c, true);
-      for (const lisco::Return& cell : columns[c].cells)
-        if (isValid({cell.x, cell.y, cell.z})) add(cell, position, eighth);
-      closeUpTo(position, c);  // what is astray is reached by nobody
-    }
-    for (std::size_t head = 0; head < members_.size(); ++head)
-      if (isOpen(head)) close(head, columns.size(), false);
-    std::sort(deliveries_.begin(), deliveries_.end());
-    return deliveries_;
-  }
-
-  std::size_t strays() const { return strays_; }
-
- private:
-  struct Member {
-    lisco::Return cell;
-    double position;
-    std::int64_t eighth;
-    bool astray;
-    double reach_end;
-  };
-  enum class State { kOpen, kWhole, kCut };
-
-  void add(const lisco::Return& cell, double position, std::int64_t eighth) {
-    const double east = static_cast<double>(cell.x) - static_cast<double>(parameters_.origin[0]);
-    const double north = static_cast<double>(cell.y) - static_cast<double>(parameters_.origin[1]);
-    const double rho = std::hypot(east, north);
-    const double azimuth = parameters_.start_azimuth + (parameters_.clockwise ? -2 : 2) * kPi * position;
-    const double off = std::remainder(std::atan2(north, east) - azimuth, 2 * kPi);
-    Member own{cell, position, eighth, rho > 0 && std::fabs(off) > parameters_.stagger + 1e-4, position};
-    strays_ += own.astray ? 1 : 0;
-    const double eps = std::fabs(static_cast<double>(parameters_.tolerance));
-    if (!own.astray) {
-      own.reach_end = static_cast<double>(eighth + 4) / 8;
-      if (rho > eps)
-        own.reach_end =
-            std::min(own.reach_end, position + (std::asin(eps / rho) + 2 * parameters_.stagger) / (2 * kPi));
-    }
-    const std::size_t number = all_.size();
-    all_.push_back(own);
-    head_.push_back(number);
-    members_.push_back({number});
-    state_.push_back(State::kOpen);
-    continued_.push_back(false);
-    for (std::size_t other = 0; other < number; ++other) {
-      const Member& before = all_[other];
-      if (before.astray || own.astray || eighth - before.eighth > 3) continue;
-      if (!areNeighbours({before.cell.x, before.cell.y, before.cell.z}, {cell.x, cell.y, cell.z},
-                         parameters_.tolerance))
-        continue;
-      ASSERT_NE(state_[head_[other]], State::kWhole) << "a delivered cluster was reached";
-      if (state_[head_[other]] == State::kCut)
-        continued_[head_[number]] = true;
-      else
-        join(head_[number], head_[other]);
-    }
-  }
-
-  void join(std::size_t a, std::size_t b) {
-    if (a == b) return;
-    for (const std::size_t member : members_[a]) head_[member] = b;
-    members_[b].insert(members_[b].end(), members_[a].begin(), members_[a].end());
-    members_[a].clear();
-    continued_[b] = continued_[b] || continued_[a];
-  }
-
-  bool isOpen(std::size_t head) const { return !members_[head].empty() && state_[head] == State::kOpen; }
-  const Member& firstOf(std::size_t head) const {
-    return all_[*std::min_element(members_[head].begin(), members_[head].end())];
-  }
-  double reachEndOf(std::size_t head) const {
-    double end = -1e300;
-    for (const std::size_t member : members_[head]) end = std::max(end, all_[member].reach_end);
-    return end;
-  }
-  void closeUpTo(double position, std::size_t column) {
-    for (std::size_t head = 0; head < members_.size(); ++head)
-      if (isOpen(head) && reachEndOf(head) <= position) close(head, column, false);
-  }
-  void close(std::size_t head, std::size_t column, bool cut) {
-    state_[head] = cut ? State::kCut : State::kWhole;
-    Delivery delivery{{}, cut, continued_[head], firstOf(head).position, -1e300, reachEndOf(head), column};
-    for (const std::size_t member : members_[head]) {
-      delivery.members.push_back(all_[member].cell.source_index);
-      delivery.last_position = std::max(delivery.last_position, all_[member].position);
-    }
-    std::sort(delivery.members.begin(), delivery.members.end());
-    deliveries_.push_back(delivery);
-  }
-
-  lisco::EndlessParameters parameters_;
-  std::vector<Member> all_;
-  std::vector<std::size_t> head_;
-  std::vector<std::vector<std::size_t>> members_;
-  std::vector<State> state_;
-  std::vector<bool> continued_;
-  std::vector<Delivery> deliveries_;
-  std::size_t strays_ = 0;
-};
-
-/// A sensor among walls, pillars and moving things, some of them nearer than the tolerance, for up to four turns.
-Stream randomStream(Random& random) {
-  Stream stream;
-  lisco::EndlessParameters& parameters = stream.parameters;
-  parameters.tolerance = static_cast<float>(random.magnitude(0.05, 2.0));
-  parameters.clockwise = random.chance(0.5);
-  parameters.start_azimuth = random.chance(0.5) ? 0.0 : random.between(-4.0, 4.0);
-  parameters.stagger = random.chance(0.3) ? random.between(0.0, 0.05) : random.between(0.05, 0.39);
-  parameters.block_columns = random.oneOf(std::vector<std::size_t>{1, 2, 7, 16, 64});
-  if (random.chance(0.3))
-    parameters.origin = {static_cast<float>(random.between(-5, 5)), static_cast<float>(random.between(-5, 5)), 1.0F};
-  const std::size_t lasers = 1 + random.below(3);
-  const std::size_t steps = 12 + random.below(60);
-  const double turns = random.between(0.5, 4.0);
-  const double room = random.chance(0.4) ? random.between(0.5, 6.0) : 1e9;  // a wall all around, or none
-  const double things = random.unit();
-  const double losses = random.chance(0.3) ? 0.2 : 0.0;
-  const double strays = random.chance(0.2) ? 0.05 : 0.0;
-  const double near = random.chance(0.3) ? random.unit() : 0.0;
-  struct Thing {
-    double azimuth, width, range, speed, approach;
-  };
-  std::vector<Thing> all_things;
-  for (std::size_t i = 0; i < 6; ++i)
-    all_things.push_back({random.between(0, 2 * kPi), random.magnitude(0.02, 3.0), random.magnitude(0.3, 20.0),
-                          random.between(-1.0, 1.0), random.between(-0.3, 0.3)});
-  std::vector<double> offsets(lasers);
-  for (double& offset : offsets) offset = random.between(-1.0, 1.0) * parameters.stagger;
-  double position = random.chance(0.5) ? 0.0 : random.between(-3.0, 1000.0);
-  const double end = position + turns;
-  std::uint32_t number = 0;
-  while (position < end) {
-    Column column{position, {}};
-    for (std::size_t laser = 0; laser < lasers; ++laser) {
-      double azimuth = parameters.start_azimuth + (parameters.clockwise ? -2 : 2) * kPi * position + offsets[laser];
-      double range = room;
-      for (const Thing& thing : all_things) {
-        const double off = std::remainder(azimuth - thing.azimuth - thing.speed * position, 2 * kPi);
-        if (things < 0.8 && std::fabs(off) < thing.width / 2)
-          range = std::min(range, std::max(0.1, thing.range + thing.approach * std::fmod(position, 4.0)));
-      }
-      if (random.chance(near)) range = random.between(0.0, 1.5) * static_cast<double>(parameters.tolerance);
-      if (random.chance(strays)) azimuth += random.between(0.5, 5.5);
-      range *= random.between(0.999, 1.001);
-      lisco::Return cell{static_cast<float>(static_cast<double>(parameters.origin[0]) + range * std::cos(azimuth)),
-                         static_cast<float>(static_cast<double>(parameters.origin[1]) + range * std::sin(azimuth)),
-                         static_cast<float>(0.3 * static_cast<double>(laser)), number};
-      if (range > 1e6) cell.x = random.chance(0.5) ? std::numeric_limits<float>::quiet_NaN() : 0.0F;
-      if (range > 1e6) cell.y = cell.z = 0.0F;
-      column.cells.push_back(cell);
-      ++number;
-    }
-    while (!column.cells.empty() && random.chance(0.05)) column.cells.pop_back();
-    if (!random.chance(losses)) stream.columns.push_back(column);
-    if (!random.chance(0.02)) position += random.between(0.5, 1.5) / static_cast<double>(steps);
-    if (random.chance(losses / 10)) position += random.magnitude(0.05, 2.0);
-  }
-  return stream;
-}
-
-std::vector<Delivery> deliveriesOf(lisco::EndlessClusterer& clusterer, const Stream& stream) {
-  std::vector<Delivery> deliveries;
-  std::size_t column = 0;
-  clusterer.begin(stream.parameters, [&](const lisco::EndlessCluster& cluster) {
-    Delivery delivery{{},
-                      cluster.isCut(),
-                      cluster.isContinued(),
-                      cluster.firstPosition(),
-                      cluster.lastPosition(),
-                      cluster.reachEnd(),
-                      column};
-    cluster.forEachRun([&](const std::uint32_t* indices, std::size_t count) {
-      delivery.members.insert(delivery.members.end(), indices, indices + count);
-    });
-    EXPECT_EQ(delivery.members.size(), cluster.size());
-    EXPECT_LT(cluster.lastPosition() - cluster.firstPosition(), 1.0);
-    std::sort(delivery.members.begin(), delivery.members.end());
-    deliveries.push_back(delivery);
-  });
-  for (; column < stream.columns.size(); ++column)
-    clusterer.addColumn(stream.columns[column].cells.data(), stream.columns[column].cells.size(),
-                        stream.columns[column].position);
-  clusterer.finish();
-  std::sort(deliveries.begin(), deliveries.end());
-  return deliveries;
-}
-
-void expectSame(const Stream& stream, const std::vector<Delivery>& expected, const std::vector<Delivery>& actual) {
-  ASSERT_EQ(expected.size(), actual.size());
-  for (std::size_t i = 0; i < expected.size(); ++i) {
-    SCOPED_TRACE(testing::PrintToString(expected[i]) + "\n" + testing::PrintToString(actual[i]));
-    ASSERT_EQ(expected[i].members, actual[i].members);
-    EXPECT_EQ(expected[i].cut, actual[i].cut);
-    EXPECT_EQ(expected[i].continued, actual[i].continued);
-    EXPECT_EQ(expected[i].first_position, actual[i].first_position);
-    EXPECT_EQ(expected[i].last_position, actual[i].last_position);
-    EXPECT_NEAR(expected[i].reach_end, actual[i].reach_end, 1e-3);
-    // The reach ends differ by rounding, which may be a column. The block may have to be completed, unless an eighth ends.
-    std::size_t in_time = expected[i].column;
-    while (!actual[i].cut && in_time > 0 && stream.columns[in_time - 1].position >= actual[i].reach_end &&
-           stream.columns[in_time - 1].position > actual[i].last_position)
-      --in_time;
-    while (!actual[i].cut && in_time < stream.columns.size() && stream.columns[in_time].position < actual[i].reach_end)
-      ++in_time;
-    EXPECT_GE(actual[i].column, in_time);
-    EXPECT_LT(actual[i].column, in_time + stream.parameters.block_columns);
-  }
-}
 
 TEST(EndlessClusterer, DeliversEachClusterOnceAndInTime) {
   lisco::EndlessClusterer clusterer;
@@ -279,14 +26,13 @@ TEST(EndlessClusterer, DeliversEachClusterOnceAndInTime) {
   for (std::uint64_t seed = 1; seed <= timesEffort(3000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
-    const Stream stream = randomStream(random);
-    EndlessOracle oracle(stream.parameters);
-    const std::vector<Delivery> expected = oracle(stream.columns);
-    expectSame(stream, expected, deliveriesOf(clusterer, stream));
+    const EndlessStream stream = randomEndlessStream(random);
+    const EndlessTruth truth = endlessTruth(stream);
+    expectSame(stream, truth.deliveries, deliveriesOf(clusterer, stream));
     if (HasFailure()) return;
-    strays += oracle.strays();
-    EXPECT_EQ(clusterer.strayCount(), oracle.strays());
-    for (const Delivery& delivery : expected) {
+    strays += truth.strays;
+    EXPECT_EQ(clusterer.strayCount(), truth.strays);
+    for (const Delivery& delivery : truth.deliveries) {
       cut += delivery.cut ? 1 : 0;
       continued += delivery.continued ? 1 : 0;
       across_the_seam += std::floor(delivery.first_position) < std::floor(delivery.last_position) ? 1 : 0;
@@ -296,6 +42,90 @@ TEST(EndlessClusterer, DeliversEachClusterOnceAndInTime) {
   EXPECT_GT(continued, 100U);
   EXPECT_GT(strays, 100U);
   EXPECT_GT(across_the_seam, 1000U);
+}
+
+// begin () in the midst of a stream, and finish () in the midst of a turn.
+TEST(EndlessClusterer, MayBeUsedAgain) {
+  lisco::EndlessClusterer clusterer;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    Random random(seed);
+    const EndlessStream lost = randomEndlessStream(random);
+    clusterer.begin(lost.parameters, [](const lisco::EndlessCluster&) {});
+    for (std::size_t i = 0; i < lost.columns.size() / 2; ++i)
+      clusterer.addColumn(lost.columns[i].cells.data(), lost.columns[i].cells.size(), lost.columns[i].position);
+    const EndlessStream stream = randomEndlessStream(random);
+    expectSame(stream, endlessTruth(stream).deliveries, deliveriesOf(clusterer, stream));
+
+    // What follows finish () has nothing to do with what was before.
+    std::vector<std::size_t> sizes;
+    clusterer.begin(stream.parameters, [&](const lisco::EndlessCluster& cluster) { sizes.push_back(cluster.size()); });
+    const lisco::Return cell{1, 0, 0, 0};
+    for (int i = 0; i < 2; ++i) {
+      clusterer.addColumn(&cell, 1, 5.0);
+      clusterer.finish();
+    }
+    EXPECT_EQ(sizes, std::vector<std::size_t>(2, 1));
+    if (HasFailure()) return;
+  }
+}
+
+TEST(EndlessClusterer, DeliversWhatIsLargeEnough) {
+  Random random(3);
+  for (int i = 0; i < 50; ++i) {
+    EndlessStream stream = randomEndlessStream(random);
+    std::vector<Delivery> expected = endlessTruth(stream).deliveries;
+    stream.parameters.min_size = 3;
+    stream.parameters.max_size = 20;
+    const auto isUnwanted = [](const Delivery& delivery) {
+      return delivery.members.size() < 3 || delivery.members.size() > 20;
+    };
+    expected.erase(std::remove_if(expected.begin(), expected.end(), isUnwanted), expected.end());
+    lisco::EndlessClusterer clusterer;
+    expectSame(stream, expected, deliveriesOf(clusterer, stream));
+  }
+}
+
+TEST(EndlessClusterer, ColumnsWithoutPositions) {
+  lisco::EndlessClusterer clusterer;
+  lisco::EndlessParameters parameters;
+  parameters.tolerance = 0.5F;
+  parameters.columns_per_turn = 100;
+  std::vector<double> positions;
+  clusterer.begin(parameters,
+                  [&](const lisco::EndlessCluster& cluster) { positions.push_back(cluster.firstPosition()); });
+  for (int i = 0; i < 300; ++i) {
+    const lisco::Return cell{10, 0, 0, 0};
+    clusterer.addColumn(&cell, i % 100 == 0 ? 1 : 0);
+  }
+  clusterer.finish();
+  ASSERT_EQ(positions.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(positions[i], static_cast<double>(i), 1e-9);
+}
+
+TEST(EndlessClusterer, SaysWhatIsWrong) {
+  lisco::EndlessClusterer clusterer;
+  const lisco::Return cells[2] = {{1, 0, 0, 0}, {1, 0, 1, 1}};
+  const auto ignore = [](const lisco::EndlessCluster&) {};
+  EXPECT_THROW(clusterer.addColumn(cells, 1, 0.0), std::logic_error);
+  EXPECT_THROW(clusterer.addColumn(cells, 1), std::logic_error);
+  lisco::EndlessParameters parameters;
+  for (const double stagger : {-0.1, 0.4, std::numeric_limits<double>::quiet_NaN()}) {
+    parameters.stagger = stagger;
+    EXPECT_THROW(clusterer.begin(parameters, ignore), std::invalid_argument) << stagger;
+  }
+  parameters.stagger = 0.1;
+  parameters.lasers = 1;
+  clusterer.begin(parameters, ignore);
+  EXPECT_THROW(clusterer.addColumn(cells, 1), std::logic_error);
+  EXPECT_THROW(clusterer.addColumn(cells, 2, 0.0), std::invalid_argument);
+  for (const double position :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e13})
+    EXPECT_THROW(clusterer.addColumn(cells, 1, position), std::invalid_argument) << position;
+  clusterer.addColumn(cells, 1, 2.0);
+  EXPECT_THROW(clusterer.addColumn(cells, 1, 1.999), std::invalid_argument);
+  clusterer.addColumn(cells, 1, 2.0);
+  clusterer.update();
+  EXPECT_EQ(clusterer.returnCount(), 2U);
 }
 
 }  // namespace

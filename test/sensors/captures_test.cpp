@@ -3,6 +3,7 @@
 // Captures of real sensors against organized scans that others decoded of them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -13,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "endless_streams.h"
 #include "sensors/capture_file.h"
 #include "sensors/decoder.h"
 #include "sensors/rotation_cutter.h"
@@ -161,6 +163,46 @@ TEST_P(RealCapture, IsSeenAsAnotherSensors) {
     } else {
       EXPECT_GT(std::abs(decoder.order().usualGap() / decoder.packetPeriodUs() - 1), 0.5);
     }
+  }
+}
+
+// Over several rotations, against the definition, which compares every return with every other: so only eight
+// of the lasers.
+TEST_P(RealCapture, IsClusteredEndlesslyAsDefined) {
+  const lisco_apps::SensorModel model = lisco_apps::makeSensorModel(GetParam().sensor);
+  CaptureFile source(file());
+  Decoder decoder(model);
+  decoder.setStep(lisco_apps::stepIn(source, model));
+  const std::size_t one_in = model.lasers.size() / 8;
+  EndlessStream stream;
+  stream.parameters.clockwise = true;
+  stream.parameters.stagger = 0.15;
+  double position = 0;
+  double last = -1;
+  std::uint32_t number = 0;
+  decodeAll(decoder, [&](const Column& column, std::size_t) {
+    if (last >= 0) position += std::max(0.0, std::remainder(column.azimuth - last, 360.0)) / 360;
+    if (last < 0) position = column.azimuth / 360;
+    last = column.azimuth;
+    if (position > 2.6) return;
+    stream.columns.push_back({position, {}});
+    for (std::size_t laser = 0; laser < column.cells.size(); laser += one_in) {
+      const Cell& cell = column.cells[laser];
+      stream.columns.back().cells.push_back({cell.x, cell.y, cell.z, number++});
+    }
+  });
+  lisco::EndlessClusterer clusterer;
+  for (const float tolerance : {0.3F, 1.0F}) {
+    stream.parameters.tolerance = tolerance;
+    const EndlessTruth truth = endlessTruth(stream);
+    EXPECT_EQ(truth.strays, 0U);
+    const auto across_the_seam =
+        std::count_if(truth.deliveries.begin(), truth.deliveries.end(), [](const auto& delivery) {
+          return delivery.members.size() >= 10 &&
+                 std::floor(delivery.first_position) < std::floor(delivery.last_position);
+        });
+    EXPECT_GT(across_the_seam, 0);
+    expectSame(stream, truth.deliveries, deliveriesOf(clusterer, stream));
   }
 }
 

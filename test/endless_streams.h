@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <iosfwd>
+#include <vector>
+
+#include "lisco/endless_clusterer.h"
+#include "random.h"
+
+namespace lisco_test {
+
+/// A column of an endless stream.
+struct StreamColumn {
+  double position;
+  std::vector<lisco::Return> cells;
+};
+
+struct EndlessStream {
+  lisco::EndlessParameters parameters;
+  std::vector<StreamColumn> columns;
+};
+
+/// A sensor among walls, pillars and moving things, some of them nearer than the tolerance, for up to four turns.
+EndlessStream randomEndlessStream(Random& random);
+
+/// What is expected of a delivered cluster, or was delivered.
+struct Delivery {
+  std::vector<std::uint32_t> members;  ///< source indices, ascending
+  bool cut, continued;
+  double first_position, last_position, reach_end;
+  std::size_t column;  ///< that delivered it; the number of columns if the end of the stream did
+
+  bool operator<(const Delivery& other) const { return members < other.members; }
+};
+std::ostream& operator<<(std::ostream& out, const Delivery& delivery);
+
+/// What doc/streaming.md defines, return by return.
+struct EndlessTruth {
+  std::vector<Delivery> deliveries;  ///< ordered by their members
+  std::size_t strays = 0;
+};
+EndlessTruth endlessTruth(const EndlessStream& stream);
+
+/// What the engine delivers, ordered by the members.
+std::vector<Delivery> deliveriesOf(lisco::EndlessClusterer& clusterer, const EndlessStream& stream);
+
+/// Fails the test where the engine's deliveries are not the true ones, or came too late.
+void expectSame(const EndlessStream& stream, const std::vector<Delivery>& expected,
+                const std::vector<Delivery>& actual);
+
+}  // namespace lisco_test
