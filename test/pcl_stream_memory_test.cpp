@@ -117,7 +117,7 @@ TEST(PclStreamMemory, WindowsTakeNothingButTheClusters) {
       of_clusters += clusters.size();
     }
   };
-  for (int i = 0; i < 3; ++i) turn();
+  for (int i = 0; i < 8; ++i) turn();  // until each of the engine's 7 panes has held each of the 12 hops
   of_clusters = 0;
   const std::size_t allocations = allocationsOf(turn);
   EXPECT_GT(of_clusters, 12U);
