@@ -147,8 +147,8 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
     return (Eigen::Vector4f(sensor_origin_[0], sensor_origin_[1], sensor_origin_[2], 0.0F));
   }
 
-  /** \brief Set how many columns are worked on together, 1..64 (default 64, which is the least work). The fewer, the more
-   * evenly the work is spread over the columns. Takes effect when the next rotation begins; it does not change any result.
+  /** \brief Set how many columns are worked on together, 1..64 (default 64, which is the least work). The fewer, the
+   * less is left to do for a look or at the end. Takes effect when the next rotation begins; it changes no result.
    */
   inline void setBlockColumns(std::size_t columns) { block_columns_ = columns; }
 
