@@ -41,40 +41,25 @@ bool pcl::detail::LiscoCloudClusterer::select(std::size_t points, const Indices*
 
 void pcl::detail::LiscoCloudClusterer::collect(const Indices* indices, const PCLHeader& header, uindex_t min_size,
                                                uindex_t max_size, std::vector<PointIndices>& clusters) {
-  constexpr std::uint32_t kUndecided = ~std::uint32_t{0};
-  constexpr std::uint32_t kNoCluster = kUndecided - 1;
-  cluster_of_subcluster_.assign(clusterer_.subclusterCount(), kUndecided);
-  const std::size_t first_cluster = clusters.size();
-  const auto decide = [&](std::uint32_t subcluster) {
-    if (cluster_of_subcluster_[subcluster] != kUndecided) return;
-    const std::uint32_t size = clusterer_.sizeOf(subcluster);
-    cluster_of_subcluster_[subcluster] = kNoCluster;
-    if (size < min_size || size > max_size) return;
-    cluster_of_subcluster_[subcluster] = static_cast<std::uint32_t>(clusters.size() - first_cluster);
-    clusters.emplace_back();
-    clusters.back().header = header;
-    clusters.back().indices.reserve(size);
-  };
+  writer_.start(clusterer_.subclusterCount(), header, min_size, max_size, clusters);
 
   // The order of the clusters is that of their first points in the indices; within each, indices ascend.
   if (indices && !std::is_sorted(indices->begin(), indices->end())) {
     std::uint32_t points = 0;
     for (const auto& index : *indices) points = std::max(points, static_cast<std::uint32_t>(index) + 1);
-    subcluster_of_point_.assign(points, kNoCluster);
+    constexpr std::uint32_t kNone = lisco::ColumnClusterer::kNone;
+    subcluster_of_point_.assign(points, kNone);
     clusterer_.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
       for (std::size_t i = 0; i < count; ++i) subcluster_of_point_[cells[i]] = subcluster;
     });
     for (const auto& index : *indices) {
       const std::uint32_t subcluster = subcluster_of_point_[static_cast<std::size_t>(index)];
-      if (subcluster != kNoCluster) decide(subcluster);
+      if (subcluster != kNone) writer_.indicesOf(subcluster, clusterer_.sizeOf(subcluster));
     }
   }
   clusterer_.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-    decide(subcluster);
-    const std::uint32_t cluster = cluster_of_subcluster_[subcluster];
-    if (cluster == kNoCluster) return;
-    Indices& members = clusters[first_cluster + cluster].indices;
-    members.insert(members.end(), cells, cells + count);  // there is room
+    Indices* const members = writer_.indicesOf(subcluster, clusterer_.sizeOf(subcluster));
+    if (members) members->insert(members->end(), cells, cells + count);  // there is room
   });
 }
 

@@ -22,6 +22,7 @@ POINT_CLOUD_REGISTER_POINT_STRUCT(lisco_test::LidarPoint,
 
 #include "pcl_client.h"
 #include "pcl_clouds.h"
+#include "pcl_stream.h"
 
 namespace lisco_test {
 namespace {
@@ -47,6 +48,27 @@ TEST(PclCustomPoint, FreeFunctionsAndLabels) {
   extraction.extract(sorted, labels);
   EXPECT_EQ(sorted.size(), found.size());
   EXPECT_EQ(labels.width, 60U);
+}
+
+TEST(PclCustomPoint, Streams) {
+  Random random(3);
+  const auto columns = columnsOf(*cloudOf<LidarPoint>(boxesAround(random, 120, 8)));
+  pcl::LiscoStreamExtraction<LidarPoint> stream;
+  expectRotationSameAsPcl(stream, random, columns, {0.5, 3});
+  pcl::LiscoWindowExtraction<LidarPoint> windows;
+  expectWindowsSameAsPcl(windows, random, columns, {0.5, 3}, 60, 20);
+  pcl::LiscoEndlessExtraction<LidarPoint> endless;
+  endless.setClusterTolerance(0.5);
+  endless.setClockwise(true);
+  endless.setColumnsPerTurn(120);
+  std::size_t delivered = 0;
+  endless.setClusterCallback(
+      [&](const pcl::LiscoEndlessCluster<LidarPoint>& cluster) { delivered += cluster.cloud.size(); });
+  ASSERT_TRUE(endless.beginStream());
+  for (const auto& column : columns) EXPECT_TRUE(endless.addColumn(column));
+  endless.finish();
+  EXPECT_EQ(delivered, endless.getNumberOfReturns());
+  EXPECT_GT(delivered, 100U);
 }
 
 }  // namespace

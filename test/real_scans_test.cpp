@@ -11,6 +11,7 @@
 #include "cloud_file.h"
 #include "pcl_client.h"
 #include "pcl_clouds.h"
+#include "pcl_stream.h"
 
 namespace lisco_test {
 namespace {
@@ -91,6 +92,48 @@ TEST_P(RealScan, EqualsPclDisplaced) {
   for (const bool with_origin : {false, true})
     expectSameAsPcl<PointXYZ>(displaced(*cloud_, 1000.0F, 0.0F, 0.0F, with_origin), nullptr,
                               {GetParam().tolerances[1], kMinPoints});
+}
+
+// Column by column; from the second rotation on, the sensor is known.
+TEST_P(RealScan, RotationsEqualTheBatch) {
+  const Columns<PointXYZ> columns = columnsOf(*cloud_);
+  pcl::LiscoStreamExtraction<PointXYZ> stream;
+  for (const double tolerance : GetParam().tolerances) {
+    SCOPED_TRACE(tolerance);
+    const Request request{tolerance, kMinPoints};
+    set(stream, request);
+    stream.setHeader(cloud_->header);
+    stream.beginRotation();
+    for (const auto& column : columns) {
+      ASSERT_TRUE(stream.addColumn(column));
+      if (stream.getNumberOfColumns() == columns.size() / 2) stream.getNumberOfSubclusters();
+    }
+    Clusters clusters;
+    pcl::PointCloud<PointXYZ> streamed;
+    ASSERT_TRUE(stream.endRotation(clusters, streamed));
+    EXPECT_TRUE(expectSame(batchClustersOf<PointXYZ>(cloud_, request), clusters));
+    ASSERT_EQ(streamed.size(), cloud_->size());
+    for (std::size_t i = 0; i < streamed.size(); ++i) ASSERT_TRUE(areSamePoint((*cloud_)[i], streamed[i])) << i;
+  }
+}
+
+TEST_P(RealScan, WindowsEqualTheBatch) {
+  const Columns<PointXYZ> columns = columnsOf(*cloud_);
+  const Request request{GetParam().tolerances[1], kMinPoints};
+  pcl::LiscoWindowExtraction<PointXYZ> windows;
+  set(windows, request);
+  const std::size_t hop = columns.size() / 12;
+  windows.setHop(hop);
+  windows.setWindowSize(4 * hop);
+  ASSERT_TRUE(windows.beginStream());
+  for (std::size_t end = 1; end <= 2 * columns.size(); ++end) {  // two turns
+    if (!windows.addColumn(columns[(end - 1) % columns.size()])) continue;
+    Clusters clusters;
+    const auto cloud = std::make_shared<pcl::PointCloud<PointXYZ>>();
+    ASSERT_TRUE(windows.extract(clusters));
+    windows.getWindow(*cloud);
+    ASSERT_TRUE(expectSame(batchClustersOf<PointXYZ>(cloud, request), clusters)) << "column " << end;
+  }
 }
 
 const auto nameOf = [](const auto& file) { return std::string(file.param.name); };

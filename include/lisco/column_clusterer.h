@@ -91,8 +91,8 @@ class ColumnClusterer {
   /// \param column counted from begin()
   std::uint32_t subclusterAt(std::size_t laser, std::size_t column);
 
-  /// Calls visit(source_indices, count, subcluster) for all returns, in groups of the same subcluster: laser by laser,
-  /// and the returns of each in the order of their columns. Call update() first.
+  /// Calls visit(source_indices, count, subcluster) for all returns, in groups of the same subcluster, of one laser and of
+  /// columns side by side: laser by laser, and the returns of each in the order of their columns. Call update() first.
   template <typename Visit>
   void forEachRun(Visit&& visit);
 

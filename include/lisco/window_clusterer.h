@@ -59,8 +59,9 @@ class WindowClusterer {
   /// \param subcluster 0..subclusterCount()-1
   std::uint32_t sizeOf(std::uint32_t subcluster) const { return sizes_[subcluster]; }
 
-  /// Calls visit(source_indices, count, subcluster) for all returns of the last window, in groups of the same subcluster:
-  /// laser by laser, and the returns of each in the order of their columns. To be called before the next window ends.
+  /// Calls visit(source_indices, count, subcluster) for all returns of the last window, in groups of the same subcluster,
+  /// of one laser and of columns side by side: laser by laser, and the returns of each in the order of their columns. To
+  /// be called before the next window ends.
   template <typename Visit>
   void forEachRun(Visit&& visit);
 

@@ -13,6 +13,7 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 #include <pcl/search/search.h>
+#include <pcl/segmentation/lisco_cluster_writer.h>
 
 #include "lisco/column_clusterer.h"
 
@@ -52,10 +53,10 @@ class LiscoCloudClusterer {
 
   lisco::ColumnClusterer clusterer_;
   Selection selection_ = Selection::kAll;
-  std::vector<char> is_selected_;                     ///< per point of the cloud, of kMany
-  Indices few_points_;                                ///< of kFew, ascending
-  std::vector<std::uint32_t> subcluster_of_point_;    ///< only where the order of the indices is needed
-  std::vector<std::uint32_t> cluster_of_subcluster_;  ///< number in the output
+  std::vector<char> is_selected_;                   ///< per point of the cloud, of kMany
+  Indices few_points_;                              ///< of kFew, ascending
+  std::vector<std::uint32_t> subcluster_of_point_;  ///< only where the order of the indices is needed
+  LiscoClusterWriter writer_;
 };
 
 }  // namespace detail

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <pcl/console/print.h>
+#include <pcl/segmentation/extract_clusters.h>          // comparePointClusters
+#include <pcl/segmentation/lisco_cluster_extraction.h>  // fitsIndexType
+#include <pcl/segmentation/lisco_stream_extraction.h>
+
+#include "lisco/scan_survey.h"
+
+// --- All streams ----------------------------------------------------------------------------------------------------
+
+template <typename PointT>
+bool pcl::detail::LiscoColumnStream<PointT>::accepts(const PointT* points, std::size_t count, std::size_t columns,
+                                                     const char* caller) {
+  const std::size_t rows = std::max(count, most_rows_);
+  if (!begun_)
+    PCL_ERROR("[%s] A column before beginRotation () or beginStream ().\n", caller);
+  else if (!points && count > 0)
+    PCL_ERROR("[%s] A column without points.\n", caller);
+  else if (lasers_ != 0 && count > lasers_)
+    PCL_ERROR("[%s] A column of %zu rows, and only %zu lasers were declared.\n", caller, count, lasers_);
+  else if (!LiscoCloudClusterer::fitsIndexType(rows) || !LiscoCloudClusterer::fitsIndexType(columns) ||
+           !LiscoCloudClusterer::fitsIndexType(columns * rows))
+    PCL_ERROR("[%s] %zu columns of %zu rows are more points than pcl::index_t can number.\n", caller, columns, rows);
+  else
+    return (true);
+  return (false);
+}
+
+template <typename PointT>
+const lisco::Return* pcl::detail::LiscoColumnStream<PointT>::namedColumn(const PointT* points, std::size_t count,
+                                                                         std::uint32_t first_name) {
+  named_column_.resize(count);
+  for (std::size_t row = 0; row < count; ++row)
+    named_column_[row] = {points[row].x, points[row].y, points[row].z, first_name + static_cast<std::uint32_t>(row)};
+  return (named_column_.data());
+}
+
+template <typename PointT>
+template <typename Clusterer>
+void pcl::detail::LiscoColumnStream<PointT>::appendClusters(Clusterer& clusterer, std::uint64_t first_column,
+                                                            std::uint64_t end_column,
+                                                            std::vector<PointIndices>& clusters) {
+  if (store_.heightOf(first_column, end_column) == 0) {  // an empty cloud
+    clusters.clear();
+    return;
+  }
+  const std::uint64_t width = end_column - first_column;
+  writer_.start(clusterer.subclusterCount(), header_, min_pts_per_cluster_, max_pts_per_cluster_, clusters);
+  clusterer.forEachRun([&](const std::uint32_t* names, std::size_t count, std::uint32_t subcluster) {
+    Indices* const members = writer_.indicesOf(subcluster, clusterer.sizeOf(subcluster));
+    if (!members) return;
+    const auto cell = store_.cellOf(names[0]);  // the others lie beside it
+    auto index = static_cast<index_t>(cell.row * width + (cell.column - first_column));
+    for (std::size_t i = 0; i < count; ++i) members->push_back(index++);  // there is room
+  });
+  // Not a stable sort: only PCL's own call on PCL's own sequence gives PCL's order among clusters of one size.
+  std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);
+}
+
+// --- Rotation by rotation -------------------------------------------------------------------------------------------
+
+template <typename PointT>
+void pcl::LiscoStreamExtraction<PointT>::learn() {
+  const std::size_t columns = store_.size();
+  hints_ = lisco::surveyScan(columns, most_rows_, sensor_origin_, [this](std::size_t laser, std::size_t column) {
+             if (laser >= store_.rowsOf(column)) return (lisco::kNoReturn);
+             const PointT& point = store_.at(laser, column);
+             return (lisco::Return{point.x, point.y, point.z, 0});
+           }).view;
+}
+
+template <typename PointT>
+void pcl::LiscoStreamExtraction<PointT>::beginRotation() {
+  if (has_ended_) learn();
+  lisco::Parameters parameters;
+  parameters.tolerance = static_cast<float>(cluster_tolerance_);
+  parameters.view = hints_;
+  parameters.block_columns = block_columns_;
+  clusterer_.begin(parameters);
+  store_.clear();
+  most_rows_ = 0;
+  begun_ = true;
+  has_ended_ = false;
+  is_up_to_date_ = false;
+}
+
+template <typename PointT>
+bool pcl::LiscoStreamExtraction<PointT>::addColumn(const PointT* points, std::size_t count) {
+  if (!this->accepts(points, count, store_.size() + 1, "pcl::LiscoStreamExtraction::addColumn")) return (false);
+  most_rows_ = std::max(most_rows_, count);
+  const std::uint32_t first = store_.add(points, count);
+  clusterer_.addColumns(1, count, [&](std::size_t row, std::size_t) {
+    return (lisco::Return{points[row].x, points[row].y, points[row].z, first + static_cast<std::uint32_t>(row)});
+  });
+  is_up_to_date_ = false;
+  return (true);
+}
+
+template <typename PointT>
+bool pcl::LiscoStreamExtraction<PointT>::addColumn(const PointCloud& column) {
+  return (addColumn(column.points.data(), column.size()));
+}
+
+template <typename PointT>
+void pcl::LiscoStreamExtraction<PointT>::update() {
+  if (is_up_to_date_) return;
+  clusterer_.update();
+  is_up_to_date_ = true;
+}
+
+template <typename PointT>
+std::size_t pcl::LiscoStreamExtraction<PointT>::getNumberOfSubclusters() {
+  update();
+  return (clusterer_.subclusterCount());
+}
+
+template <typename PointT>
+void pcl::LiscoStreamExtraction<PointT>::getSubclusterSizes(std::vector<pcl::uindex_t>& sizes) {
+  update();
+  sizes.resize(clusterer_.subclusterCount());
+  for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = clusterer_.sizeOf(static_cast<std::uint32_t>(i));
+}
+
+template <typename PointT>
+pcl::index_t pcl::LiscoStreamExtraction<PointT>::getSubcluster(std::size_t row, std::size_t column) {
+  if (column >= store_.size() || row >= store_.rowsOf(column)) return (-1);
+  update();
+  const std::uint32_t subcluster = clusterer_.subclusterAt(row, column);
+  return (subcluster == lisco::ColumnClusterer::kNone ? -1 : static_cast<pcl::index_t>(subcluster));
+}
+
+template <typename PointT>
+void pcl::LiscoStreamExtraction<PointT>::getSubclusters(std::vector<PointIndices>& clusters) {
+  update();
+  clusters.clear();
+  this->appendClusters(clusterer_, 0, store_.endColumn(), clusters);
+}
+
+template <typename PointT>
+void pcl::LiscoStreamExtraction<PointT>::getCloud(PointCloud& cloud) const {
+  store_.organize(0, store_.endColumn(), cloud);
+  cloud.header = header_;
+  cloud.sensor_origin_ = getSensorOrigin();
+  cloud.sensor_orientation_ = Eigen::Quaternionf::Identity();
+}
+
+template <typename PointT>
+bool pcl::LiscoStreamExtraction<PointT>::endRotation(std::vector<PointIndices>& clusters) {
+  if (!begun_) {
+    PCL_ERROR("[pcl::LiscoStreamExtraction::endRotation] No rotation has begun.\n");
+    clusters.clear();
+    return (false);
+  }
+  update();
+  this->appendClusters(clusterer_, 0, store_.endColumn(), clusters);
+  begun_ = false;
+  has_ended_ = true;
+  return (true);
+}
+
+template <typename PointT>
+bool pcl::LiscoStreamExtraction<PointT>::endRotation(std::vector<PointIndices>& clusters, PointCloud& cloud) {
+  const bool ended = endRotation(clusters);
+  if (ended)
+    getCloud(cloud);
+  else
+    cloud.clear();
+  return (ended);
+}
+
+// --- Sliding windows ------------------------------------------------------------------------------------------------
+
+template <typename PointT>
+bool pcl::LiscoWindowExtraction<PointT>::beginStream() {
+  try {
+    clusterer_.begin({static_cast<float>(cluster_tolerance_), window_size_, hop_, 0});
+  } catch (const std::invalid_argument&) {
+    PCL_ERROR("[pcl::LiscoWindowExtraction::beginStream] A window of %zu columns is no multiple of a hop of %zu.\n",
+              window_size_, hop_);
+    return (false);
+  }
+  store_.clear();
+  most_rows_ = 0;
+  window_first_ = window_end_ = 0;
+  columns_kept_ = window_size_ + hop_;
+  begun_ = true;
+  return (true);
+}
+
+template <typename PointT>
+bool pcl::LiscoWindowExtraction<PointT>::addColumn(const PointT* points, std::size_t count) {
+  if (!this->accepts(points, count, columns_kept_, "pcl::LiscoWindowExtraction::addColumn")) return (false);
+  most_rows_ = std::max(most_rows_, count);
+  const std::uint32_t first = store_.add(points, count);
+  if (!clusterer_.addColumn(this->namedColumn(points, count, first), count)) return (false);
+  window_end_ = store_.endColumn();
+  window_first_ = window_end_ - clusterer_.columnCount();
+  while (store_.firstColumn() < window_first_) store_.dropFirst();
+  return (true);
+}
+
+template <typename PointT>
+bool pcl::LiscoWindowExtraction<PointT>::addColumn(const PointCloud& column) {
+  return (addColumn(column.points.data(), column.size()));
+}
+
+template <typename PointT>
+bool pcl::LiscoWindowExtraction<PointT>::extract(std::vector<PointIndices>& clusters) {
+  if (window_first_ == window_end_) {
+    PCL_ERROR("[pcl::LiscoWindowExtraction::extract] No window has ended.\n");
+    clusters.clear();
+    return (false);
+  }
+  this->appendClusters(clusterer_, window_first_, window_end_, clusters);
+  return (true);
+}
+
+template <typename PointT>
+void pcl::LiscoWindowExtraction<PointT>::getWindow(PointCloud& cloud) const {
+  store_.organize(window_first_, window_end_, cloud);
+  cloud.header = header_;
+}
+
+// --- Without end ----------------------------------------------------------------------------------------------------
+
+template <typename PointT>
+bool pcl::LiscoEndlessExtraction<PointT>::beginStream() {
+  lisco::EndlessParameters parameters = parameters_;
+  parameters.tolerance = static_cast<float>(cluster_tolerance_);
+  parameters.min_size = min_pts_per_cluster_;
+  parameters.max_size = max_pts_per_cluster_;
+  try {
+    clusterer_.begin(parameters, [this](const lisco::EndlessCluster& delivered) { deliver(delivered); });
+  } catch (const std::invalid_argument&) {
+    PCL_ERROR("[pcl::LiscoEndlessExtraction::beginStream] A stagger of %g is not within 0 and pi/8.\n",
+              parameters.stagger);
+    return (false);
+  }
+  columns_per_turn_ = parameters.columns_per_turn;
+  store_.clear();
+  most_rows_ = 0;
+  begun_ = true;
+  return (true);
+}
+
+template <typename PointT>
+bool pcl::LiscoEndlessExtraction<PointT>::addColumnAt(const PointT* points, std::size_t count, double position,
+                                                      const char* caller) {
+  if (!this->accepts(points, count, store_.size() + 1, caller)) return (false);
+  constexpr double kLargest = 1e12;  // as the engine has it
+  if (!(std::fabs(position) <= kLargest)) {
+    PCL_ERROR("[%s] A position of %g turns.\n", caller, position);
+    return (false);
+  }
+  if (store_.size() > 0 && position < store_.positionOf(store_.endColumn() - 1)) {
+    PCL_ERROR("[%s] A position of %.17g turns, after one of %.17g.\n", caller, position,
+              store_.positionOf(store_.endColumn() - 1));
+    return (false);
+  }
+  most_rows_ = std::max(most_rows_, count);
+  const std::uint32_t first = store_.add(points, count, position);
+  clusterer_.addColumn(this->namedColumn(points, count, first), count, position);
+  constexpr double kKept = 1.5;  // turns, within which the engine names a cell again
+  while (store_.positionOf(store_.firstColumn()) < position - kKept) store_.dropFirst();
+  return (true);
+}
+
+template <typename PointT>
+bool pcl::LiscoEndlessExtraction<PointT>::addColumn(const PointT* points, std::size_t count, double position) {
+  return (addColumnAt(points, count, position, "pcl::LiscoEndlessExtraction::addColumn"));
+}
+
+template <typename PointT>
+bool pcl::LiscoEndlessExtraction<PointT>::addColumn(const PointT* points, std::size_t count) {
+  const char* const caller = "pcl::LiscoEndlessExtraction::addColumn";
+  if (begun_ && !(columns_per_turn_ > 0)) {
+    PCL_ERROR("[%s] A column without a position, and the number of columns of a turn is not known.\n", caller);
+    return (false);
+  }
+  const double position = store_.size() > 0 ? store_.positionOf(store_.endColumn() - 1) + 1 / columns_per_turn_ : 0.0;
+  return (addColumnAt(points, count, position, caller));
+}
+
+template <typename PointT>
+bool pcl::LiscoEndlessExtraction<PointT>::addColumn(const PointCloud& column, double position) {
+  return (addColumn(column.points.data(), column.size(), position));
+}
+
+template <typename PointT>
+bool pcl::LiscoEndlessExtraction<PointT>::addColumn(const PointCloud& column) {
+  return (addColumn(column.points.data(), column.size()));
+}
+
+template <typename PointT>
+void pcl::LiscoEndlessExtraction<PointT>::update() {
+  if (begun_) clusterer_.update();
+}
+
+template <typename PointT>
+void pcl::LiscoEndlessExtraction<PointT>::finish() {
+  if (!begun_) return;
+  clusterer_.finish();
+  store_.clear();
+}
+
+template <typename PointT>
+void pcl::LiscoEndlessExtraction<PointT>::deliver(const lisco::EndlessCluster& delivered) {
+  if (!callback_) return;
+  cluster_.cloud.points.clear();
+  cluster_.cells.clear();
+  delivered.forEachRun([this](const std::uint32_t* names, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto cell = store_.cellOf(names[i]);
+      cluster_.cloud.points.push_back(store_.pointOf(names[i]));
+      cluster_.cells.push_back({cell.column, cell.row});
+    }
+  });
+  cluster_.cloud.header = header_;
+  cluster_.cloud.width = static_cast<std::uint32_t>(cluster_.cloud.points.size());
+  cluster_.cloud.height = 1;
+  cluster_.cloud.is_dense = true;
+  cluster_.first_position = delivered.firstPosition();
+  cluster_.last_position = delivered.lastPosition();
+  cluster_.is_cut = delivered.isCut();
+  cluster_.is_continued = delivered.isContinued();
+  callback_(cluster_);
+}
+
+#define PCL_INSTANTIATE_LiscoStreamExtraction(T) template class PCL_EXPORTS pcl::LiscoStreamExtraction<T>;
+#define PCL_INSTANTIATE_LiscoWindowExtraction(T) template class PCL_EXPORTS pcl::LiscoWindowExtraction<T>;
+#define PCL_INSTANTIATE_LiscoEndlessExtraction(T) template class PCL_EXPORTS pcl::LiscoEndlessExtraction<T>;

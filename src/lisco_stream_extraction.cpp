@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include <pcl/impl/instantiate.hpp>
+#include <pcl/segmentation/impl/lisco_stream_extraction.hpp>
+
+PCL_INSTANTIATE(LiscoStreamExtraction, PCL_XYZ_POINT_TYPES)
+PCL_INSTANTIATE(LiscoWindowExtraction, PCL_XYZ_POINT_TYPES)
+PCL_INSTANTIATE(LiscoEndlessExtraction, PCL_XYZ_POINT_TYPES)
