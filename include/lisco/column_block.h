@@ -32,35 +32,28 @@ class ColumnBlock {
     }
   }
 
-  /// Makes room for so many lasers; those that were not there before have no returns in the columns that wait.
-  void addLasers(std::size_t lasers) {
-    while (rows_.size() < lasers) {
-      rows_.emplace_back();
-      std::fill_n(rows_.back().x, Row::kMargin + Row::kColumns, kNoReturn.x);
-      std::fill_n(rows_.back().y, Row::kMargin + Row::kColumns, kNoReturn.y);
-      std::fill_n(rows_.back().z, Row::kMargin + Row::kColumns, kNoReturn.z);
-    }
-  }
-
   /// Takes some columns; there is room for them.
   template <typename CellAt>
   void add(std::size_t first, std::size_t count, std::size_t lasers, CellAt&& cell_at) {
-    addLasers(lasers);
+    const auto nothing = [](std::size_t, std::size_t) { return kNoReturn; };
+    if (rows_.size() < lasers) rows_.resize(lasers);
+    for (; lasers_ < lasers; ++lasers_) fill(rows_[lasers_], 0, lasers_, 0, columns_, nothing);
     for (std::size_t laser = 0; laser < lasers; ++laser) fill(rows_[laser], columns_, laser, first, count, cell_at);
-    for (std::size_t laser = lasers; laser < rows_.size(); ++laser)
-      fill(rows_[laser], columns_, laser, first, count, [](std::size_t, std::size_t) { return kNoReturn; });
+    for (std::size_t laser = lasers; laser < lasers_; ++laser)
+      fill(rows_[laser], columns_, laser, first, count, nothing);
     columns_ += count;
   }
 
-  std::size_t lasers() const { return rows_.size(); }
+  std::size_t lasers() const { return lasers_; }  ///< of the column that has the most
   std::size_t columns() const { return columns_; }
   Row& row(std::size_t laser) { return rows_[laser]; }
 
   /// Forgets the columns. Keeps its memory.
-  void clear() { columns_ = 0; }
+  void clear() { lasers_ = columns_ = 0; }
 
  private:
   std::vector<Row> rows_;  ///< by laser
+  std::size_t lasers_ = 0;
   std::size_t columns_ = 0;
 };
 
