@@ -70,6 +70,7 @@ Parameters ScanSurvey::judge(const std::array<float, 3>& sensor, bool organized)
   };
   Sample<double> jumps;
   for (const Pair& pair : along_row_) jumps.push_back(std::fabs(rangeOf(pair.a) - rangeOf(pair.b)));
+  for (std::size_t i = 0; i < alone_; ++i) jumps.push_back(std::numeric_limits<double>::infinity());
   parameters.view.roughness = median(jumps, 0.0F);
 
   Sample<double> elevation_steps;

@@ -272,7 +272,10 @@ std::size_t Voxels::newPoints(std::size_t count) {
   points_ += count;
   const std::size_t size = points_ + kMostLanes;
   if (x_.size() < size)
-    for (auto* coordinate : {&x_, &y_, &z_}) coordinate->resize(size + size / 4);
+    for (auto* coordinate : {&x_, &y_, &z_}) {
+      coordinate->reserve(size + size / 4);  // or it would double
+      coordinate->resize(size + size / 4);
+    }
   return first;
 }
 

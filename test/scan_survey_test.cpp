@@ -95,6 +95,19 @@ TEST(ScanSurvey, EveryOtherColumnIsEmpty) {
   EXPECT_GT(parameters.view.far_distance, 0.0F);
 }
 
+// Runs are as short where most returns have none beside them as where ranges jump.
+TEST(ScanSurvey, ThinThingsAreRough) {
+  Scan scan = rotation();
+  EXPECT_LT(survey(scan).view.roughness, 0.1F);
+  for (std::size_t laser = 0; laser < kLasers; ++laser)
+    for (std::size_t column = 0; column < kColumns; ++column)
+      if (column % 10 > 5) scan.set(laser, column, {0.0F, 0.0F, 0.0F});
+  EXPECT_LT(survey(scan).view.roughness, 0.1F);
+  for (std::size_t laser = 0; laser < kLasers; ++laser)
+    for (std::size_t column = 1; column < kColumns; column += 2) scan.set(laser, column, {0.0F, 0.0F, 0.0F});
+  EXPECT_GT(survey(scan).view.roughness, 1e6F);
+}
+
 TEST(ScanSurvey, NothingToLookAt) {
   EXPECT_TRUE(hasNoView(survey(Scan(0, 4))));
   EXPECT_TRUE(hasNoView(survey(Scan(1, 1))));

@@ -36,6 +36,8 @@ class ScanSurvey {
  public:
   /// Two returns of one laser in adjacent columns.
   void addAlongRow(const Return& a, const Return& b) { along_row_.push_back({a, b}); }
+  /// A return of a laser that has none in the next column.
+  void addAlone() { ++alone_; }
   /// Two returns of one laser, b `columns` columns after a, less than half a turn.
   void addFurtherAlongRow(const Return& a, const Return& b, std::size_t columns) {
     further_.push_back({a, b, columns});
@@ -57,6 +59,7 @@ class ScanSurvey {
   };
   Sample<Pair> along_row_, along_column_;
   Sample<FurtherPair> further_;
+  std::size_t alone_ = 0;
 };
 
 /// Looks at about a hundred cells of an organized cloud (lasers > 1) or of an unorganized one (lasers == 1).
@@ -80,7 +83,10 @@ Parameters surveyScan(std::size_t columns, std::size_t lasers, const std::array<
         if (!valid(cell)) continue;
         const Return right = column + 1 < columns ? cell_at(laser, column + 1) : kNoReturn;
         const Return below = laser + 1 < lasers ? cell_at(laser + 1, column) : kNoReturn;
-        if (valid(right)) survey.addAlongRow(cell, right);
+        if (valid(right))
+          survey.addAlongRow(cell, right);
+        else
+          survey.addAlone();
         const Return further = column + kFurther < columns ? cell_at(laser, column + kFurther) : kNoReturn;
         if (lasers > 1 && valid(further)) survey.addFurtherAlongRow(cell, further, kFurther);
         if (valid(below)) survey.addAlongColumn(cell, below);

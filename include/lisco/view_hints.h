@@ -13,7 +13,9 @@ struct ViewHints {
   int steps_per_turn = 0;                         ///< columns of a whole turn; 0: unknown, or no rotating sensor
   bool clockwise = false;                         ///< seen from above; of no use without steps_per_turn
   float far_distance = 1e30F;                     ///< few returns are further away horizontally, metres
-  float roughness = 0.0F;  ///< by how much the ranges of one laser's returns in two columns side by side differ, metres
+  /// By how much the ranges of one laser's returns in two columns side by side differ, metres; infinite if most have
+  /// none beside them.
+  float roughness = 0.0F;
 };
 
 }  // namespace lisco
