@@ -20,6 +20,7 @@
 
 #include <pcl/segmentation/extract_clusters.h>  // comparePointClusters
 #include <pcl/segmentation/lisco_cluster_extraction.h>
+#include <pcl/segmentation/lisco_cluster_writer.h>
 
 #include "cloud_file.h"
 #include "compare/comparison.h"
@@ -220,19 +221,12 @@ bool isRight(const Case& one, const Rotation& rotation, const std::string& whose
 /// PCL's vector from what a clusterer found.
 template <typename Clusterer, typename IndexOf>
 Clusters collect(Clusterer& clusterer, const Problem& problem, IndexOf&& index_of) {
-  constexpr std::uint32_t kUndecided = ~std::uint32_t{0};
   Clusters clusters;
-  std::vector<std::uint32_t> cluster_of(clusterer.subclusterCount(), kUndecided);
+  pcl::detail::LiscoClusterWriter writer;
+  writer.start(clusterer.subclusterCount(), problem.cloud->header, problem.min_size, problem.max_size, clusters);
   clusterer.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-    const std::uint32_t size = clusterer.sizeOf(subcluster);
-    if (size < problem.min_size || size > problem.max_size) return;
-    if (cluster_of[subcluster] == kUndecided) {
-      cluster_of[subcluster] = static_cast<std::uint32_t>(clusters.size());
-      clusters.emplace_back();
-      clusters.back().header = problem.cloud->header;
-      clusters.back().indices.reserve(size);
-    }
-    for (std::size_t i = 0; i < count; ++i) clusters[cluster_of[subcluster]].indices.push_back(index_of(cells[i]));
+    pcl::Indices* const indices = writer.indicesOf(subcluster, clusterer.sizeOf(subcluster));
+    for (std::size_t i = 0; indices != nullptr && i < count; ++i) indices->push_back(index_of(cells[i]));
   });
   std::sort(clusters.rbegin(), clusters.rend(), pcl::comparePointClusters);
   return clusters;

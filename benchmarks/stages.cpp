@@ -21,6 +21,7 @@
 
 #include <pcl/segmentation/extract_clusters.h>  // comparePointClusters
 #include <pcl/segmentation/lisco_cluster_extraction.h>
+#include <pcl/segmentation/lisco_cluster_writer.h>
 
 #include "cloud_file.h"
 #include "compare/comparison.h"
@@ -94,29 +95,15 @@ class StagedExtraction {
 
   /// As LiscoCloudClusterer::collect () does it.
   void collect(const Problem& problem, Clusters& clusters) {
-    constexpr std::uint32_t kUndecided = ~std::uint32_t{0};
-    constexpr std::uint32_t kNoCluster = kUndecided - 1;
-    cluster_of_subcluster_.assign(clusterer_.subclusterCount(), kUndecided);
+    writer_.start(clusterer_.subclusterCount(), problem.cloud->header, problem.min_size, problem.max_size, clusters);
     clusterer_.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-      std::uint32_t& cluster = cluster_of_subcluster_[subcluster];
-      if (cluster == kUndecided) {
-        const std::uint32_t size = clusterer_.sizeOf(subcluster);
-        const bool wanted = size >= problem.min_size && size <= problem.max_size;
-        cluster = wanted ? static_cast<std::uint32_t>(clusters.size()) : kNoCluster;
-        if (wanted) {
-          clusters.emplace_back();
-          clusters.back().header = problem.cloud->header;
-          clusters.back().indices.reserve(size);
-        }
-      }
-      if (cluster == kNoCluster) return;
-      pcl::Indices& members = clusters[cluster].indices;
-      members.insert(members.end(), cells, cells + count);
+      pcl::Indices* const members = writer_.indicesOf(subcluster, clusterer_.sizeOf(subcluster));
+      if (members != nullptr) members->insert(members->end(), cells, cells + count);
     });
   }
 
   lisco::ColumnClusterer clusterer_;
-  std::vector<std::uint32_t> cluster_of_subcluster_;
+  pcl::detail::LiscoClusterWriter writer_;
   Clock::time_point latest_;
   std::array<double, kStages> times_{};
 };

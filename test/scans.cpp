@@ -86,6 +86,12 @@ void Scan::set(std::size_t laser, std::size_t column, const Point& point) {
   cell.z = point.z;
 }
 
+std::vector<lisco::Return> Scan::column(std::size_t number) const {
+  std::vector<lisco::Return> column_cells;
+  for (std::size_t laser = 0; laser < lasers; ++laser) column_cells.push_back(at(laser, number));
+  return column_cells;
+}
+
 std::vector<Point> Scan::points() const {
   std::vector<Point> points;
   points.reserve(cells.size());

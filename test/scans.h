@@ -22,6 +22,7 @@ struct Scan {
   const lisco::Return& at(std::size_t laser, std::size_t column) const { return cells[laser * columns + column]; }
   void set(std::size_t laser, std::size_t column, const Point& point);
   std::vector<Point> points() const;
+  std::vector<lisco::Return> column(std::size_t number) const;
 };
 
 /// Any number of these may be wrong with a scan at once, in any strength: the sensor turns either way from

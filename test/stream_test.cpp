@@ -15,12 +15,6 @@
 namespace lisco_test {
 namespace {
 
-std::vector<lisco::Return> columnOf(const Scan& scan, std::size_t column) {
-  std::vector<lisco::Return> cells;
-  for (std::size_t laser = 0; laser < scan.lasers; ++laser) cells.push_back(scan.at(laser, column));
-  return cells;
-}
-
 lisco::Parameters withTolerance(const Setting& setting, float tolerance) {
   lisco::Parameters parameters = setting.parameters;
   parameters.tolerance = tolerance;
@@ -53,7 +47,7 @@ TEST(Stream, SubclustersAfterEveryColumn) {
   forScans(1, 300, [&](Random&, const Scan& scan, float tolerance, const Setting& setting) {
     clusterer.begin(withTolerance(setting, tolerance));
     for (std::size_t column = 0; column < scan.columns; ++column) {
-      clusterer.addColumn(columnOf(scan, column).data(), scan.lasers);
+      clusterer.addColumn(scan.column(column).data(), scan.lasers);
       ASSERT_EQ(difference(trueClustersUpTo(scan, column + 1, tolerance), clustersOf(clusterer)), "")
           << "column " << column;
     }
@@ -65,7 +59,7 @@ TEST(Stream, SubclustersNowAndThen) {
   forScans(1000, 600, [&](Random& random, const Scan& scan, float tolerance, const Setting& setting) {
     clusterer.begin(withTolerance(setting, tolerance));
     for (std::size_t column = 0; column < scan.columns; ++column) {
-      clusterer.addColumn(columnOf(scan, column).data(), scan.lasers);
+      clusterer.addColumn(scan.column(column).data(), scan.lasers);
       if (!random.chance(0.1)) continue;
       ASSERT_EQ(difference(trueClustersUpTo(scan, column + 1, tolerance), clustersOf(clusterer)), "")
           << "column " << column;
@@ -81,7 +75,7 @@ TEST(Stream, ColumnsInAnyPortions) {
     for (std::size_t first = 0; first < scan.columns;) {
       const std::size_t count = std::min(scan.columns - first, 1 + random.below(40));
       if (count == 1 && random.chance(0.5))
-        clusterer.addColumn(columnOf(scan, first).data(), scan.lasers);
+        clusterer.addColumn(scan.column(first).data(), scan.lasers);
       else
         clusterer.addColumns(count, scan.lasers,
                              [&](std::size_t laser, std::size_t column) { return scan.at(laser, first + column); });
@@ -98,7 +92,7 @@ TEST(Stream, ColumnsOfAnyLengthAndOrder) {
   forScans(4000, 400, [&](Random& random, const Scan& scan, float tolerance, const Setting& setting) {
     clusterer.begin(withTolerance(setting, tolerance));
     for (std::size_t column = 0; column < scan.columns; ++column) {
-      std::vector<lisco::Return> cells = columnOf(scan, column);
+      std::vector<lisco::Return> cells = scan.column(column);
       random.shuffle(cells);
       while (!cells.empty() && !lisco::isReturn(cells.back().x, cells.back().y, cells.back().z)) cells.pop_back();
       clusterer.addColumn(cells.data(), cells.size());
@@ -124,7 +118,7 @@ TEST(Stream, ABrokenOffRotationIsForgotten) {
     const Scan lost = randomScan(random);
     clusterer.begin(withTolerance(random.oneOf(allSettings()), tolerance));
     for (std::size_t column = 0; column < random.below(lost.columns + 1); ++column)
-      clusterer.addColumn(columnOf(lost, column % lost.columns).data(), lost.lasers);
+      clusterer.addColumn(lost.column(column % lost.columns).data(), lost.lasers);
     EXPECT_EQ(difference(trueClusters(scan.points(), tolerance), cluster(clusterer, scan, tolerance, setting)), "");
   });
 }

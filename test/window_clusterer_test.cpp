@@ -20,12 +20,6 @@
 namespace lisco_test {
 namespace {
 
-std::vector<lisco::Return> columnOf(const Scan& scan, std::size_t column) {
-  std::vector<lisco::Return> cells;
-  for (std::size_t laser = 0; laser < scan.lasers; ++laser) cells.push_back(scan.at(laser, column));
-  return cells;
-}
-
 Clustering clustersOf(lisco::WindowClusterer& clusterer) {
   Clustering clusters(clusterer.subclusterCount());
   std::size_t returns = 0;
@@ -51,7 +45,7 @@ void expectEachWindowExact(lisco::WindowClusterer& clusterer, Random& random, co
   const std::size_t window = hop * (1 + random.below(8));
   clusterer.begin({tolerance, window, hop, scan.lasers});
   for (std::size_t column = 0; column < scan.columns; ++column) {
-    const bool ends = clusterer.addColumn(columnOf(scan, column).data(), scan.lasers);
+    const bool ends = clusterer.addColumn(scan.column(column).data(), scan.lasers);
     ASSERT_EQ(ends, (column + 1) % hop == 0);
     if (!ends) continue;
     const std::size_t first = column + 1 - std::min(window, column + 1);
