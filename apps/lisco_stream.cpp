@@ -167,15 +167,23 @@ class UntilInterrupted : public PacketSource {
   PacketSource& source_;
 };
 
-std::unique_ptr<PacketSource> open(const Options& options, Report& report) {
+/// Where the packets come from.
+struct Input {
+  std::unique_ptr<PacketSource> source;
+  PacketQueue* queue = nullptr;  ///< the source, if it is live
+};
+
+Input open(const Options& options, Report& report) {
   if (options.capture.empty()) {
     auto receiver = std::make_unique<UdpReceiver>(*options.port);
     report.warn("listening on UDP port " + std::to_string(receiver->port()));
-    return std::make_unique<PacketQueue>(std::move(receiver));
+    auto queue = std::make_unique<PacketQueue>(std::move(receiver));
+    PacketQueue* const live = queue.get();
+    return {std::move(queue), live};
   }
   auto capture = std::make_unique<CaptureFile>(options.capture, options.port);
-  if (options.realtime) return std::make_unique<PacedCapture>(std::move(capture));
-  return capture;
+  if (options.realtime) return {std::make_unique<PacedCapture>(std::move(capture))};
+  return {std::move(capture)};
 }
 
 /// The other sensors that this packet may come from, as far as that can be told without a calibration.
@@ -246,17 +254,19 @@ int run(const Options& options) {
   Decoder decoder(makeSensorModel(options.sensor, options.calibration));
   listenToSignals();
   const bool is_live = options.capture.empty();
-  if (!is_live) CaptureFile(options.capture, options.port);  // errors before the work
+  const bool is_file = !is_live && fs::is_regular_file(options.capture);  // it may be a pipe
+  if (is_file) CaptureFile(options.capture, options.port);                // errors before the work
   std::optional<LabelledClouds> clouds;
   if (!options.output.empty()) clouds.emplace(options.output);
   Report report(options.json ? Report::Format::kJson : Report::Format::kText, clouds ? &*clouds : nullptr);
 
-  if (!is_live && fs::is_regular_file(options.capture)) {
+  if (is_file) {
     CaptureFile whole(options.capture, options.port);
     UntilInterrupted source(whole);
     if (const double step = stepIn(source, decoder.model()); step > 0) decoder.setStep(step);
   }
-  const std::unique_ptr<PacketSource> source = open(options, report);
+  const Input input = open(options, report);
+  PacketSource* const source = input.source.get();
   std::unique_ptr<Stream> stream;
   EndlessStream* endless = nullptr;
   if (options.endless) {
@@ -271,7 +281,9 @@ int run(const Options& options) {
   std::vector<std::string> others;
   bool wants_more = true;
   Packet packet;
-  while (interrupted == 0 && wants_more) {
+  while (wants_more) {
+    if (interrupted != 0 && !is_live) break;
+    if (interrupted != 0) input.queue->stop();  // what has come already is clustered
     const PacketSource::Arrival arrival = source->next(packet);
     if (arrival == PacketSource::Arrival::kEnd) break;
     if (arrival == PacketSource::Arrival::kPacket) {

@@ -29,8 +29,14 @@ PacketQueue::PacketQueue(std::unique_ptr<PacketSource> source) : source_(std::mo
 }
 
 PacketQueue::~PacketQueue() {
+  stop();
+}
+
+void PacketQueue::stop() {
   stop_ = true;
+  if (!thread_.joinable()) return;
   thread_.join();
+  ended_ = true;
 }
 
 void PacketQueue::receive() {

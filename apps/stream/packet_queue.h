@@ -27,6 +27,9 @@ class PacketQueue : public PacketSource {
 
   Arrival next(Packet& packet) override;
 
+  /// Receives no more. next() gives what has been received, then the end.
+  void stop();
+
  private:
   static constexpr std::size_t kRoom = 8192;  ///< packets: more than any of these sensors sends in a second
   struct Slot {

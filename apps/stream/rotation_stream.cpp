@@ -3,8 +3,8 @@
 #include "rotation_stream.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "lisco/scan_survey.h"
 #include "view_of.h"
 
 namespace lisco_apps {
@@ -13,18 +13,18 @@ RotationStream::RotationStream(const StreamOptions& options, const Decoder& deco
     : options_(options), decoder_(decoder), listener_(listener) {}
 
 bool RotationStream::add(const Column& column, const Origin& origin) {
-  const auto start = Clock::now();
+  auto start = Clock::now();
   if (cutter_.startsRotation(column.azimuth, column.after_break) || turn_.columns() == kMostColumns) {
     end();
     if (options_.rotations != 0 && rotations_ == options_.rotations) return false;
+    start = Clock::now();
     begin(column);
   }
-  const auto begun = has_begun_ && turn_.columns() > 0 ? start : Clock::now();
   const auto first_index = static_cast<std::uint32_t>(turn_.cells.size());
   turn_.add(column.cells, options_.ground_z, first_index, returns_);
   turn_.time_us = origin.time_us;
   clusterer_.addColumn(returns_.data(), returns_.size());
-  last_column_took_ = Clock::now() - begun;
+  last_column_took_ = Clock::now() - start;
   column_latency_.add(last_column_took_);
   return true;
 }
@@ -33,10 +33,20 @@ void RotationStream::finish() {
   end();
 }
 
+/// What the next rotation is expected to look like, which decides the speed only.
 lisco::Parameters RotationStream::parameters() const {
   lisco::Parameters parameters;
-  parameters.tolerance = options_.tolerance;
   parameters.view = viewOf(decoder_);
+  if (turn_.columns() > 0) {
+    // The last rotation tells more: how far returns lie, and how the sensor really turns.
+    const auto cell_at = [this](std::size_t laser, std::size_t column) {
+      const Cell& cell = turn_.cells[column * turn_.lasers + laser];
+      return cell.z >= options_.ground_z ? lisco::Return{cell.x, cell.y, cell.z, 0} : lisco::kNoReturn;
+    };
+    const lisco::Parameters surveyed = lisco::surveyScan(turn_.columns(), turn_.lasers, {}, cell_at);
+    if (surveyed.view.steps_per_turn > 0) parameters.view = surveyed.view;
+  }
+  parameters.tolerance = options_.tolerance;
   parameters.lasers = decoder_.model().lasers.size();
   return parameters;
 }
