@@ -167,6 +167,13 @@ class UntilInterrupted : public PacketSource {
   PacketSource& source_;
 };
 
+/// "; is it a vlp16 or hdl32e?"
+std::string questionOf(const std::vector<std::string>& sensors) {
+  std::string names;
+  for (const std::string& sensor : sensors) names += (names.empty() ? "" : " or ") + sensor;
+  return names.empty() ? "; is it another --sensor?" : "; is it a " + names + "?";
+}
+
 /// Where the packets come from.
 struct Input {
   std::unique_ptr<PacketSource> source;
@@ -218,10 +225,9 @@ class PaceCheck {
     done_ = true;
     constexpr double kUnlike = 0.3;
     if (std::fabs(usual_us / decoder.packetPeriodUs() - 1) < kUnlike) return;
-    const std::vector<std::string> others = sensorsOfPace(usual_us);
     report.warn(formatted("packets come every %.0f us, but those of a %s every %.0f us", usual_us,
                           decoder.model().name.c_str(), decoder.packetPeriodUs()) +
-                (others.empty() ? "; is it another --sensor?" : "; is it a " + listOf(others) + "?"));
+                questionOf(sensorsOfPace(usual_us)));
   }
 
  private:
@@ -231,14 +237,13 @@ class PaceCheck {
 /// What to say if none of the packets was the sensor's.
 std::string nothingFor(const Options& options, const Decoder& decoder, const PacketSource& source,
                        const std::vector<std::string>& others) {
-  const std::string from = options.capture.empty() ? "UDP" : options.capture.string();
+  const std::string from = options.capture.empty() ? "" : options.capture.string() + ": ";
   const Decoder::Counts& counts = decoder.counts();
-  std::string text = from + ": no data packet of a " + options.sensor + " has come";
+  std::string text = from + "no data packet of a " + options.sensor + " has come";
   if (source.packets() > 0)
     text += formatted(" (%llu position packets, %llu foreign)", static_cast<unsigned long long>(counts.position),
                       static_cast<unsigned long long>(counts.foreign + source.foreign()));
-  if (!others.empty()) return text + "; is it a " + listOf(others) + "?";
-  return counts.foreign > 0 ? text + "; is it another --sensor?" : text;
+  return counts.foreign > 0 ? text + questionOf(others) : text;
 }
 
 /// When a packet was at hand: live ones may have waited in the queue.
@@ -292,9 +297,9 @@ int run(const Options& options) {
           decoder.decode(packet, [&](const Column& column) { wants_more = wants_more && stream->add(column, origin); });
       if (kind == Decoder::Kind::kForeign && others.empty() && decoder.counts().data == 0)
         others = sensorsOf(packet, options.sensor);
-      stream->packetEnds();
       pace.look(decoder, report);
     }
+    if (arrival == PacketSource::Arrival::kNothing) stream->wait();
     report.flush();
     report.showStatus(decoder, *stream);
   }

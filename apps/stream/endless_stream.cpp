@@ -20,7 +20,7 @@ EndlessStream::EndlessStream(const StreamOptions& options, const Decoder& decode
   parameters.clockwise = true;  // as azimuths are counted; 0 is ahead, where x is
   parameters.stagger = std::min(staggerOf(decoder.model()), lisco::EndlessParameters::kMostStagger);
   parameters.lasers = decoder.model().lasers.size();
-  parameters.block_columns = lisco::Row::kColumns;  // a packet has fewer, and is read as a whole
+  parameters.block_columns = kBlock;
   clusterer_.begin(parameters, [this](const lisco::EndlessCluster& cluster) { deliver(cluster); });
 }
 
@@ -41,34 +41,22 @@ bool EndlessStream::add(const Column& column, const Origin& origin) {
   open.turn.time_us = origin.time_us;
   next_index_ += static_cast<std::uint32_t>(column.cells.size());
   clusterer_.addColumn(returns_.data(), returns_.size(), open.last_position);
-  countColumn();
-  column_took_ = Clock::now() - start;
+  column_latency_.add(Clock::now() - start);
+  if (marks_.size() >= 2 * kBlock) marks_.erase(marks_.begin(), marks_.end() - kBlock);
+  closeTurns(open.last_position);
   return true;
 }
 
-void EndlessStream::packetEnds() {
-  if (!has_begun_) return;
-  const auto start = Clock::now();
+void EndlessStream::wait() {
   clusterer_.update();
-  marks_.clear();
-  if (column_took_) *column_took_ += Clock::now() - start;
-  countColumn();
-  closeTurns(turns_.back().last_position);
 }
 
 void EndlessStream::finish() {
-  countColumn();
   is_finishing_ = true;
   clusterer_.finish();
   is_finishing_ = false;
   endTurn();
   closeTurns(std::numeric_limits<double>::infinity());
-}
-
-/// The last column is the one that its packet's clusters are delivered with.
-void EndlessStream::countColumn() {
-  if (column_took_) column_latency_.add(*column_took_);
-  column_took_.reset();
 }
 
 void EndlessStream::begin(const Column& column) {

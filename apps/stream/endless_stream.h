@@ -26,13 +26,17 @@ class EndlessStream : public Stream {
   EndlessStream(const StreamOptions& options, const Decoder& decoder, Listener& listener);
 
   bool add(const Column& column, const Origin& origin) override;
-  void packetEnds() override;
+  void wait() override;
   void finish() override;
 
   /// Returns that were seen under another azimuth than their column's; each is a cluster of its own.
   std::uint64_t strays() const { return clusterer_.strayCount(); }
 
  private:
+  /// Columns that are read together: a millisecond or less of any of these sensors. One by one, they take three times
+  /// the time.
+  static constexpr std::size_t kBlock = 16;
+
   /// A turn that has clusters which may be open.
   struct OpenTurn {
     Turn turn;
@@ -45,7 +49,6 @@ class EndlessStream : public Stream {
     Clock::time_point received;
   };
 
-  void countColumn();
   void begin(const Column& column);
   void endTurn();
   void closeTurns(double position);
@@ -67,8 +70,7 @@ class EndlessStream : public Stream {
   std::optional<double> last_time_us_;
   std::int64_t time_us_ = 0;
   std::uint32_t delivered_ = 0;
-  std::vector<Mark> marks_;                     ///< of the packet's columns
-  std::optional<Clock::duration> column_took_;  ///< the latest column
+  std::vector<Mark> marks_;  ///< of the latest columns
   std::vector<lisco::Return> returns_;
 };
 

@@ -21,7 +21,7 @@ class RotationStream : public Stream {
   RotationStream(const StreamOptions& options, const Decoder& decoder, Listener& listener);
 
   bool add(const Column& column, const Origin& origin) override;
-  void packetEnds() override {}
+  void wait() override {}
   void finish() override;
 
  private:

@@ -38,8 +38,8 @@ class Stream {
   /// Takes the next column.
   /// \return false if the rotations that were wanted have come: this column is of the next one, and was left out
   virtual bool add(const Column& column, const Origin& origin) = 0;
-  /// No more columns are at hand for now.
-  virtual void packetEnds() = 0;
+  /// No more columns come for a while.
+  virtual void wait() = 0;
   /// The stream has ended.
   virtual void finish() = 0;
 
