@@ -4,10 +4,12 @@
 // Clusters a sensor's packets while it turns: from a capture, or as they come.
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -286,15 +288,18 @@ int run(const Options& options) {
   std::vector<std::string> others;
   bool wants_more = true;
   Packet packet;
+  Origin origin;
+  const std::function<void(const Column&)> take = [&](const Column& column) {
+    wants_more = wants_more && stream->add(column, origin);
+  };
   while (wants_more) {
     if (interrupted != 0 && !is_live) break;
     if (interrupted != 0) input.queue->stop();  // what has come already is clustered
     const PacketSource::Arrival arrival = source->next(packet);
     if (arrival == PacketSource::Arrival::kEnd) break;
     if (arrival == PacketSource::Arrival::kPacket) {
-      const Origin origin{packet.time_us, receivedAt(packet, is_live)};
-      const Decoder::Kind kind =
-          decoder.decode(packet, [&](const Column& column) { wants_more = wants_more && stream->add(column, origin); });
+      origin = {packet.time_us, receivedAt(packet, is_live)};
+      const Decoder::Kind kind = decoder.decode(packet, take);
       if (kind == Decoder::Kind::kForeign && others.empty() && decoder.counts().data == 0)
         others = sensorsOf(packet, options.sensor);
       pace.look(decoder, report);
@@ -309,7 +314,9 @@ int run(const Options& options) {
     report.printStatistics(*source, decoder, *stream,
                            endless != nullptr ? std::optional(endless->strays()) : std::nullopt);
   if (!source->error().empty()) report.warn(source->error());
-  if (decoder.counts().data == 0) throw std::runtime_error(nothingFor(options, decoder, *source, others));
+  const bool was_cut_short = !is_live && interrupted != 0;
+  if (decoder.counts().data == 0 && !was_cut_short)
+    throw std::runtime_error(nothingFor(options, decoder, *source, others));
   return source->error().empty() ? 0 : 2;
 }
 
