@@ -26,11 +26,11 @@
 #include "sensors/udp_receiver.h"
 #include "stream/endless_stream.h"
 #include "stream/labelled_pcd.h"
+#include "stream/other_sensors.h"
 #include "stream/paced_capture.h"
 #include "stream/packet_queue.h"
 #include "stream/report.h"
 #include "stream/rotation_stream.h"
-#include "text.h"
 
 namespace {
 
@@ -169,13 +169,6 @@ class UntilInterrupted : public PacketSource {
   PacketSource& source_;
 };
 
-/// "; is it a vlp16 or hdl32e?"
-std::string questionOf(const std::vector<std::string>& sensors) {
-  std::string names;
-  for (const std::string& sensor : sensors) names += (names.empty() ? "" : " or ") + sensor;
-  return names.empty() ? "; is it another --sensor?" : "; is it a " + names + "?";
-}
-
 /// Where the packets come from.
 struct Input {
   std::unique_ptr<PacketSource> source;
@@ -195,59 +188,6 @@ Input open(const Options& options, Report& report) {
   return {std::move(capture)};
 }
 
-/// The other sensors that this packet may come from, as far as that can be told without a calibration.
-std::vector<std::string> sensorsOf(const Packet& packet, const std::string& but) {
-  std::vector<std::string> sensors;
-  for (const std::string& name : sensorModelNames()) {
-    if (name == but || name == "hdl64e") continue;
-    Decoder decoder(makeSensorModel(name));
-    if (decoder.decode(packet, [](const Column&) {}) == Decoder::Kind::kData) sensors.push_back(name);
-  }
-  return sensors;
-}
-
-/// The sensors whose packets come at this pace.
-std::vector<std::string> sensorsOfPace(double period_us) {
-  std::vector<std::string> sensors;
-  for (const std::string& name : sensorModelNames()) {
-    constexpr double kAlike = 0.1;
-    if (name == "hdl64e") continue;
-    const double own = Decoder(makeSensorModel(name)).packetPeriodUs();
-    if (std::fabs(period_us / own - 1) < kAlike) sensors.push_back(name);
-  }
-  return sensors;
-}
-
-/// Warns once if the packets come at another pace than this sensor sends them.
-class PaceCheck {
- public:
-  void look(const Decoder& decoder, Report& report) {
-    const double usual_us = decoder.order().usualGap();
-    if (done_ || usual_us <= 0) return;
-    done_ = true;
-    constexpr double kUnlike = 0.3;
-    if (std::fabs(usual_us / decoder.packetPeriodUs() - 1) < kUnlike) return;
-    report.warn(formatted("packets come every %.0f us, but those of a %s every %.0f us", usual_us,
-                          decoder.model().name.c_str(), decoder.packetPeriodUs()) +
-                questionOf(sensorsOfPace(usual_us)));
-  }
-
- private:
-  bool done_ = false;
-};
-
-/// What to say if none of the packets was the sensor's.
-std::string nothingFor(const Options& options, const Decoder& decoder, const PacketSource& source,
-                       const std::vector<std::string>& others) {
-  const std::string from = options.capture.empty() ? "" : options.capture.string() + ": ";
-  const Decoder::Counts& counts = decoder.counts();
-  std::string text = from + "no data packet of a " + options.sensor + " has come";
-  if (source.packets() > 0)
-    text += formatted(" (%llu position packets, %llu foreign)", static_cast<unsigned long long>(counts.position),
-                      static_cast<unsigned long long>(counts.foreign + source.foreign()));
-  return counts.foreign > 0 ? text + questionOf(others) : text;
-}
-
 /// When a packet was at hand: live ones may have waited in the queue.
 Clock::time_point receivedAt(const Packet& packet, bool is_live) {
   const auto now = Clock::now();
@@ -257,67 +197,73 @@ Clock::time_point receivedAt(const Packet& packet, bool is_live) {
   return now - std::max(Clock::duration::zero(), std::chrono::duration_cast<Clock::duration>(since_1970 - came));
 }
 
-int run(const Options& options) {
-  Decoder decoder(makeSensorModel(options.sensor, options.calibration));
-  listenToSignals();
-  const bool is_live = options.capture.empty();
-  const bool is_file = !is_live && fs::is_regular_file(options.capture);  // it may be a pipe
-  if (is_file) CaptureFile(options.capture, options.port);                // errors before the work
-  std::optional<LabelledClouds> clouds;
-  if (!options.output.empty()) clouds.emplace(options.output);
-  Report report(options.json ? Report::Format::kJson : Report::Format::kText, clouds ? &*clouds : nullptr);
+/// Sets how far the sensor turns from column to column, as the whole capture has it: more exact than what can be known
+/// while it is read. A pipe can be read only once.
+void lookAhead(const Options& options, Decoder& decoder) {
+  std::error_code unknown;
+  const fs::file_type type = fs::status(options.capture, unknown).type();
+  if (options.capture.empty() || type == fs::file_type::fifo || type == fs::file_type::character) return;
+  CaptureFile capture(options.capture, options.port);
+  UntilInterrupted source(capture);
+  if (const double step = stepIn(source, decoder.model()); step > 0) decoder.setStep(step);
+}
 
-  if (is_file) {
-    CaptureFile whole(options.capture, options.port);
-    UntilInterrupted source(whole);
-    if (const double step = stepIn(source, decoder.model()); step > 0) decoder.setStep(step);
-  }
-  const Input input = open(options, report);
-  PacketSource* const source = input.source.get();
-  std::unique_ptr<Stream> stream;
-  EndlessStream* endless = nullptr;
-  if (options.endless) {
-    auto made = std::make_unique<EndlessStream>(options.stream, decoder, report);
-    endless = made.get();
-    stream = std::move(made);
-  } else {
-    stream = std::make_unique<RotationStream>(options.stream, decoder, report);
-  }
-
-  PaceCheck pace;
-  std::vector<std::string> others;
+/// Takes all packets that are wanted.
+void takePackets(const Input& input, Decoder& decoder, OtherSensors& others, Stream& stream, Report& report) {
   bool wants_more = true;
   Packet packet;
   Origin origin;
   const std::function<void(const Column&)> take = [&](const Column& column) {
-    wants_more = wants_more && stream->add(column, origin);
+    wants_more = wants_more && stream.add(column, origin);
   };
   while (wants_more) {
-    if (interrupted != 0 && !is_live) break;
+    if (interrupted != 0 && input.queue == nullptr) return;
     if (interrupted != 0) input.queue->stop();  // what has come already is clustered
-    const PacketSource::Arrival arrival = source->next(packet);
-    if (arrival == PacketSource::Arrival::kEnd) break;
-    if (arrival == PacketSource::Arrival::kPacket) {
-      origin = {packet.time_us, receivedAt(packet, is_live)};
-      const Decoder::Kind kind = decoder.decode(packet, take);
-      if (kind == Decoder::Kind::kForeign && others.empty() && decoder.counts().data == 0)
-        others = sensorsOf(packet, options.sensor);
-      pace.look(decoder, report);
+    const PacketSource::Arrival arrival = input.source->next(packet);
+    if (arrival == PacketSource::Arrival::kEnd) return;
+    if (arrival == PacketSource::Arrival::kNothing) {
+      stream.wait();
+    } else {
+      origin = {packet.time_us, receivedAt(packet, input.queue != nullptr)};
+      others.look(packet, decoder.decode(packet, take), decoder);
+      if (const std::string warning = others.paceWarning(decoder); !warning.empty()) report.warn(warning);
     }
-    if (arrival == PacketSource::Arrival::kNothing) stream->wait();
     report.flush();
-    report.showStatus(decoder, *stream);
+    report.showStatus(decoder, stream);
   }
-  stream->finish();
+}
+
+int run(const Options& options) {
+  Decoder decoder(makeSensorModel(options.sensor, options.calibration));
+  listenToSignals();
+  lookAhead(options, decoder);
+  std::optional<LabelledClouds> clouds;
+  if (!options.output.empty()) clouds.emplace(options.output);
+  Report report(options.json ? Report::Format::kJson : Report::Format::kText, clouds ? &*clouds : nullptr);
+  const Input input = open(options, report);
+
+  std::unique_ptr<RotationStream> rotations;
+  std::unique_ptr<EndlessStream> endless;
+  if (options.endless)
+    endless = std::make_unique<EndlessStream>(options.stream, decoder, report);
+  else
+    rotations = std::make_unique<RotationStream>(options.stream, decoder, report);
+  Stream& stream = endless ? static_cast<Stream&>(*endless) : *rotations;
+
+  OtherSensors others;
+  takePackets(input, decoder, others, stream, report);
+  stream.finish();
   report.flush();
   if (options.statistics)
-    report.printStatistics(*source, decoder, *stream,
-                           endless != nullptr ? std::optional(endless->strays()) : std::nullopt);
-  if (!source->error().empty()) report.warn(source->error());
-  const bool was_cut_short = !is_live && interrupted != 0;
+    report.printStatistics(*input.source, decoder, stream, endless ? std::optional(endless->strays()) : std::nullopt);
+
+  const std::string& error = input.source->error();
+  if (!error.empty()) report.warn(error);
+  const bool was_cut_short = interrupted != 0 && input.queue == nullptr;
   if (decoder.counts().data == 0 && !was_cut_short)
-    throw std::runtime_error(nothingFor(options, decoder, *source, others));
-  return source->error().empty() ? 0 : 2;
+    throw std::runtime_error((options.capture.empty() ? "" : options.capture.string() + ": ") +
+                             others.nothingCame(*input.source, decoder));
+  return error.empty() ? 0 : 2;
 }
 
 }  // namespace

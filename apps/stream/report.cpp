@@ -55,7 +55,7 @@ void addShape(Json& json, const FoundCluster& cluster) {
 }  // namespace
 
 void Report::print(const std::string& line) {
-  status_.clear();
+  if (shares_terminal_) status_.clear();
   std::fputs(line.c_str(), stdout);
   std::fputc('\n', stdout);
   unflushed_ = true;
@@ -65,6 +65,7 @@ void Report::flush() {
   if (!unflushed_) return;
   unflushed_ = false;
   if (std::fflush(stdout) != 0) throw std::runtime_error("the standard output cannot be written");
+  if (shares_terminal_ && !shown_.empty()) status_.show(shown_);
 }
 
 void Report::count(const FoundCluster& cluster) {
@@ -146,19 +147,18 @@ void Report::showStatus(const Decoder& decoder, const Stream& stream) {
   const auto now = Clock::now();
   if (!status_.isShown() || now - shown_at_ < kBetween) return;
   shown_at_ = now;
+  const auto number = [](std::uint64_t count) { return static_cast<Count>(count); };
   const Decoder::Counts& counts = decoder.counts();
-  if (counts.data == 0) {
-    status_.show(formatted("no data yet; %llu position packets, %llu foreign", static_cast<Count>(counts.position),
-                           static_cast<Count>(counts.foreign)));
-    return;
-  }
   const Latency& latency = stream.clusterLatency();
-  status_.show(
-      formatted("%llu rotations, %llu columns, %llu packets lost, %llu late; %llu clusters after %.2f ms (p50), "
-                "%.2f ms (p99)",
-                static_cast<Count>(turns_), static_cast<Count>(counts.columns),
-                static_cast<Count>(decoder.order().missing()), static_cast<Count>(decoder.order().late()),
-                static_cast<Count>(clusters_), latency.percentileMs(0.5), latency.percentileMs(0.99)));
+  if (counts.data == 0)
+    shown_ =
+        formatted("no data yet; %llu position packets, %llu foreign", number(counts.position), number(counts.foreign));
+  else
+    shown_ =
+        formatted("%llu rotations, %llu columns, packets: %llu lost, %llu late; %llu clusters, ms: p50 %.2f, p99 %.2f",
+                  number(turns_), number(counts.columns), number(decoder.order().missing()), number(counts.late),
+                  number(clusters_), latency.percentileMs(0.5), latency.percentileMs(0.99));
+  status_.show(shown_);
 }
 
 void Report::warn(const std::string& text) {
@@ -169,6 +169,7 @@ void Report::warn(const std::string& text) {
 void Report::printStatistics(const PacketSource& source, const Decoder& decoder, const Stream& stream,
                              std::optional<std::uint64_t> strays) {
   flush();
+  shown_.clear();
   status_.clear();
   const auto rowOf = [](const char* name, const Latency& latency) {
     return formatted("  %-9s p50 %.4f, p99 %.4f, max %.4f (%llu times)\n", name, latency.percentileMs(0.5),

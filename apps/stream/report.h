@@ -2,9 +2,13 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include <unistd.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "labelled_pcd.h"
 #include "listener.h"
@@ -50,6 +54,8 @@ class Report : public Listener {
   Format format_;
   const LabelledClouds* clouds_;
   TerminalLine status_;
+  const bool shares_terminal_ = isatty(STDOUT_FILENO) != 0;  ///< stdout and the status line
+  std::string shown_;                                        ///< there
   Clock::time_point shown_at_;
   bool unflushed_ = false;
   std::uint64_t turns_ = 0, columns_ = 0, returns_ = 0, clusters_ = 0, in_clusters_ = 0, cut_ = 0, continued_ = 0;
