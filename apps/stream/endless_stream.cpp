@@ -110,7 +110,8 @@ std::optional<Clock::time_point> EndlessStream::closedAt(double reach_end) const
 
 void EndlessStream::deliver(const lisco::EndlessCluster& cluster) {
   DeliveredCluster delivered;
-  delivered.found.id = ++delivered_;
+  if (++delivered_ == 0) delivered_ = 1;  // after weeks; 0 is no cluster
+  delivered.found.id = delivered_;
   cluster.forEachRun([&](const std::uint32_t* indices, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
       // The turn whose indices reach furthest without reaching beyond; they may have started again at 0.

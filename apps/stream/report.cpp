@@ -21,7 +21,7 @@ using Count = unsigned long long;
 
 /// Without digits that mean nothing.
 double rounded(double value, double per_unit) {
-  return std::round(value * per_unit) / per_unit;
+  return std::round(value * per_unit) / per_unit + 0.;  // no negative zero
 }
 constexpr double kPerMetre = 1e4, kPerDegree = 1e3, kPerTurn = 1e5, kPerMillisecond = 1e4;
 
@@ -36,13 +36,12 @@ double secondsOf(std::int64_t time_us) {
   return static_cast<double>(time_us) / 1e6;
 }
 
-/// Degrees clockwise, 0..360.
-double azimuthOf(double x, double y) {
-  const double azimuth = std::atan2(-y, x) * 180 / 3.14159265358979323846;
-  return azimuth < 0 ? azimuth + 360 : azimuth;
-}
+/// Degrees clockwise, 0 <= azimuth < 360.
 double azimuthAt(double position) {
-  return rounded(360 * (position - std::floor(position)), kPerDegree);
+  return std::fmod(rounded(360 * (position - std::floor(position)), kPerDegree), 360.);
+}
+double azimuthOf(double x, double y) {
+  return azimuthAt(std::atan2(-y, x) / (2 * 3.14159265358979323846));
 }
 
 void addShape(Json& json, const FoundCluster& cluster) {
@@ -93,7 +92,7 @@ void Report::rotation(const Turn& turn, const std::vector<FoundCluster>& cluster
   } else {
     Json json{{"rotation", turn.number},
               {"time", secondsOf(turn.time_us)},
-              {"azimuth", rounded(turn.azimuth, kPerDegree)},
+              {"azimuth", azimuthAt(turn.azimuth / 360)},
               {"columns", turn.columns()},
               {"returns", turn.returns},
               {"lost_packets", turn.lost},
@@ -101,7 +100,7 @@ void Report::rotation(const Turn& turn, const std::vector<FoundCluster>& cluster
               {"clusters", Json::array()}};
     for (const FoundCluster& cluster : clusters) {
       const auto centroid = cluster.centroid();
-      Json of_cluster{{"id", cluster.id}, {"azimuth", rounded(azimuthOf(centroid[0], centroid[1]), kPerDegree)}};
+      Json of_cluster{{"id", cluster.id}, {"azimuth", azimuthOf(centroid[0], centroid[1])}};
       addShape(of_cluster, cluster);
       json["clusters"].push_back(std::move(of_cluster));
     }

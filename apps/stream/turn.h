@@ -20,7 +20,7 @@ struct Turn {
   double azimuth = 0;                 ///< of its first column, degrees clockwise
   std::int64_t time_us = 0;           ///< when the packet of its last column came, microseconds since 1970
   std::uint64_t returns = 0;          ///< above the ground
-  std::uint64_t lost = 0;             ///< packets that are missing in it, or before it
+  std::uint64_t lost = 0;             ///< packets that are missing in it, or between it and the next one
 
   std::size_t columns() const { return lasers == 0 ? 0 : cells.size() / lasers; }
 
