@@ -65,7 +65,7 @@ Pcd pcdOf(const std::string& content) {
   const std::size_t bytes = pcd.values.size() * sizeof(std::uint32_t);
   const auto start = static_cast<std::size_t>(std::max<std::streamoff>(0, header.tellg()));
   EXPECT_EQ(content.size(), start + bytes);
-  if (content.size() == start + bytes) std::memcpy(pcd.values.data(), content.data() + start, bytes);
+  if (bytes > 0 && content.size() == start + bytes) std::memcpy(pcd.values.data(), content.data() + start, bytes);
   return pcd;
 }
 
