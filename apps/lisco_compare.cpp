@@ -19,10 +19,10 @@
 #include "compare/charts.h"
 #include "compare/comparison.h"
 #include "compare/report.h"
-#include "compare/text.h"
 #include "options.h"
 #include "output_file.h"
 #include "progress_bar.h"
+#include "text.h"
 
 namespace {
 

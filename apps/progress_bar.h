@@ -2,13 +2,11 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstddef>
-#include <cstdio>
 #include <string>
+
+#include "terminal_line.h"
 
 namespace lisco_apps {
 
@@ -16,32 +14,21 @@ namespace lisco_apps {
 class ProgressBar {
  public:
   /// \param worthwhile false: silent on a terminal too
-  explicit ProgressBar(bool worthwhile = true) : shown_(worthwhile && isatty(STDERR_FILENO) != 0) {}
-  ~ProgressBar() { clear(); }
-  ProgressBar(const ProgressBar&) = delete;
-  ProgressBar& operator=(const ProgressBar&) = delete;
+  explicit ProgressBar(bool worthwhile = true) : line_(worthwhile) {}
 
   /// Shows which share of the work is done, 0 to 1, and what is being worked on; cut to the terminal's width.
   void show(double share, const std::string& what) {
-    if (!shown_) return;
     constexpr std::size_t kWidth = 20;
     const auto filled = static_cast<std::size_t>(kWidth * std::clamp(share, 0.0, 1.0));
-    std::string line = "[" + std::string(filled, '=') + std::string(kWidth - filled, ' ') + "] " +
-                       std::to_string(static_cast<int>(100 * share)) + "% " + what;
-    winsize size{};
-    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
-      line.resize(std::min<std::size_t>(line.size(), size.ws_col - 1U));  // a longer one could not be cleared
-    std::fprintf(stderr, "\r\033[K%s", line.c_str());
-    std::fflush(stderr);
+    line_.show("[" + std::string(filled, '=') + std::string(kWidth - filled, ' ') + "] " +
+               std::to_string(static_cast<int>(100 * share)) + "% " + what);
   }
 
   /// Empties the line, before something else is printed.
-  void clear() {
-    if (shown_) std::fputs("\r\033[K", stderr);
-  }
+  void clear() { line_.clear(); }
 
  private:
-  bool shown_;
+  TerminalLine line_;
 };
 
 }  // namespace lisco_apps

@@ -11,8 +11,8 @@
 
 #include <pcl/search/kdtree.h>
 
-#include "compare/text.h"
 #include "lisco/tolerance.h"
+#include "text.h"
 
 namespace lisco_apps {
 namespace {

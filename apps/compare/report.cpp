@@ -14,8 +14,8 @@
 #include <pcl/pcl_config.h>
 
 #include "compare/charts.h"
-#include "compare/text.h"
 #include "lisco/version.h"
+#include "text.h"
 
 namespace lisco_apps {
 namespace {

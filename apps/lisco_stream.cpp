@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+//
+// Clusters a sensor's packets while it turns: from a capture, or as they come.
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <boost/program_options.hpp>
+
+#include "options.h"
+#include "sensors/capture_file.h"
+#include "sensors/decoder.h"
+#include "sensors/udp_receiver.h"
+#include "stream/endless_stream.h"
+#include "stream/labelled_pcd.h"
+#include "stream/other_sensors.h"
+#include "stream/paced_capture.h"
+#include "stream/packet_queue.h"
+#include "stream/report.h"
+#include "stream/rotation_stream.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+namespace po = boost::program_options;
+using namespace lisco_apps;
+
+constexpr std::uint16_t kUsualPort = 2368;
+
+struct Options {
+  fs::path capture;                   ///< empty: live
+  std::optional<std::uint16_t> port;  ///< of a capture: only packets to it
+  std::string sensor;
+  fs::path calibration;
+  bool endless = false;
+  StreamOptions stream;
+  bool realtime = false;
+  fs::path output;
+  bool json = false;
+  bool statistics = false;
+};
+
+/// Set by Ctrl-C; a second one ends the program at once.
+volatile sig_atomic_t interrupted = 0;
+
+void listenToSignals() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { interrupted = 1; };
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+std::uint16_t portOf(const std::string& text) {
+  const unsigned port = countOf(text, "--port", 0);
+  if (port > std::numeric_limits<std::uint16_t>::max())
+    throw std::runtime_error("--port must be a number from 0 to 65535, not '" + text + "'");
+  return static_cast<std::uint16_t>(port);
+}
+
+/// \return false if there is nothing to do but to print help or version, which has been done
+bool parse(int argc, char** argv, Options& options) {
+  po::options_description shown(
+      "Usage: lisco_stream CAPTURE.pcap --sensor NAME --tolerance M [options]\n"
+      "       lisco_stream --port N --sensor NAME --tolerance M [options]\n\n"
+      "Finds the Euclidean clusters in a rotating LiDAR's packets while the sensor turns: packets of a capture\n"
+      "(pcap or pcapng), or as they come by UDP. There are two modes:\n"
+      "  rotation  The clusters of each rotation, as soon as its last column is in: those of PCL's\n"
+      "            EuclideanClusterExtraction on the rotation as an organized cloud, in the same order.\n"
+      "            Rotations begin at the azimuth of the first column.\n"
+      "  endless   Rotations have no borders: each cluster is delivered once, as soon as no later column can\n"
+      "            reach it. One that lasts a whole turn is cut there, and others continue it.\n"
+      "Ctrl-C ends it, after all that has come was clustered and told; a second one ends it at once.\n\n"
+      "With --json, each line of the output is an object. Metres; azimuths in degrees clockwise, 0 ahead;\n"
+      "time is when the last packet came, in seconds since 1970.\n"
+      "  rotation  one line per rotation: rotation (from 1), time, azimuth (where it begins), columns, returns\n"
+      "            (above the ground), lost_packets, latency_ms (from its last column to its clusters), and\n"
+      "            clusters, largest first, each with id (from 1), azimuth (of its centroid), size, centroid,\n"
+      "            box (min and max) and nearest_range.\n"
+      "  endless   one line per cluster: id (from 1, in the order of delivery), time, first_azimuth,\n"
+      "            last_azimuth and turns (of its columns, and from the first to the last), size, centroid,\n"
+      "            box, nearest_range, cut, continued, and latency_ms (from the first column that cannot reach\n"
+      "            it to its delivery; null if the end of the packets delivered it).\n\n"
+      "Exit code 0; 2 on wrong usage, if no packet is one of the sensor's, or if the capture breaks off (after\n"
+      "what came before has been clustered).\n\n"
+      "Options");
+  const std::string sensors = listOf(sensorModelNames());
+  std::vector<std::string> inputs;
+  std::string port, mode, calibration, output, rotations;
+  std::string min_size = "10", max_size;
+  double tolerance = 0;
+  float& ground_z = options.stream.ground_z;
+  // clang-format off
+  shown.add_options()
+    ("sensor", po::value<std::string>(&options.sensor)->value_name("NAME"), sensors.c_str())
+    ("tolerance,t", po::value<double>(&tolerance)->value_name("M"),
+     "points nearer to each other than this many metres belong together")
+    ("port", po::value<std::string>(&port)->value_name("N")->implicit_value(std::to_string(kUsualPort)),
+     "UDP port to receive from (without a number: 2368; 0: any that is free); of a capture, take only packets to it")
+    ("mode", po::value<std::string>(&mode)->value_name("NAME"), "rotation or endless (default rotation)")
+    ("min-size", po::value<std::string>(&min_size)->value_name("N"), "least returns of a cluster (default 10)")
+    ("max-size", po::value<std::string>(&max_size)->value_name("N"), "most returns of a cluster (default: no limit)")
+    ("ground-z", po::value<float>(&ground_z)->value_name("M"),
+     "leave out returns below this height in metres, the sensor is at 0 (default: none)")
+    ("calibration", po::value<std::string>(&calibration)->value_name("FILE"),
+     "the hdl64e's own calibration (its maker's db.xml), which it needs")
+    ("rotations", po::value<std::string>(&rotations)->value_name("N"), "end after N rotations")
+    ("realtime", po::bool_switch(&options.realtime),
+     "a capture's packets as they were recorded, but for breaks of more than ten seconds (default: as fast as "
+     "possible)")
+    ("output,o", po::value<std::string>(&output)->value_name("DIR"),
+     "folder for rotation_000001.pcd and so on: each rotation as an organized cloud of x y z intensity label, where the "
+     "label is the cluster's id, 0 for none; of mode endless, once all its returns' clusters have been delivered. Those "
+     "of an earlier run are removed")
+    ("json", po::bool_switch(&options.json), "print JSON lines instead of text")
+    ("stats", po::bool_switch(&options.statistics),
+     "print a table of packets, columns, clusters and latencies at the end (with --json, on stderr)");
+  // clang-format on
+  po::variables_map given;
+  if (!readCommandLine(argc, argv, "lisco_stream", shown, &inputs, given)) return false;
+  if (inputs.size() > 1) throw std::runtime_error("more than one capture; see --help");
+  if (inputs.empty() && given.count("port") == 0) throw std::runtime_error("no capture and no --port; see --help");
+  if (!inputs.empty()) options.capture = inputs.front();
+  if (!inputs.empty() && inputs.front().empty()) throw std::runtime_error("the capture's name is empty");
+  if (given.count("port") != 0) options.port = portOf(port);
+  if (options.realtime && options.capture.empty()) throw std::runtime_error("--realtime is for captures only");
+  if (options.sensor.empty()) throw std::runtime_error("--sensor is missing (" + sensors + "); see --help");
+  options.calibration = calibration;
+
+  if (given.count("tolerance") == 0) throw std::runtime_error("--tolerance is missing; see --help");
+  if (!(tolerance > 0) || !std::isfinite(tolerance))
+    throw std::runtime_error("--tolerance must be a positive number of metres");
+  options.stream.tolerance = static_cast<float>(tolerance);
+  if (given.count("ground-z") != 0 && !std::isfinite(ground_z))
+    throw std::runtime_error("--ground-z must be a number of metres");
+  options.stream.min_size = countOf(min_size, "--min-size", 1);
+  if (given.count("max-size") != 0) options.stream.max_size = countOf(max_size, "--max-size", 1);
+  if (options.stream.max_size < options.stream.min_size)
+    throw std::runtime_error("--max-size is smaller than --min-size");
+  if (given.count("rotations") != 0) options.stream.rotations = countOf(rotations, "--rotations", 1);
+  if (!mode.empty() && mode != "rotation" && mode != "endless")
+    throw std::runtime_error("--mode must be rotation or endless, not '" + mode + "'");
+  options.endless = mode == "endless";
+  if (given.count("output") != 0 && output.empty()) throw std::runtime_error("--output is empty");
+  options.output = output;
+  return true;
+}
+
+/// A source that ends when the program is to end.
+class UntilInterrupted : public PacketSource {
+ public:
+  explicit UntilInterrupted(PacketSource& source) : source_(source) {}
+  Arrival next(Packet& packet) override { return interrupted != 0 ? Arrival::kEnd : source_.next(packet); }
+
+ private:
+  PacketSource& source_;
+};
+
+/// Where the packets come from.
+struct Input {
+  std::unique_ptr<PacketSource> source;
+  PacketQueue* queue = nullptr;  ///< the source, if it is live
+};
+
+Input open(const Options& options, Report& report) {
+  if (options.capture.empty()) {
+    auto receiver = std::make_unique<UdpReceiver>(*options.port);
+    report.warn("listening on UDP port " + std::to_string(receiver->port()));
+    auto queue = std::make_unique<PacketQueue>(std::move(receiver));
+    PacketQueue* const live = queue.get();
+    return {std::move(queue), live};
+  }
+  auto capture = std::make_unique<CaptureFile>(options.capture, options.port);
+  if (options.realtime) return {std::make_unique<PacedCapture>(std::move(capture))};
+  return {std::move(capture)};
+}
+
+/// When a packet was at hand: live ones may have waited in the queue.
+Clock::time_point receivedAt(const Packet& packet, bool is_live) {
+  const auto now = Clock::now();
+  if (!is_live) return now;
+  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
+  const std::chrono::microseconds came(packet.time_us);
+  return now - std::max(Clock::duration::zero(), std::chrono::duration_cast<Clock::duration>(since_1970 - came));
+}
+
+/// Sets how far the sensor turns from column to column, as the whole capture has it: more exact than what can be known
+/// while it is read. A pipe can be read only once.
+void lookAhead(const Options& options, Decoder& decoder) {
+  std::error_code unknown;
+  const fs::file_type type = fs::status(options.capture, unknown).type();
+  if (options.capture.empty() || type == fs::file_type::fifo || type == fs::file_type::character) return;
+  CaptureFile capture(options.capture, options.port);
+  UntilInterrupted source(capture);
+  if (const double step = stepIn(source, decoder.model()); step > 0) decoder.setStep(step);
+}
+
+/// Takes all packets that are wanted.
+void takePackets(const Input& input, Decoder& decoder, OtherSensors& others, Stream& stream, Report& report) {
+  bool wants_more = true;
+  Packet packet;
+  Origin origin;
+  const std::function<void(const Column&)> take = [&](const Column& column) {
+    wants_more = wants_more && stream.add(column, origin);
+  };
+  while (wants_more) {
+    if (interrupted != 0 && input.queue == nullptr) return;
+    if (interrupted != 0) input.queue->stop();  // what has come already is clustered
+    const PacketSource::Arrival arrival = input.source->next(packet);
+    if (arrival == PacketSource::Arrival::kEnd) return;
+    if (arrival == PacketSource::Arrival::kNothing) {
+      stream.wait();
+    } else {
+      origin = {packet.time_us, receivedAt(packet, input.queue != nullptr)};
+      others.look(packet, decoder.decode(packet, take), decoder);
+      if (const std::string warning = others.paceWarning(decoder); !warning.empty()) report.warn(warning);
+    }
+    report.flush();
+    report.showStatus(decoder, stream);
+  }
+}
+
+int run(const Options& options) {
+  Decoder decoder(makeSensorModel(options.sensor, options.calibration));
+  listenToSignals();
+  lookAhead(options, decoder);
+  std::optional<LabelledClouds> clouds;
+  if (!options.output.empty()) clouds.emplace(options.output);
+  Report report(options.json ? Report::Format::kJson : Report::Format::kText, clouds ? &*clouds : nullptr);
+  const Input input = open(options, report);
+
+  std::unique_ptr<RotationStream> rotations;
+  std::unique_ptr<EndlessStream> endless;
+  if (options.endless)
+    endless = std::make_unique<EndlessStream>(options.stream, decoder, report);
+  else
+    rotations = std::make_unique<RotationStream>(options.stream, decoder, report);
+  Stream& stream = endless ? static_cast<Stream&>(*endless) : *rotations;
+
+  OtherSensors others;
+  takePackets(input, decoder, others, stream, report);
+  stream.finish();
+  report.flush();
+  if (options.statistics)
+    report.printStatistics(*input.source, decoder, stream, endless ? std::optional(endless->strays()) : std::nullopt);
+
+  const std::string& error = input.source->error();
+  if (!error.empty()) report.warn(error);
+  const bool was_cut_short = interrupted != 0 && input.queue == nullptr;
+  if (decoder.counts().data == 0 && !was_cut_short)
+    throw std::runtime_error((options.capture.empty() ? "" : options.capture.string() + ": ") +
+                             others.nothingCame(*input.source, decoder));
+  return error.empty() ? 0 : 2;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return runProgram("lisco_stream", [&] {
+    Options options;
+    return parse(argc, argv, options) ? run(options) : 0;
+  });
+}

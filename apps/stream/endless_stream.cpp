@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "endless_stream.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "view_of.h"
+
+namespace lisco_apps {
+
+EndlessStream::EndlessStream(const StreamOptions& options, const Decoder& decoder, Listener& listener)
+    : options_(options), decoder_(decoder), listener_(listener) {
+  lisco::EndlessParameters parameters;
+  parameters.tolerance = options.tolerance;
+  parameters.min_size = options.min_size;
+  parameters.max_size = options.max_size;
+  parameters.clockwise = true;  // as azimuths are counted; 0 is ahead, where x is
+  parameters.stagger = std::min(staggerOf(decoder.model()), lisco::EndlessParameters::kMostStagger);
+  parameters.lasers = decoder.model().lasers.size();
+  parameters.block_columns = kBlock;
+  clusterer_.begin(parameters, [this](const lisco::EndlessCluster& cluster) { deliver(cluster); });
+}
+
+bool EndlessStream::add(const Column& column, const Origin& origin) {
+  const auto start = Clock::now();
+  const bool stands_still = has_begun_ && turns_.back().turn.columns() == kMostColumns;
+  if (stands_still) finish();
+  if (cutter_.startsRotation(column.azimuth, column.after_break) || stands_still) {
+    endTurn();
+    if (options_.rotations != 0 && rotations_ == options_.rotations) return false;
+    begin(column);
+  }
+  time_us_ = origin.time_us;
+  OpenTurn& open = turns_.back();
+  open.last_position = positionOf(column);
+  marks_.push_back({open.last_position, origin.received});
+  open.turn.add(column.cells, options_.ground_z, next_index_, returns_);
+  open.turn.time_us = origin.time_us;
+  next_index_ += static_cast<std::uint32_t>(column.cells.size());
+  clusterer_.addColumn(returns_.data(), returns_.size(), open.last_position);
+  column_latency_.add(Clock::now() - start);
+  if (marks_.size() >= 2 * kBlock) marks_.erase(marks_.begin(), marks_.end() - kBlock);
+  closeTurns(open.last_position);
+  return true;
+}
+
+void EndlessStream::wait() {
+  clusterer_.update();
+}
+
+void EndlessStream::finish() {
+  is_finishing_ = true;
+  clusterer_.finish();
+  is_finishing_ = false;
+  endTurn();
+  closeTurns(std::numeric_limits<double>::infinity());
+}
+
+void EndlessStream::begin(const Column& column) {
+  if (spare_.empty()) spare_.emplace_back();
+  turns_.push_back(std::move(spare_.back()));
+  spare_.pop_back();
+  turns_.back().turn.begin(++rotations_, column.cells.size(), column.azimuth);
+  turns_.back().first_index = next_index_;
+  has_begun_ = true;
+}
+
+void EndlessStream::endTurn() {
+  if (!has_begun_) return;
+  has_begun_ = false;
+  Turn& turn = turns_.back().turn;
+  turn.lost = decoder_.order().missing() - missing_before_;
+  missing_before_ = decoder_.order().missing();
+  listener_.turnEnds(turn);
+}
+
+/// A return of eighth n is delivered by the first column of eighth n + 8: its cluster has begun in n at the latest.
+void EndlessStream::closeTurns(double position) {
+  constexpr double kEighths = 8;
+  while (!turns_.empty() && !(has_begun_ && turns_.size() == 1)) {
+    const double last = std::floor(turns_.front().last_position * kEighths);
+    if (!(std::floor(position * kEighths) >= last + kEighths)) return;
+    listener_.turnIsLabelled(turns_.front().turn);
+    spare_.push_back(std::move(turns_.front()));
+    turns_.pop_front();
+  }
+}
+
+double EndlessStream::positionOf(const Column& column) {
+  constexpr double kHourUs = 3600e6;
+  std::optional<double> turns;
+  if (last_time_us_ && decoder_.turnUs() > 0 && !column.after_break) {
+    turns = std::remainder(column.time_us - *last_time_us_, kHourUs) / decoder_.turnUs();
+  } else if (column.after_break && decoder_.turnUs() > 0) {
+    turns = decoder_.order().gap() / decoder_.turnUs();  // 0 if nobody knows
+  }
+  last_time_us_ = column.time_us;
+  return position_.next(column.azimuth, turns, column.after_break);
+}
+
+/// When the first column came that could not reach it.
+std::optional<Clock::time_point> EndlessStream::closedAt(double reach_end) const {
+  if (is_finishing_ || marks_.empty()) return std::nullopt;
+  const auto mark = std::find_if(marks_.begin(), marks_.end(), [&](const Mark& m) { return m.position >= reach_end; });
+  return mark == marks_.end() ? marks_.back().received : mark->received;  // a cut one is closed by the last one
+}
+
+void EndlessStream::deliver(const lisco::EndlessCluster& cluster) {
+  DeliveredCluster delivered;
+  if (++delivered_ == 0) delivered_ = 1;  // after weeks; 0 is no cluster
+  delivered.found.id = delivered_;
+  cluster.forEachRun([&](const std::uint32_t* indices, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      // The turn whose indices reach furthest without reaching beyond; they may have started again at 0.
+      auto open = turns_.rbegin();
+      while (indices[i] - open->first_index >= open->turn.cells.size()) ++open;
+      const std::size_t cell = indices[i] - open->first_index;
+      open->turn.labels[cell] = delivered.found.id;
+      delivered.found.add(open->turn.cells[cell]);
+    }
+  });
+  delivered.first_position = cluster.firstPosition();
+  delivered.last_position = cluster.lastPosition();
+  delivered.is_cut = cluster.isCut();
+  delivered.is_continued = cluster.isContinued();
+  delivered.time_us = time_us_;
+  if (const auto closed = closedAt(cluster.reachEnd())) {
+    delivered.latency = Clock::now() - *closed;
+    cluster_latency_.add(*delivered.latency);
+  }
+  listener_.cluster(delivered);
+}
+
+}  // namespace lisco_apps

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "lisco/endless_clusterer.h"
+#include "listener.h"
+#include "sensors/rotation_cutter.h"
+#include "stream.h"
+#include "turn.h"
+#include "turn_position.h"
+
+namespace lisco_apps {
+
+/// Clusters without end: each cluster is delivered once no later column can reach it, see lisco::EndlessClusterer.
+/// Clusters are numbered in the order of their delivery.
+class EndlessStream : public Stream {
+ public:
+  /// \param decoder of the columns
+  EndlessStream(const StreamOptions& options, const Decoder& decoder, Listener& listener);
+
+  bool add(const Column& column, const Origin& origin) override;
+  void wait() override;
+  void finish() override;
+
+  /// Returns that were seen under another azimuth than their column's; each is a cluster of its own.
+  std::uint64_t strays() const { return clusterer_.strayCount(); }
+
+ private:
+  /// Columns that are read together: a millisecond or less of any of these sensors. One by one, they take three times
+  /// the time.
+  static constexpr std::size_t kBlock = 16;
+
+  /// A turn that has clusters which may be open.
+  struct OpenTurn {
+    Turn turn;
+    std::uint32_t first_index = 0;  ///< the source index of its first cell
+    double last_position = 0;       ///< of its last column
+  };
+  /// A column that may close clusters.
+  struct Mark {
+    double position = 0;
+    Clock::time_point received;
+  };
+
+  void begin(const Column& column);
+  void endTurn();
+  void closeTurns(double position);
+  double positionOf(const Column& column);
+  void deliver(const lisco::EndlessCluster& cluster);
+  std::optional<Clock::time_point> closedAt(double reach_end) const;
+
+  const StreamOptions options_;
+  const Decoder& decoder_;
+  Listener& listener_;
+  RotationCutter cutter_;
+  TurnPosition position_;
+  lisco::EndlessClusterer clusterer_;
+  std::deque<OpenTurn> turns_;  ///< the last one is the current one
+  std::vector<OpenTurn> spare_;
+  bool has_begun_ = false, is_finishing_ = false;
+  std::uint64_t rotations_ = 0, missing_before_ = 0;
+  std::uint32_t next_index_ = 0;  ///< goes on at 0 after the last number there is
+  std::optional<double> last_time_us_;
+  std::int64_t time_us_ = 0;
+  std::uint32_t delivered_ = 0;
+  std::vector<Mark> marks_;  ///< of the latest columns
+  std::vector<lisco::Return> returns_;
+};
+
+}  // namespace lisco_apps

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "turn.h"
+
+namespace lisco_apps {
+
+/// A folder that receives a labelled cloud of each turn: rotation_000001.pcd and so on, organized (a row for each laser
+/// from the top one to the bottom one, a column for each firing), fields x y z intensity label; label 0 is in no cluster.
+class LabelledClouds {
+ public:
+  /// Makes the folder, and those above it, and removes the files of an earlier run.
+  /// \throws std::runtime_error with one line if that cannot be, or if it has files of such names by somebody else
+  explicit LabelledClouds(std::filesystem::path folder);
+
+  /// \throws std::runtime_error with one line if it cannot be written
+  void write(const Turn& turn) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace lisco_apps

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace lisco_apps {
+
+using Clock = std::chrono::steady_clock;
+
+inline double millisecondsOf(Clock::duration time) {
+  return std::chrono::duration<double, std::milli>(time).count();
+}
+
+/// How long something took, any number of times, in a fixed piece of memory: percentiles are right to 2%, from a
+/// nanosecond to hours.
+class Latency {
+ public:
+  void add(Clock::duration time) {
+    const double ns = std::max(1., std::chrono::duration<double, std::nano>(time).count());
+    const double bin = kBinsPerOctave * std::log2(ns);
+    ++bins_[std::min(static_cast<std::size_t>(bin), kBins - 1)];
+    ++count_;
+    most_ms_ = std::max(most_ms_, ns * 1e-6);
+  }
+
+  std::uint64_t count() const { return count_; }
+  double mostMs() const { return most_ms_; }
+
+  /// \param share 0..1 of all times are at most so long, milliseconds; 0 if there are none
+  double percentileMs(double share) const {
+    const auto wanted = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(count_)));
+    std::uint64_t up_to = 0;
+    for (std::size_t bin = 0; bin < kBins; ++bin) {
+      up_to += bins_[bin];
+      if (up_to == 0 || up_to < wanted) continue;
+      return std::min(most_ms_, std::exp2((static_cast<double>(bin) + 1) / kBinsPerOctave) * 1e-6);
+    }
+    return 0;
+  }
+
+ private:
+  static constexpr double kBinsPerOctave = 36;
+  static constexpr std::size_t kBins = 36 * 45;
+  std::array<std::uint64_t, kBins> bins_{};
+  std::uint64_t count_ = 0;
+  double most_ms_ = 0;
+};
+
+}  // namespace lisco_apps

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "packet_queue.h"
+
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <utility>
+
+namespace lisco_apps {
+namespace {
+
+/// Signals are the business of the thread that is there already.
+std::thread startWithoutSignals(void (*run)(void*), void* what) {
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  std::thread thread(run, what);
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  return thread;
+}
+
+}  // namespace
+
+PacketQueue::PacketQueue(std::unique_ptr<PacketSource> source) : source_(std::move(source)), slots_(kRoom) {
+  thread_ = startWithoutSignals([](void* queue) { static_cast<PacketQueue*>(queue)->receive(); }, this);
+}
+
+PacketQueue::~PacketQueue() {
+  stop();
+}
+
+void PacketQueue::stop() {
+  stop_ = true;
+  if (!thread_.joinable()) return;
+  thread_.join();
+  ended_ = true;
+}
+
+void PacketQueue::receive() {
+  Packet packet;
+  while (!stop_) {
+    const Arrival arrival = source_->next(packet);
+    if (arrival == Arrival::kNothing) continue;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ended_ = arrival == Arrival::kEnd;
+    filled_.notify_one();
+    if (ended_) return;
+    if (count_ == kRoom) continue;
+    Slot& slot = slots_[(first_ + count_) % kRoom];
+    slot.size = std::min(packet.size, slot.data.size());
+    std::memcpy(slot.data.data(), packet.data, slot.size);
+    slot.time_us = packet.time_us;
+    ++count_;
+  }
+}
+
+PacketSource::Arrival PacketQueue::next(Packet& packet) {
+  constexpr std::chrono::milliseconds kPatience{50};
+  std::unique_lock<std::mutex> lock(mutex_);
+  if (holds_slot_) {
+    first_ = (first_ + 1) % kRoom;
+    --count_;
+    holds_slot_ = false;
+  }
+  if (!filled_.wait_for(lock, kPatience, [this] { return count_ > 0 || ended_; })) return Arrival::kNothing;
+  if (count_ == 0) return Arrival::kEnd;
+  const Slot& slot = slots_[first_];
+  holds_slot_ = true;
+  ++packets_;
+  packet = {slot.data.data(), slot.size, slot.time_us};
+  return Arrival::kPacket;
+}
+
+}  // namespace lisco_apps

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "report.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "text.h"
+
+namespace lisco_apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Count = unsigned long long;
+
+/// Without digits that mean nothing.
+double rounded(double value, double per_unit) {
+  return std::round(value * per_unit) / per_unit + 0.;  // no negative zero
+}
+constexpr double kPerMetre = 1e4, kPerDegree = 1e3, kPerTurn = 1e5, kPerMillisecond = 1e4;
+
+template <typename Number>
+Json jsonOf(const std::array<Number, 3>& point) {
+  Json json = Json::array();
+  for (const Number value : point) json.push_back(rounded(static_cast<double>(value), kPerMetre));
+  return json;
+}
+
+double secondsOf(std::int64_t time_us) {
+  return static_cast<double>(time_us) / 1e6;
+}
+
+/// Degrees clockwise, 0 <= azimuth < 360.
+double azimuthAt(double position) {
+  return std::fmod(rounded(360 * (position - std::floor(position)), kPerDegree), 360.);
+}
+double azimuthOf(double x, double y) {
+  return azimuthAt(std::atan2(-y, x) / (2 * 3.14159265358979323846));
+}
+
+void addShape(Json& json, const FoundCluster& cluster) {
+  json["size"] = cluster.size();
+  json["centroid"] = jsonOf(cluster.centroid());
+  json["box"] = {{"min", jsonOf(cluster.lo())}, {"max", jsonOf(cluster.hi())}};
+  json["nearest_range"] = rounded(cluster.nearestRange(), kPerMetre);
+}
+
+}  // namespace
+
+void Report::print(const std::string& line) {
+  if (shares_terminal_) status_.clear();
+  std::fputs(line.c_str(), stdout);
+  std::fputc('\n', stdout);
+  unflushed_ = true;
+}
+
+void Report::flush() {
+  if (!unflushed_) return;
+  unflushed_ = false;
+  if (std::fflush(stdout) != 0) throw std::runtime_error("the standard output cannot be written");
+  if (shares_terminal_ && !shown_.empty()) status_.show(shown_);
+}
+
+void Report::count(const FoundCluster& cluster) {
+  ++clusters_;
+  ++clusters_of_turn_;
+  in_clusters_ += cluster.size();
+  largest_of_turn_ = std::max(largest_of_turn_, cluster.size());
+}
+
+void Report::countTurn(const Turn& turn) {
+  ++turns_;
+  columns_ += turn.columns();
+  returns_ += turn.returns;
+}
+
+void Report::rotation(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) {
+  countTurn(turn);
+  for (const FoundCluster& cluster : clusters) count(cluster);
+  if (clouds_ != nullptr) clouds_->write(turn);
+  if (format_ == Format::kText) {
+    const std::string lost = turn.lost > 0 ? formatted(", %llu packets lost", static_cast<Count>(turn.lost)) : "";
+    print(formatted("rotation %llu: %zu columns, %llu returns, %zu clusters, largest %zu, after %.2f ms%s",
+                    static_cast<Count>(turn.number), turn.columns(), static_cast<Count>(turn.returns), clusters.size(),
+                    largest_of_turn_, millisecondsOf(latency), lost.c_str()));
+  } else {
+    Json json{{"rotation", turn.number},
+              {"time", secondsOf(turn.time_us)},
+              {"azimuth", azimuthAt(turn.azimuth / 360)},
+              {"columns", turn.columns()},
+              {"returns", turn.returns},
+              {"lost_packets", turn.lost},
+              {"latency_ms", rounded(millisecondsOf(latency), kPerMillisecond)},
+              {"clusters", Json::array()}};
+    for (const FoundCluster& cluster : clusters) {
+      const auto centroid = cluster.centroid();
+      Json of_cluster{{"id", cluster.id}, {"azimuth", azimuthOf(centroid[0], centroid[1])}};
+      addShape(of_cluster, cluster);
+      json["clusters"].push_back(std::move(of_cluster));
+    }
+    print(json.dump());
+  }
+  clusters_of_turn_ = largest_of_turn_ = 0;
+}
+
+void Report::cluster(const DeliveredCluster& cluster) {
+  count(cluster.found);
+  if (cluster.is_cut) ++cut_;
+  if (cluster.is_continued) ++continued_;
+  if (format_ == Format::kText) return;
+  Json json{{"id", cluster.found.id},
+            {"time", secondsOf(cluster.time_us)},
+            {"first_azimuth", azimuthAt(cluster.first_position)},
+            {"last_azimuth", azimuthAt(cluster.last_position)},
+            {"turns", rounded(cluster.last_position - cluster.first_position, kPerTurn)}};
+  addShape(json, cluster.found);
+  json["cut"] = cluster.is_cut;
+  json["continued"] = cluster.is_continued;
+  json["latency_ms"] = cluster.latency ? Json(rounded(millisecondsOf(*cluster.latency), kPerMillisecond)) : Json();
+  print(json.dump());
+}
+
+void Report::turnEnds(const Turn& turn) {
+  countTurn(turn);
+  if (format_ == Format::kText) {
+    const std::string lost = turn.lost > 0 ? formatted(", %llu packets lost", static_cast<Count>(turn.lost)) : "";
+    print(formatted("turn %llu: %zu columns, %llu returns, %llu clusters delivered, largest %zu%s",
+                    static_cast<Count>(turn.number), turn.columns(), static_cast<Count>(turn.returns),
+                    static_cast<Count>(clusters_of_turn_), largest_of_turn_, lost.c_str()));
+  }
+  clusters_of_turn_ = largest_of_turn_ = 0;
+}
+
+void Report::turnIsLabelled(const Turn& turn) {
+  if (clouds_ != nullptr) clouds_->write(turn);
+}
+
+void Report::showStatus(const Decoder& decoder, const Stream& stream) {
+  constexpr std::chrono::milliseconds kBetween{200};
+  const auto now = Clock::now();
+  if (!status_.isShown() || now - shown_at_ < kBetween) return;
+  shown_at_ = now;
+  const auto number = [](std::uint64_t count) { return static_cast<Count>(count); };
+  const Decoder::Counts& counts = decoder.counts();
+  const Latency& latency = stream.clusterLatency();
+  if (counts.data == 0)
+    shown_ =
+        formatted("no data yet; %llu position packets, %llu foreign", number(counts.position), number(counts.foreign));
+  else
+    shown_ =
+        formatted("%llu rotations, %llu columns, packets: %llu lost, %llu late; %llu clusters, ms: p50 %.2f, p99 %.2f",
+                  number(turns_), number(counts.columns), number(decoder.order().missing()), number(counts.late),
+                  number(clusters_), latency.percentileMs(0.5), latency.percentileMs(0.99));
+  status_.show(shown_);
+}
+
+void Report::warn(const std::string& text) {
+  status_.clear();
+  std::fprintf(stderr, "lisco_stream: %s\n", text.c_str());
+}
+
+void Report::printStatistics(const PacketSource& source, const Decoder& decoder, const Stream& stream,
+                             std::optional<std::uint64_t> strays) {
+  flush();
+  shown_.clear();
+  status_.clear();
+  const auto rowOf = [](const char* name, const Latency& latency) {
+    return formatted("  %-9s p50 %.4f, p99 %.4f, max %.4f (%llu times)\n", name, latency.percentileMs(0.5),
+                     latency.percentileMs(0.99), latency.mostMs(), static_cast<Count>(latency.count()));
+  };
+  const auto number = [](std::uint64_t count) { return static_cast<Count>(count); };
+  const Decoder::Counts& counts = decoder.counts();
+  const double per_second = decoder.turnUs() > 0 ? 1e6 / decoder.turnUs() : 0;
+  std::string table =
+      formatted("sensor      %s, %zu lasers, %.0f columns a turn, %.2f turns a second\n", decoder.model().name.c_str(),
+                decoder.model().lasers.size(), decoder.columnsPerTurn(), per_second);
+  table += formatted("packets     %llu data, %llu position, %llu foreign, %llu lost, %llu late\n", number(counts.data),
+                     number(counts.position), number(counts.foreign + source.foreign()),
+                     number(decoder.order().missing()), number(counts.late));
+  if (counts.dual > 0) table += formatted("            %llu with two returns per laser\n", number(counts.dual));
+  if (counts.says_other_model > 0)
+    table += formatted("            %llu name another model of sensor in their last byte\n",
+                       number(counts.says_other_model));
+  if (decoder.order().clockJumps() > 0)
+    table += formatted("            the sensor's clock was set %llu times\n", number(decoder.order().clockJumps()));
+  table += formatted("rotations   %llu\ncolumns     %llu\nreturns     %llu\nclusters    %llu, of %llu returns\n",
+                     number(turns_), number(columns_), number(returns_), number(clusters_), number(in_clusters_));
+  if (strays)
+    table += formatted("            %llu cut after a turn, %llu continued; %llu returns astray\n", number(cut_),
+                       number(continued_), number(*strays));
+  table += "latency in ms\n" + rowOf("column", stream.columnLatency()) +
+           rowOf(strays ? "delivery" : "rotation", stream.clusterLatency());
+  std::fputs(table.c_str(), format_ == Format::kJson ? stderr : stdout);
+  unflushed_ = true;
+  flush();
+}
+
+}  // namespace lisco_apps

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "labelled_pcd.h"
+#include "listener.h"
+#include "sensors/decoder.h"
+#include "sensors/packet_source.h"
+#include "stream.h"
+#include "terminal_line.h"
+
+namespace lisco_apps {
+
+/// Tells what is found as it is found: on stdout, in a folder of clouds, and how it goes on the terminal.
+class Report : public Listener {
+ public:
+  enum class Format { kText, kJson };
+
+  /// \param clouds nullptr: none are written
+  Report(Format format, const LabelledClouds* clouds) : format_(format), clouds_(clouds) {}
+
+  void rotation(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) override;
+  void cluster(const DeliveredCluster& cluster) override;
+  void turnEnds(const Turn& turn) override;
+  void turnIsLabelled(const Turn& turn) override;
+
+  /// Lets the reader of stdout have what was told so far.
+  /// \throws std::runtime_error if it cannot be written
+  void flush();
+
+  /// The line on the terminal, a few times in a second.
+  void showStatus(const Decoder& decoder, const Stream& stream);
+  /// A line on stderr.
+  void warn(const std::string& text);
+
+  /// The closing table, on stdout, or on stderr if JSON has that.
+  /// \param strays of an endless stream
+  void printStatistics(const PacketSource& source, const Decoder& decoder, const Stream& stream,
+                       std::optional<std::uint64_t> strays);
+
+ private:
+  void count(const FoundCluster& cluster);
+  void countTurn(const Turn& turn);
+  void print(const std::string& line);
+
+  Format format_;
+  const LabelledClouds* clouds_;
+  TerminalLine status_;
+  const bool shares_terminal_ = isatty(STDOUT_FILENO) != 0;  ///< stdout and the status line
+  std::string shown_;                                        ///< there
+  Clock::time_point shown_at_;
+  bool unflushed_ = false;
+  std::uint64_t turns_ = 0, columns_ = 0, returns_ = 0, clusters_ = 0, in_clusters_ = 0, cut_ = 0, continued_ = 0;
+  std::uint64_t clusters_of_turn_ = 0;  ///< delivered while it came
+  std::size_t largest_of_turn_ = 0;
+};
+
+}  // namespace lisco_apps

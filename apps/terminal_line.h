@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <string>
+
+namespace lisco_apps {
+
+/// A line on the terminal (stderr) that is shown again and again. Silent in a pipe.
+class TerminalLine {
+ public:
+  /// \param worthwhile false: silent on a terminal too
+  explicit TerminalLine(bool worthwhile = true) : shown_(worthwhile && isatty(STDERR_FILENO) != 0) {}
+  ~TerminalLine() { clear(); }
+  TerminalLine(const TerminalLine&) = delete;
+  TerminalLine& operator=(const TerminalLine&) = delete;
+
+  bool isShown() const { return shown_; }
+
+  /// \param line cut to the terminal's width
+  void show(std::string line) {
+    if (!shown_) return;
+    winsize size{};
+    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
+      line.resize(std::min<std::size_t>(line.size(), size.ws_col - 1U));  // a longer one could not be cleared
+    std::fprintf(stderr, "\r\033[K%s", line.c_str());
+    std::fflush(stderr);
+  }
+
+  /// Empties the line, before something else is printed.
+  void clear() {
+    if (shown_) std::fputs("\r\033[K", stderr);
+  }
+
+ private:
+  bool shown_;
+};
+
+}  // namespace lisco_apps

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "stream/packet_queue.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace lisco_test {
+namespace {
+
+using lisco_apps::Packet;
+using lisco_apps::PacketQueue;
+using lisco_apps::PacketSource;
+
+/// So many packets that hold their number, then nothing or the end.
+class Numbers : public PacketSource {
+ public:
+  Numbers(std::size_t count, bool ends) : count_(count), ends_(ends) {}
+  Arrival next(Packet& packet) override {
+    if (packets_ == count_) return ends_ ? Arrival::kEnd : Arrival::kNothing;
+    number_ = static_cast<std::uint8_t>(packets_++);
+    packet = {&number_, 1, static_cast<std::int64_t>(packets_)};
+    return Arrival::kPacket;
+  }
+
+ private:
+  std::size_t count_;
+  bool ends_;
+  std::uint8_t number_ = 0;
+};
+
+TEST(PacketQueue, GivesAllPacketsInOrderThenTheEnd) {
+  PacketQueue queue(std::make_unique<Numbers>(5000, true));
+  Packet packet;
+  for (std::size_t i = 0; i < 5000; ++i) {
+    ASSERT_EQ(queue.next(packet), PacketSource::Arrival::kPacket);
+    EXPECT_EQ(packet.size, 1U);
+    EXPECT_EQ(*packet.data, static_cast<std::uint8_t>(i));
+    EXPECT_EQ(packet.time_us, static_cast<std::int64_t>(i + 1));
+  }
+  EXPECT_EQ(queue.next(packet), PacketSource::Arrival::kEnd);
+  EXPECT_EQ(queue.next(packet), PacketSource::Arrival::kEnd);
+  EXPECT_EQ(queue.packets(), 5000U);
+}
+
+TEST(PacketQueue, SaysThatNothingComes) {
+  PacketQueue queue(std::make_unique<Numbers>(1, false));
+  Packet packet;
+  EXPECT_EQ(queue.next(packet), PacketSource::Arrival::kPacket);
+  EXPECT_EQ(queue.next(packet), PacketSource::Arrival::kNothing);
+}
+
+TEST(PacketQueue, GivesWhatHasComeAfterItWasStopped) {
+  PacketQueue queue(std::make_unique<Numbers>(100, false));
+  Packet packet;
+  ASSERT_EQ(queue.next(packet), PacketSource::Arrival::kPacket);
+  while (queue.next(packet) == PacketSource::Arrival::kPacket) {
+  }
+  queue.stop();
+  queue.stop();
+  EXPECT_EQ(queue.next(packet), PacketSource::Arrival::kEnd);
+  EXPECT_EQ(queue.packets(), 100U);
+}
+
+TEST(PacketQueue, LosesOnlyWhatDoesNotFit) {
+  PacketQueue queue(std::make_unique<Numbers>(100000, true));
+  Packet packet;
+  std::int64_t last = 0;
+  while (queue.next(packet) == PacketSource::Arrival::kPacket) {
+    EXPECT_GT(packet.time_us, last);
+    EXPECT_EQ(*packet.data, static_cast<std::uint8_t>(packet.time_us - 1));
+    last = packet.time_us;
+  }
+  EXPECT_GE(queue.packets(), 1000U);
+}
+
+}  // namespace
+}  // namespace lisco_test
