@@ -8,6 +8,8 @@
 namespace lisco {
 
 void ColumnClusterer::begin(const Parameters& parameters) {
+  if (!begun_) *this = ColumnClusterer();
+  begun_ = false;
   parameters_ = parameters;
   parameters_.block_columns = std::clamp<std::size_t>(parameters.block_columns, 1, Row::kColumns);
   if (parameters.threads == 0) parameters_.threads = allThreads();
@@ -33,7 +35,7 @@ void ColumnClusterer::begin(const Parameters& parameters) {
 }
 
 void ColumnClusterer::checkColumns(std::size_t lasers) const {
-  if (!begun_) throw std::logic_error("lisco::ColumnClusterer: a column before begin ()");
+  if (!begun_) throw std::logic_error("lisco::ColumnClusterer: a column before begin (), or after an exception");
   if (parameters_.lasers != 0 && lasers > parameters_.lasers)
     throw std::invalid_argument("lisco::ColumnClusterer: a column of more cells than lasers were declared");
 }
@@ -149,7 +151,8 @@ void ColumnClusterer::linkStrip() {
 }
 
 void ColumnClusterer::update() {
-  is_ordered_ = false;
+  if (!begun_) return;
+  begun_ = is_ordered_ = false;
   if (staged_.columns() > 0) stagedBlockIsComplete();
   finishPending();
   DisjointSets& subclusters = forests_.front();
@@ -178,6 +181,7 @@ void ColumnClusterer::update() {
       subcluster_sizes_[run.subcluster] += run.count;
     }
   }
+  begun_ = true;
 }
 
 void ColumnClusterer::orderRows() {
@@ -187,6 +191,7 @@ void ColumnClusterer::orderRows() {
 }
 
 std::uint32_t ColumnClusterer::subclusterAt(std::size_t laser, std::size_t column) {
+  if (!begun_) return kNone;
   orderRows();
   const auto begin = order_.places().begin() + static_cast<std::ptrdiff_t>(order_.beginOf(laser));
   const auto end = order_.places().begin() + static_cast<std::ptrdiff_t>(order_.endOf(laser));

@@ -20,6 +20,8 @@ constexpr double kLargestRho = 1e18;  // metres; beyond, its square has overflow
 void EndlessClusterer::begin(const EndlessParameters& parameters, Callback callback) {
   if (!(parameters.stagger >= 0) || parameters.stagger > EndlessParameters::kMostStagger)
     throw std::invalid_argument("lisco::EndlessClusterer: the stagger must be within 0 and a sixteenth of a turn");
+  if (!begun_) *this = EndlessClusterer();
+  begun_ = false;
   parameters_ = parameters;
   parameters_.block_columns = std::clamp<std::size_t>(parameters.block_columns, 1, Row::kColumns);
   callback_ = std::move(callback);
@@ -28,12 +30,12 @@ void EndlessClusterer::begin(const EndlessParameters& parameters, Callback callb
   const double cosine = std::cos(parameters.stagger) - 1e-6;
   cos_stagger_ = static_cast<float>(cosine);
   turns_of_stagger_ = 2 * std::acos(cosine - 1e-6) / (2 * kPi);
-  begun_ = true;
   block_.clear();
   any_column_ = false;
   for (EndlessPane& pane : panes_) pane.in_use = false;
   waiting_.clear();
   returns_ = strays_ = 0;
+  begun_ = true;
 }
 
 void EndlessClusterer::addColumn(const Return* cells, std::size_t lasers) {
@@ -43,12 +45,13 @@ void EndlessClusterer::addColumn(const Return* cells, std::size_t lasers) {
 }
 
 void EndlessClusterer::addColumn(const Return* cells, std::size_t lasers, double position) {
-  if (!begun_) throw std::logic_error("lisco::EndlessClusterer: a column before begin ()");
+  if (!begun_) throw std::logic_error("lisco::EndlessClusterer: a column before begin (), or after an exception");
   if (parameters_.lasers != 0 && lasers > parameters_.lasers)
     throw std::invalid_argument("lisco::EndlessClusterer: a column of more cells than lasers were declared");
   constexpr double kLargest = 1e12;  // from here on, a double cannot tell columns apart
   if (!(std::fabs(position) <= kLargest) || (any_column_ && position < position_))
     throw std::invalid_argument("lisco::EndlessClusterer: a position that is not finite or less than the one before");
+  begun_ = false;  // unless nothing is thrown
   const auto number = static_cast<std::int64_t>(std::floor(position * static_cast<double>(kTurn)));
   if (!any_column_ || number != current_) startPane(number, position);
   any_column_ = true;
@@ -60,21 +63,31 @@ void EndlessClusterer::addColumn(const Return* cells, std::size_t lasers, double
   cosines_[block_.columns()] = static_cast<float>(std::cos(azimuth));
   sines_[block_.columns()] = static_cast<float>(std::sin(azimuth));
   block_.add(0, 1, lasers, [cells](std::size_t laser, std::size_t) { return cells[laser]; });
-  if (block_.columns() == parameters_.block_columns) update();
+  if (block_.columns() == parameters_.block_columns) workOnBlock();
+  begun_ = true;
 }
 
 void EndlessClusterer::update() {
+  if (!begun_) return;
+  begun_ = false;
+  workOnBlock();
+  begun_ = true;
+}
+
+void EndlessClusterer::workOnBlock() {
   if (block_.columns() == 0) return;
   readBlock();
   deliverUpTo(position_);
 }
 
 void EndlessClusterer::finish() {
-  if (!any_column_) return;
-  update();
+  if (!begun_ || !any_column_) return;
+  begun_ = false;
+  workOnBlock();
   deliverUpTo(std::numeric_limits<double>::infinity());
   for (EndlessPane& pane : panes_) pane.in_use = false;
   any_column_ = false;
+  begun_ = true;
 }
 
 std::size_t EndlessClusterer::returnsHeld() const {
@@ -85,7 +98,7 @@ std::size_t EndlessClusterer::returnsHeld() const {
 
 /// Delivers what the first column of a new pane cannot reach, or must not.
 void EndlessClusterer::startPane(std::int64_t number, double position) {
-  update();
+  workOnBlock();
   deliverUpTo(position);
   const auto isYoung = [&](const Waiting& waiting) { return set(waiting.head).first_pane > number - kTurn; };
   const auto old = std::partition(waiting_.begin(), waiting_.end(), isYoung);

@@ -11,6 +11,8 @@ void WindowClusterer::begin(const WindowParameters& parameters) {
   const std::size_t hop = parameters.hop_columns;
   if (hop == 0 || parameters.window_columns < hop || parameters.window_columns % hop != 0)
     throw std::invalid_argument("lisco::WindowClusterer: the window must be a multiple of the hop, 1 or more");
+  if (!begun_) *this = WindowClusterer();
+  begun_ = false;
   parameters_ = parameters;
   tolerance_ = Tolerance(parameters.tolerance);
   // One more than a window has, so that its panes last while the next one is filled.
@@ -22,12 +24,14 @@ void WindowClusterer::begin(const WindowParameters& parameters) {
   pane_columns_ = 0;
   sizes_.clear();
   columns_ = returns_ = 0;
+  begun_ = true;
 }
 
 bool WindowClusterer::addColumn(const Return* cells, std::size_t lasers) {
-  if (panes_.empty()) throw std::logic_error("lisco::WindowClusterer: a column before begin ()");
+  if (!begun_) throw std::logic_error("lisco::WindowClusterer: a column before begin (), or after an exception");
   if (parameters_.lasers != 0 && lasers > parameters_.lasers)
     throw std::invalid_argument("lisco::WindowClusterer: a column of more cells than lasers were declared");
+  begun_ = false;  // unless nothing is thrown
   block_.add(0, 1, lasers, [cells](std::size_t laser, std::size_t) { return cells[laser]; });
   const bool pane_ends = pane_columns_ + block_.columns() == parameters_.hop_columns;
   if (pane_ends || block_.columns() == Row::kColumns) {
@@ -37,6 +41,7 @@ bool WindowClusterer::addColumn(const Return* cells, std::size_t lasers) {
                        [](const Row&, const MeasuredRow& measured) { return measured.returns; });
   }
   if (pane_ends) finishPane();
+  begun_ = true;
   return pane_ends;
 }
 

@@ -9,6 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <functional>
+#include <memory>
 #include <new>
 #include <vector>
 
@@ -20,11 +22,12 @@
 namespace {
 
 std::atomic<std::size_t> allocations{0};
+std::atomic<std::size_t> refused_allocation{0};  ///< that one, by its number; 0: none
 
 }  // namespace
 
 void* operator new(std::size_t size) {
-  ++allocations;
+  if (++allocations == refused_allocation) throw std::bad_alloc();
   if (void* const memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
@@ -141,6 +144,83 @@ TEST(Allocations, NoneForWindowsThatGoOn) {
         << window;
     EXPECT_GT(returns, 0U);
   }
+}
+
+/// Refuses each allocation of work () in its turn, each time with another worker, which must do it afterwards.
+/// \param make callable as std::function<std::size_t ()> (): a new worker
+template <typename Make>
+void refuseEachAllocation(Make&& make) {
+  const std::size_t expected = make()();
+  std::size_t refused = 0;
+  for (bool done = false; !done; ++refused) {
+    ASSERT_LT(refused, 10000U);
+    const auto work = make();
+    refused_allocation = allocations + refused + 1;
+    try {
+      EXPECT_EQ(work(), expected);
+      done = true;  // it needs no more than were granted
+    } catch (const std::bad_alloc&) {
+    }
+    refused_allocation = 0;
+    ASSERT_EQ(work(), expected) << "after allocation " << refused << " had been refused";
+  }
+  EXPECT_GT(refused, 10U);
+}
+
+TEST(Allocations, WhenOneIsRefusedTheClustererStaysUsable) {
+  const auto columns = oneTurn();
+  for (const std::size_t threads : {1U, 2U})
+    for (const int steps_per_turn : {0, static_cast<int>(kSteps)})
+      refuseEachAllocation([&] {
+        const auto clusterer = std::make_shared<lisco::ColumnClusterer>();
+        return std::function<std::size_t()>([&columns, clusterer, steps_per_turn, threads] {
+          lisco::Parameters parameters;
+          parameters.tolerance = 0.5F;
+          parameters.expected_returns = 10;
+          parameters.threads = threads;
+          parameters.view.steps_per_turn = steps_per_turn;
+          parameters.view.elevation_step = 0.03F;
+          clusterer->begin(parameters);
+          if (threads > 1)
+            clusterer->addColumns(columns.size(), kLasers,
+                                  [&](std::size_t laser, std::size_t column) { return columns[column][laser]; });
+          else
+            for (const auto& column : columns) clusterer->addColumn(column.data(), column.size());
+          clusterer->update();
+          std::size_t sum = clusterer->subclusterCount();
+          clusterer->forEachRun(
+              [&](const std::uint32_t*, std::size_t count, std::uint32_t subcluster) { sum += count * subcluster; });
+          return sum;
+        });
+      });
+}
+
+TEST(Allocations, WhenOneIsRefusedStreamsStayUsable) {
+  const auto columns = oneTurn();
+  refuseEachAllocation([&] {
+    const auto clusterer = std::make_shared<lisco::EndlessClusterer>();
+    return std::function<std::size_t()>([&columns, clusterer] {
+      lisco::EndlessParameters parameters;
+      parameters.tolerance = 0.5F;
+      parameters.columns_per_turn = kSteps;
+      std::size_t sum = 0;
+      clusterer->begin(parameters,
+                       [&sum](const lisco::EndlessCluster& cluster) { sum += cluster.size() * cluster.size(); });
+      for (const auto& column : columns) clusterer->addColumn(column.data(), column.size());
+      clusterer->finish();
+      return sum;
+    });
+  });
+  refuseEachAllocation([&] {
+    const auto clusterer = std::make_shared<lisco::WindowClusterer>();
+    return std::function<std::size_t()>([&columns, clusterer] {
+      clusterer->begin({0.5F, 180, 45, kLasers});
+      std::size_t sum = 0;
+      for (const auto& column : columns)
+        if (clusterer->addColumn(column.data(), column.size())) sum += clusterer->subclusterCount();
+      return sum;
+    });
+  });
 }
 
 }  // namespace

@@ -54,12 +54,8 @@ struct Parameters {
 /// of instances may work side by side.
 class ColumnClusterer {
  public:
-  ColumnClusterer() {
-    begin(Parameters());
-    begun_ = false;
-  }
-
-  /// Starts a new rotation and forgets the last one.
+  /// Starts a new rotation and forgets the last one. After an exception that is not about the arguments (memory was
+  /// refused, or a callback threw), this is the only call that is of use.
   void begin(const Parameters& parameters);
 
   /// Event "reception of step s": cells[l] is what laser l measured; cells that are no returns are skipped.
@@ -124,7 +120,7 @@ class ColumnClusterer {
   void prepareReadings(std::size_t columns, std::size_t lasers);
 
   Parameters parameters_;
-  bool begun_ = false;
+  bool begun_ = false;  ///< and left by no exception since
   Tolerance tolerance_;
   ViewStrip strip_;                    ///< far returns
   std::vector<DisjointSets> forests_;  ///< of runs: the subclusters, and one for each further thread that links
@@ -147,6 +143,7 @@ class ColumnClusterer {
 template <typename CellAt>
 void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt&& cell_at) {
   checkColumns(lasers);
+  begun_ = false;  // unless nothing is thrown
   if (readsInParallel(columns, lasers)) {
     weights_.assign(lasers, 0);
     constexpr std::size_t kSampled = 16;  // one column of so many
@@ -173,6 +170,7 @@ void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt
         }
     });
     column_ = static_cast<std::uint32_t>(columns);
+    begun_ = true;
     return;
   }
   constexpr std::size_t kWorthReadingAtOnce = 16;
@@ -195,10 +193,12 @@ void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt
     }
     first += count;
   }
+  begun_ = true;
 }
 
 template <typename Visit>
 void ColumnClusterer::forEachRun(Visit&& visit) {
+  if (!begun_) return;
   orderRows();
   for (const LaserOrder::Place& place : order_.places()) {
     const Runs& part = readings_[place.part].runs;

@@ -56,7 +56,8 @@ class EndlessClusterer {
   /// Receives a cluster, which is valid during the call. Must not call the clusterer.
   using Callback = std::function<void(const EndlessCluster&)>;
 
-  /// Starts a new stream; of the last one, nothing more is delivered.
+  /// Starts a new stream; of the last one, nothing more is delivered. After an exception that is not about the arguments (memory
+  /// was refused, or a callback threw), this is the only call that is of use.
   /// \throws std::invalid_argument if the stagger is not within 0..kMostStagger
   void begin(const EndlessParameters& parameters, Callback callback);
 
@@ -129,6 +130,7 @@ class EndlessClusterer {
   EndlessPane& pane(std::int64_t number) { return panes_[static_cast<std::size_t>(number & (kSlots - 1))]; }
 
   void startPane(std::int64_t number, double position);
+  void workOnBlock();
   void readBlock();
   std::uint64_t findStrays(const Row& row, const MeasuredRow& measured) const;
   void createSets(EndlessPane& pane, const MeasuredRow& measured, std::uint64_t strays);
@@ -146,7 +148,7 @@ class EndlessClusterer {
   FarRange range_;         ///< only its origin counts
   float cos_stagger_ = 0;  ///< a little less, so that rounding leads nobody astray
   double turns_of_stagger_ = 0;
-  bool begun_ = false;
+  bool begun_ = false;  ///< and left by no exception since
   ColumnBlock block_;
   std::array<double, Row::kColumns> positions_{};         ///< of the columns of the block
   std::array<float, Row::kColumns> cosines_{}, sines_{};  ///< of their azimuths

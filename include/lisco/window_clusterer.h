@@ -39,7 +39,8 @@ struct WindowParameters {
 /// may work side by side.
 class WindowClusterer {
  public:
-  /// Starts a new stream and forgets the last one.
+  /// Starts a new stream and forgets the last one. After an exception that is not about the arguments, this is the only
+  /// call that is of use.
   /// \throws std::invalid_argument if the window is no multiple, 1 or more, of the hop
   void begin(const WindowParameters& parameters);
 
@@ -84,6 +85,7 @@ class WindowClusterer {
   void join(WindowPane& older);
 
   WindowParameters parameters_;
+  bool begun_ = false;  ///< and left by no exception since
   Tolerance tolerance_;
   ColumnBlock block_;
   std::vector<WindowPane> panes_;  ///< a ring
@@ -100,7 +102,7 @@ class WindowClusterer {
 
 template <typename Visit>
 void WindowClusterer::forEachRun(Visit&& visit) {
-  if (columns_ == 0) return;
+  if (!begun_ || columns_ == 0) return;
   order_.sort(newest_ - oldest_, [this](std::size_t part) -> const Runs& { return pane(oldest_ + part).runs; });
   for (const LaserOrder::Place& place : order_.places()) {
     const WindowPane& part = pane(oldest_ + place.part);
