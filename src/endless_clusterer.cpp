@@ -124,7 +124,30 @@ void EndlessClusterer::startPane(std::int64_t number, double position) {
 /// Joins clusters of the current pane with those of an older one.
 class EndlessClusterer::PaneJoiner : public Voxels::Joiner {
  public:
-  PaneJoiner(EndlessClusterer& clusterer, std::int64_t older) : clusterer_(clusterer), older_(older) {}
+  PaneJoiner(EndlessClusterer& clusterer, std::int64_t older) : clusterer_(clusterer), older_(older) {
+    // All that the older pane holds lies on one side of the ray under which its last column can have seen anything.
+    const EndlessParameters& parameters = clusterer.parameters_;
+    const double turns = static_cast<double>(older + 1) / static_cast<double>(kTurn);
+    const double direction = parameters.clockwise ? -1 : 1;
+    const double azimuth = parameters.start_azimuth +
+                           direction * (2 * kPi * (turns - std::floor(turns)) + kPi * clusterer.turns_of_stagger_);
+    across_ = {-direction * std::sin(azimuth), direction * std::cos(azimuth)};
+  }
+
+  /// Whether the box is not all further from that ray than the tolerance, on the other side.
+  bool reaches(const Box& own) const override {
+    double least = 0;
+    double largest = 0;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const double origin = static_cast<double>(clusterer_.range_.origin[axis]);
+      const double lo = static_cast<double>(own.lo[axis]) - origin;
+      const double hi = static_cast<double>(own.hi[axis]) - origin;
+      least += std::min(across_[axis] * lo, across_[axis] * hi);
+      largest = std::max({largest, std::fabs(lo), std::fabs(hi)});
+    }
+    constexpr double kRounding = 1e-5;
+    return !(least > clusterer_.tolerance_.reach() * (1 + kRounding) + largest * kRounding);
+  }
 
   bool areApart(std::uint32_t own, std::uint32_t others) override {
     const Element a = clusterer_.head(clusterer_.elementOf(clusterer_.current_, own));
@@ -145,6 +168,7 @@ class EndlessClusterer::PaneJoiner : public Voxels::Joiner {
  private:
   EndlessClusterer& clusterer_;
   std::int64_t older_;
+  std::array<double, 2> across_{};  ///< unit vector from the ray towards what comes later
 };
 
 /// Reads the columns that wait, and compares them with all that may be neighbours.

@@ -592,13 +592,16 @@ void Voxels::linkTo(Voxels& other, Part part, Joiner& joiner) {
 
 void Voxels::linkBlockTo(const Block& block, Voxels& other, Part part, Joiner& joiner) {
   NearBlock near[kNeighbourBlocks];
-  const std::size_t count = other.findNear(block.key, near, [&](const Block& others) {
-    return block.head == kNone || others.head == kNone || joiner.areApart(block.head, others.head);
-  });
-  if (count == 0) return;
+  std::size_t count = 0;
+  bool searched = false;
   forEachUnit(block, [&](std::size_t cube, std::uint32_t number) {
     Unit& unit = units_[number];
-    if (part == Part::kNew && !unit.is_new) return;
+    if ((part == Part::kNew && !unit.is_new) || !joiner.reaches(unit.box)) return;
+    if (!searched)
+      count = other.findNear(block.key, near, [&](const Block& others) {
+        return block.head == kNone || others.head == kNone || joiner.areApart(block.head, others.head);
+      });
+    searched = true;
     other.forEachAround(cube, near, count, ~std::uint64_t{0}, [&](std::uint32_t j) {
       Unit& others = other.units_[j];
       if (Box::squaredGap(unit.box, others.box) < tolerance_.squared() && joiner.areApart(unit.head, others.head) &&

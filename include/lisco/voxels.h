@@ -40,6 +40,8 @@ class Voxels {
   class Joiner {
    public:
     virtual ~Joiner() = default;
+    /// Whether anything in a box of one's own may have neighbours among the others.
+    virtual bool reaches(const Box& /*own*/) const { return true; }
     /// Whether anybody wants to know if two elements are neighbours. They are those of add () or others of their sets.
     virtual bool areApart(std::uint32_t own, std::uint32_t others) = 0;
     /// They are.
