@@ -2,8 +2,11 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "output_file.h"
 
+#include <signal.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstdlib>
 #include <fstream>
 #include <stdexcept>
 #include <system_error>
@@ -13,6 +16,24 @@ namespace lisco_apps {
 namespace fs = std::filesystem;
 
 namespace {
+
+/// What is made aside has this and the number of its process at the end of its name.
+constexpr const char* kFilePartial = ".partial";
+constexpr const char* kFolderPartial = ".lisco_partial_";
+
+/// Removes what processes that were killed have left aside: things in a folder whose names are `prefix` and the number of no
+/// process.
+void removeAbandoned(const fs::path& folder, const std::string& prefix) {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() <= prefix.size() || name.compare(0, prefix.size(), prefix) != 0) continue;
+    char* end = nullptr;
+    const long process = std::strtol(name.c_str() + prefix.size(), &end, 10);
+    if (*end == '\0' && process > 0 && kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH)
+      fs::remove_all(entry.path(), ignored);
+  }
+}
 
 /// A folder that disappears again unless it is kept.
 class TemporaryFolder {
@@ -73,7 +94,8 @@ void checkMayWrite(const fs::path& file, const std::string& signature) {
 
 void writeOwnFile(const fs::path& file, const std::string& content, const std::string& signature) {
   checkMayWrite(file, signature);
-  const fs::path aside = file.string() + ".partial" + std::to_string(getpid());
+  const fs::path aside = file.string() + kFilePartial + std::to_string(getpid());
+  removeAbandoned(fs::absolute(file).parent_path(), file.filename().string() + kFilePartial);
   std::ofstream stream(aside, std::ios::binary);
   stream << content;
   stream.close();
@@ -104,10 +126,13 @@ void writeOwnFolder(const fs::path& folder, const std::vector<std::string>& name
   try {
     MadeFolder made(folder);
     checkMayWriteInto(folder, names);
-    const TemporaryFolder aside(folder / (".lisco_partial_" + std::to_string(getpid())));
+    removeAbandoned(folder, kFolderPartial);
+    const TemporaryFolder aside(folder / (kFolderPartial + std::to_string(getpid())));
     make(aside.path());
-    std::ofstream(folder / kResultMarker)
-        << "The results in this folder were written by lisco and may be replaced by it.\n";
+    std::ofstream marker(folder / kResultMarker);
+    marker << "The results in this folder were written by lisco and may be replaced by it.\n";
+    marker.close();
+    if (!marker) throw std::runtime_error((folder / kResultMarker).string() + ": cannot be written");
     tidy();
     for (const std::string& name : names) {
       if (!fs::is_directory(aside.path() / name)) {

@@ -25,7 +25,6 @@
 #include "cloud_file.h"
 #include "compare/comparison.h"
 #include "compare/report.h"
-#include "compare/text.h"
 #include "lisco/column_clusterer.h"
 #include "lisco/endless_clusterer.h"
 #include "lisco/scan_survey.h"
@@ -34,6 +33,7 @@
 #include "sensors/capture_file.h"
 #include "sensors/decoder.h"
 #include "sensors/rotation_cutter.h"
+#include "text.h"
 
 namespace {
 

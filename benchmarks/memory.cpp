@@ -24,9 +24,9 @@
 #include "cloud_file.h"
 #include "compare/comparison.h"
 #include "compare/report.h"
-#include "compare/text.h"
 #include "options.h"
 #include "output_file.h"
+#include "text.h"
 
 extern "C" {
 // The C library's own ones, which it offers to those that replace malloc ().

@@ -26,13 +26,13 @@
 #include "cloud_file.h"
 #include "compare/comparison.h"
 #include "compare/report.h"
-#include "compare/text.h"
 #include "lisco/column_clusterer.h"
 #include "lisco/parallel.h"
 #include "lisco/scan_survey.h"
 #include "lisco/simd.h"
 #include "options.h"
 #include "output_file.h"
+#include "text.h"
 
 namespace {
 

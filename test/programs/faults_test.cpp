@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+//
+// The programs where the machine fails them: no room on the disk, a folder that nobody may write to, a sudden end.
+#include <signal.h>
+
+#include <string>
+
+#include "program_test.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class Faults : public ProgramTest {
+ protected:
+  Faults() : ProgramTest(LISCO_CLUSTER) {}
+
+  void SetUp() override {
+    ProgramTest::SetUp();
+    ASSERT_EQ(runLine(std::string(LISCO_SIMULATE) + " --scene 3 --seed 1 -o scan.pcd").status, 0);
+    inputs_ = filesLeft();
+  }
+
+  /// Runs a command line that may write files of so many blocks of 512 bytes only: as on a disk that is full, but for the
+  /// error's name.
+  Outcome runWithLittleRoom(int blocks, const std::string& command) const {
+    return runLine("sh -c \"trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; " + command + "\"");
+  }
+
+  std::vector<std::string> inputs_;
+};
+
+TEST_F(Faults, ADiskThatIsFullLeavesNoHalfResults) {
+  for (const int blocks : {0, 8, 300}) {
+    SCOPED_TRACE(blocks);
+    const Outcome outcome = runWithLittleRoom(blocks, program_ + " scan.pcd -t 0.4 --clouds -o results 2>/dev/null");
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(filesLeft(), inputs_);
+  }
+  EXPECT_EQ(run("scan.pcd -t 0.4 --clouds -o results").status, 0);
+}
+
+TEST_F(Faults, ADiskThatIsFullLeavesTheResultsThatWereThere) {
+  ASSERT_EQ(run("scan.pcd -t 0.4 --clouds -o results").status, 0);
+  const std::vector<std::string> files = filesLeft();
+  const std::string table = textOf(folder_ / "results/clusters.csv");
+  EXPECT_EQ(runWithLittleRoom(8, program_ + " scan.pcd -t 0.7 --clouds -o results 2>/dev/null").status, 2);
+  EXPECT_EQ(filesLeft(), files);
+  EXPECT_EQ(textOf(folder_ / "results/clusters.csv"), table);
+}
+
+TEST_F(Faults, OtherProgramsLeaveNoHalfFilesEither) {
+  for (const std::string& command :
+       {LISCO_SIMULATE + std::string(" --scene 3 -o other.pcd"),
+        LISCO_COMPARE + std::string(" scan.pcd -t 0.4 --check-only --rivals lisco --csv all.csv --json all.json")}) {
+    SCOPED_TRACE(command);
+    EXPECT_EQ(runWithLittleRoom(0, command + " >/dev/null 2>&1").status, 2);
+    EXPECT_EQ(filesLeft(), inputs_);
+  }
+}
+
+TEST_F(Faults, AFolderThatNobodyMayWriteTo) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  fs::create_directory(folder_ / "closed");
+  fs::permissions(folder_ / "closed", fs::perms::owner_read | fs::perms::owner_exec);
+  expectRefusal("scan.pcd -t 0.4 -o closed/results", {"closed", "cannot be written"});
+  fs::permissions(folder_ / "closed", fs::perms::owner_all);
+}
+
+// Whenever it is killed, what is there is whole, and the next run cleans up.
+TEST_F(Faults, ASuddenEnd) {
+  ASSERT_EQ(run("scan.pcd -t 0.4 --clouds -o whole").status, 0);
+  const std::size_t whole = filesLeft().size() - inputs_.size();
+  fs::remove_all(folder_ / "whole");
+  for (int ms = 0; ms < 400; ms += 20) {
+    SCOPED_TRACE(ms);
+    const std::string wait = "sleep " + std::to_string(ms / 1000.0);
+    runLine("sh -c '" + program_ + " scan.pcd -t 0.4 --clouds -o results & p=$!; " + wait +
+            "; kill -KILL $p; wait $p'");
+  }
+  ASSERT_EQ(run("scan.pcd -t 0.4 --clouds -o results").status, 0);
+  EXPECT_EQ(filesLeft().size() - inputs_.size(), whole);
+}
+
+TEST_F(Faults, WhatOthersWriteAtTheSameTimeIsLeftAlone) {
+  fs::create_directories(folder_ / "results");
+  const pid_t child = fork();
+  if (child == 0) _exit(0);
+  waitpid(child, nullptr, 0);
+  const std::string living = "results/.lisco_partial_" + std::to_string(getpid());
+  const std::string dead = "results/.lisco_partial_" + std::to_string(child);
+  fs::create_directories(folder_ / living);
+  fs::create_directories(folder_ / dead);
+  fs::create_directories(folder_ / "results/.lisco_partial_not_ours");
+  ASSERT_EQ(run("scan.pcd -t 0.4 -o results").status, 0);
+  EXPECT_TRUE(fs::exists(folder_ / living));
+  EXPECT_FALSE(fs::exists(folder_ / dead));
+  EXPECT_TRUE(fs::exists(folder_ / "results/.lisco_partial_not_ours"));
+}
+
+}  // namespace
