@@ -7,13 +7,14 @@
 #include <thread>
 #include <vector>
 
+// Without OpenMP, and under ThreadSanitizer, which does not know OpenMP's barriers.
 #ifdef __has_feature
 #if __has_feature(thread_sanitizer)
-#define LISCO_THREAD_SANITIZER
+#define LISCO_STD_THREADS
 #endif
 #endif
 #if defined(__SANITIZE_THREAD__) || !defined(_OPENMP)
-#define LISCO_THREAD_SANITIZER
+#define LISCO_STD_THREADS
 #endif
 
 namespace lisco {
@@ -23,8 +24,8 @@ std::size_t allThreads() {
 }
 
 void inParallel(std::size_t threads, void (*work)(void* context, std::size_t thread), void* context) {
-  if (threads == 1) {
-    work(context, 0);
+  if (threads <= 1) {
+    if (threads == 1) work(context, 0);
     return;
   }
   std::vector<std::exception_ptr> failures(threads);
@@ -35,7 +36,7 @@ void inParallel(std::size_t threads, void (*work)(void* context, std::size_t thr
       failures[thread] = std::current_exception();
     }
   };
-#ifdef LISCO_THREAD_SANITIZER  // does not know OpenMP's barriers
+#ifdef LISCO_STD_THREADS
   std::vector<std::thread> running;
   for (std::size_t thread = 1; thread < threads; ++thread) running.emplace_back(run, thread);
   run(0);
