@@ -13,7 +13,7 @@
 #include <pcl/point_types.h>
 #include <pcl/segmentation/extract_clusters.h>  // comparePointClusters
 #include <pcl/impl/instantiate.hpp>
-#include <pcl/segmentation/impl/lisco_point_cloud2.hpp>
+#include <pcl/segmentation/lisco_point_cloud2.h>
 
 #include "lisco/return.h"
 
@@ -390,5 +390,3 @@ bool pcl::mapLiscoClusters(const Indices& point_of_cell, std::vector<PointIndice
   std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);
   return (true);
 }
-
-PCL_INSTANTIATE(organizeLiscoCloud, PCL_XYZ_POINT_TYPES)

@@ -4,13 +4,17 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/PointIndices.h>
+#include <pcl/for_each_type.h>
 #include <pcl/pcl_base.h>  // UNAVAILABLE
+#include <pcl/pcl_macros.h>
 #include <pcl/point_cloud.h>
+#include <pcl/point_struct_traits.h>
 #include <pcl/types.h>
 
 namespace pcl {
@@ -71,7 +75,7 @@ bool organizeLiscoCloud(const PCLPointCloud2& message, PointCloud<PointT>& cloud
  * \return false, after a PCL_ERROR and with \a clusters cleared, if an index is not that of a cell with a point
  * \ingroup segmentation
  */
-bool mapLiscoClusters(const Indices& point_of_cell, std::vector<PointIndices>& clusters);
+PCL_EXPORTS bool mapLiscoClusters(const Indices& point_of_cell, std::vector<PointIndices>& clusters);
 
 namespace detail {
 
@@ -84,7 +88,7 @@ struct LiscoField {
 };
 
 /** \brief Reads a message, which is checked first: any bytes are fine. */
-class LiscoMessageReader {
+class PCL_EXPORTS LiscoMessageReader {
  public:
   /** \brief Checks the message and arranges its points in cells.
    * \param[in] message must stay as it is while the reader is used
@@ -126,10 +130,49 @@ class LiscoMessageReader {
   std::size_t width_ = 0, height_ = 0;
 };
 
+/** \brief Lists the fields of a point type, for for_each_type (). */
+template <typename PointT>
+struct LiscoFieldLister {
+  std::vector<LiscoField>& fields;
+
+  template <typename Tag>
+  void operator()() {
+    fields.push_back({::pcl::traits::name<PointT, Tag>::value, ::pcl::traits::offset<PointT, Tag>::value,
+                      ::pcl::traits::datatype<PointT, Tag>::value, ::pcl::traits::datatype<PointT, Tag>::size});
+  }
+};
+
 }  // namespace detail
 
-}  // namespace pcl
+// Not in the library: Eigen's allocator works differently where the code is compiled for AVX, so that what one side has
+// allocated by it (every PointCloud), the other side must not free.
+template <typename PointT>
+bool organizeLiscoCloud(const PCLPointCloud2& message, PointCloud<PointT>& cloud, Indices& point_of_cell) {
+  std::vector<detail::LiscoField> fields;
+  for_each_type<typename traits::fieldList<PointT>::type>(detail::LiscoFieldLister<PointT>{fields});
 
-#ifdef PCL_NO_PRECOMPILE
-#include <pcl/segmentation/impl/lisco_point_cloud2.hpp>
-#endif
+  detail::LiscoMessageReader reader;
+  cloud.clear();
+  point_of_cell.clear();
+  if (!reader.open(message, fields, "pcl::organizeLiscoCloud")) return (false);
+  point_of_cell.swap(reader.cells());
+
+  PointT missing{};
+  missing.x = missing.y = missing.z = std::numeric_limits<float>::quiet_NaN();
+  cloud.header = message.header;
+  cloud.points.assign(point_of_cell.size(), missing);
+  cloud.width = static_cast<std::uint32_t>(reader.width());
+  cloud.height = static_cast<std::uint32_t>(reader.height());
+  cloud.is_dense = message.is_dense != 0;
+  for (std::size_t cell = 0; cell < point_of_cell.size(); ++cell) {
+    if (point_of_cell[cell] == UNAVAILABLE) {
+      cloud.is_dense = false;
+      continue;
+    }
+    cloud.points[cell] = PointT();
+    reader.copyPoint(point_of_cell[cell], reinterpret_cast<std::uint8_t*>(&cloud.points[cell]));
+  }
+  return (true);
+}
+
+}  // namespace pcl
