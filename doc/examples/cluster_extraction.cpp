@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
   for (std::size_t j = 0; j < clusters.size(); ++j) {
     pcl::PointCloud<pcl::PointXYZ> cloud_cluster;
     pcl::copyPointCloud(*cloud, clusters[j], cloud_cluster);
-    char name[32];
+    char name[48];
     std::snprintf(name, sizeof(name), "cloud_cluster_%04zu.pcd", j);
     if (writer.writeBinary(name, cloud_cluster) < 0) return 1;
     std::printf("%s: %zu points\n", name, cloud_cluster.size());
