@@ -12,8 +12,8 @@
 #include <pcl/console/print.h>
 #include <pcl/point_types.h>
 #include <pcl/segmentation/extract_clusters.h>  // comparePointClusters
-#include <pcl/impl/instantiate.hpp>
 #include <pcl/segmentation/lisco_point_cloud2.h>
+#include <pcl/impl/instantiate.hpp>
 
 #include "lisco/return.h"
 
@@ -61,6 +61,11 @@ std::size_t sizeOf(std::uint8_t datatype) {
 }
 
 double readNumber(const std::uint8_t* from, std::uint8_t datatype) {
+  if (datatype == kFloat32) {  // nearly all are
+    float number;
+    std::memcpy(&number, from, sizeof(number));
+    return static_cast<double>(number);
+  }
   return withType(
       datatype,
       [from](auto number) {
@@ -109,8 +114,8 @@ bool isLittleEndian() {
 
 /// Points in the order in which a sensor measured them.
 struct Firings {
-  std::vector<std::size_t> column_of_point;
-  std::size_t columns = 0;
+  std::vector<std::uint32_t> column_of_point;
+  std::uint32_t columns = 0;
 };
 
 /// Cuts points into columns: what lies within most of a firing's duration is one. Several of one row in one firing get
@@ -118,18 +123,19 @@ struct Firings {
 /// \param keys when each point was measured, or at which azimuth; finite
 /// \param least_step what differs by less was measured at once
 /// \return no columns, if no row has two points that differ
-Firings cutFirings(const std::vector<double>& keys, const std::vector<std::size_t>& row_of_point, std::size_t rows,
+Firings cutFirings(const std::vector<double>& keys, const std::vector<std::uint32_t>& row_of_point, std::size_t rows,
                    double least_step) {
-  std::vector<std::size_t> order(keys.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::uint32_t> order(keys.size());
+  std::iota(order.begin(), order.end(), 0U);
   if (!std::is_sorted(keys.begin(), keys.end()))
     std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return std::pair(keys[a], a) < std::pair(keys[b], b); });
+              [&](std::uint32_t a, std::uint32_t b) { return std::pair(keys[a], a) < std::pair(keys[b], b); });
 
   // From one firing to the next: what one ring's points differ by, if most firings return. Some do not.
   std::vector<double> last(rows, std::numeric_limits<double>::quiet_NaN());
   std::vector<double> steps;
-  for (const std::size_t point : order) {
+  steps.reserve(keys.size());
+  for (const std::uint32_t point : order) {
     double& before = last[row_of_point[point]];
     if (keys[point] - before > least_step) steps.push_back(keys[point] - before);
     before = keys[point];
@@ -142,15 +148,15 @@ Firings cutFirings(const std::vector<double>& keys, const std::vector<std::size_
   const double duration = kMost * *quarter;
 
   firings.column_of_point.resize(keys.size());
-  std::vector<std::size_t> next_column(rows, 0);
-  std::size_t first_column = 0;
+  std::vector<std::uint32_t> next_column(rows, 0);
+  std::uint32_t first_column = 0;
   double start = keys[order.front()];
-  for (const std::size_t point : order) {
+  for (const std::uint32_t point : order) {
     if (keys[point] - start >= duration) {
       first_column = firings.columns;
       start = keys[point];
     }
-    std::size_t& column = next_column[row_of_point[point]];
+    std::uint32_t& column = next_column[row_of_point[point]];
     column = std::max(column, first_column);
     firings.column_of_point[point] = column++;
     firings.columns = std::max(firings.columns, column);
@@ -209,7 +215,8 @@ bool pcl::detail::LiscoMessageReader::checkLayout(const char* caller) {
   }
   const std::size_t width = message.width;
   const std::size_t height = message.height;
-  constexpr auto kMostPoints = static_cast<std::size_t>(std::numeric_limits<index_t>::max());
+  constexpr auto kMostPoints =
+      static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());  // of the engine, too
   if (width > kMostPoints / height) {
     PCL_ERROR("[%s] The message has %zu x %zu points, more than pcl::index_t can number.\n", caller, width, height);
     return (false);
@@ -300,14 +307,17 @@ bool pcl::detail::LiscoMessageReader::arrange(const char* caller) {
 /// \return whether these rings and keys made a sensible arrangement
 bool pcl::detail::LiscoMessageReader::arrangeByRings(const LiscoField& ring, std::vector<double>& keys) {
   constexpr std::size_t kMostRings = 65536;
-  constexpr std::size_t kNone = ~std::size_t{0};
+  constexpr std::uint32_t kNone = ~std::uint32_t{0};
   constexpr double kLeastAzimuthStep = 2e-4;  // radians: less than any sensor's, more than rounding of coordinates
   const bool by_azimuth = keys.empty();
 
-  std::vector<std::size_t> returns;
-  std::vector<std::size_t> rows;
+  Indices returns;
+  std::vector<std::uint32_t> rows;
   std::vector<double> keys_of_returns;
-  std::vector<std::size_t> row_of_ring(kMostRings, kNone);
+  returns.reserve(points_);
+  rows.reserve(points_);
+  keys_of_returns.reserve(points_);
+  std::vector<std::uint32_t> row_of_ring(kMostRings, kNone);
   for (std::size_t point = 0; point < points_; ++point) {
     const std::uint8_t* const bytes = pointAt(point);
     const auto x = limited<float>(readNumber(bytes + x_.offset, x_.datatype));
@@ -317,27 +327,26 @@ bool pcl::detail::LiscoMessageReader::arrangeByRings(const LiscoField& ring, std
     const double number = readNumber(bytes + ring.offset, ring.datatype);
     const double key = by_azimuth ? static_cast<double>(std::atan2(y, x)) : keys[point];
     if (!(number >= 0 && number < static_cast<double>(kMostRings)) || !std::isfinite(key)) return (false);
-    returns.push_back(point);
-    rows.push_back(static_cast<std::size_t>(number));
+    returns.push_back(static_cast<index_t>(point));
+    rows.push_back(static_cast<std::uint32_t>(number));
     keys_of_returns.push_back(key);
     row_of_ring[rows.back()] = 0;
   }
   if (returns.empty()) return (false);
-  std::size_t height = 0;
-  for (std::size_t& row : row_of_ring)
+  std::uint32_t height = 0;
+  for (std::uint32_t& row : row_of_ring)
     if (row != kNone) row = height++;
-  for (std::size_t& row : rows) row = row_of_ring[row];
+  for (std::uint32_t& row : rows) row = row_of_ring[row];
 
   const Firings firings = cutFirings(keys_of_returns, rows, height, by_azimuth ? kLeastAzimuthStep : 0.0);
   constexpr std::size_t kMostCellsPerPoint = 16;
   const std::size_t most_cells = std::min(std::max(kMostCellsPerPoint * points_, std::size_t{65536}),
-                                          static_cast<std::size_t>(std::numeric_limits<index_t>::max()));
+                                          static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()));
   if (firings.columns == 0 || firings.columns > most_cells / height) return (false);
   width_ = firings.columns;
   height_ = height;
   cells_.assign(width_ * height_, UNAVAILABLE);
-  for (std::size_t i = 0; i < returns.size(); ++i)
-    cells_[rows[i] * width_ + firings.column_of_point[i]] = static_cast<index_t>(returns[i]);
+  for (std::size_t i = 0; i < returns.size(); ++i) cells_[rows[i] * width_ + firings.column_of_point[i]] = returns[i];
   return (true);
 }
 
@@ -371,19 +380,30 @@ void pcl::detail::LiscoMessageReader::copyPoint(index_t index, std::uint8_t* poi
 }
 
 bool pcl::mapLiscoClusters(const Indices& point_of_cell, std::vector<PointIndices>& clusters) {
-  for (auto& cluster : clusters) {
-    for (auto& index : cluster.indices) {
+  const auto fail = [&](index_t index, const char* what) {
+    PCL_ERROR("[pcl::mapLiscoClusters] Index %lld is %s.\n", static_cast<long long>(index), what);
+    clusters.clear();
+    return (false);
+  };
+  index_t points = 0;
+  for (const auto& point : point_of_cell)
+    if (point != UNAVAILABLE) points = std::max(points, static_cast<index_t>(point + 1));
+  constexpr std::size_t kNone = ~std::size_t{0};
+  std::vector<std::size_t> cluster_of_point(static_cast<std::size_t>(points), kNone);
+  for (std::size_t number = 0; number < clusters.size(); ++number) {
+    for (const auto& index : clusters[number].indices) {
       const auto cell = static_cast<std::size_t>(index);
-      if (index < 0 || cell >= point_of_cell.size() || point_of_cell[cell] == UNAVAILABLE) {
-        PCL_ERROR("[pcl::mapLiscoClusters] Index %lld is not one of a cell with a point.\n",
-                  static_cast<long long>(index));
-        clusters.clear();
-        return (false);
-      }
-      index = point_of_cell[cell];
+      if (index < 0 || cell >= point_of_cell.size() || point_of_cell[cell] == UNAVAILABLE)
+        return (fail(index, "not one of a cell with a point"));
+      auto& cluster = cluster_of_point[static_cast<std::size_t>(point_of_cell[cell])];
+      if (cluster != kNone) return (fail(index, "in two clusters, or twice in one"));
+      cluster = number;
     }
-    std::sort(cluster.indices.begin(), cluster.indices.end());
+    clusters[number].indices.clear();
   }
+  for (std::size_t point = 0; point < cluster_of_point.size(); ++point)
+    if (cluster_of_point[point] != kNone)
+      clusters[cluster_of_point[point]].indices.push_back(static_cast<index_t>(point));  // there is room
   // What extract () does: clusters by their first points, then PCL's own call.
   std::sort(clusters.begin(), clusters.end(),
             [](const PointIndices& a, const PointIndices& b) { return (a.indices < b.indices); });

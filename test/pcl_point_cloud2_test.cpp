@@ -603,7 +603,7 @@ TEST(PointCloud2, ClustersOfOtherCellsAreRejected) {
   ASSERT_EQ(good.size(), 2U);
   EXPECT_EQ(good[0].indices, (pcl::Indices{3, 4}));
   EXPECT_EQ(good[1].indices, (pcl::Indices{5}));
-  for (const pcl::index_t bad : {-1, 1, 4, std::numeric_limits<pcl::index_t>::max()}) {
+  for (const pcl::index_t bad : {-1, 0, 1, 4, std::numeric_limits<pcl::index_t>::max()}) {  // 0 twice
     Clusters clusters(1);
     clusters[0].indices = {0, bad};
     testing::internal::CaptureStderr();

@@ -69,10 +69,11 @@ bool organizeLiscoCloud(const PCLPointCloud2& message, PointCloud<PointT>& cloud
 /** \brief Makes clusters of an arranged cloud those of its message: byte for byte what extract () gives for the
  * message's points in their own order.
  * \param[in] point_of_cell as organizeLiscoCloud () gave it
- * \param[in,out] clusters of that cloud and of no other one, each index less than point_of_cell.size (). Their indices
- * are replaced by those of the message and ascend; clusters are then brought into the order of their first points, and
- * sorted by size as extract () does it.
- * \return false, after a PCL_ERROR and with \a clusters cleared, if an index is not that of a cell with a point
+ * \param[in,out] clusters as extract () gave them for that cloud, appended to nothing. Their indices are replaced by those
+ * of the message and ascend; clusters are then brought into the order of their first points, and sorted by size as
+ * extract () does it.
+ * \return false, after a PCL_ERROR and with \a clusters cleared, if an index is not that of a cell with a point, or comes
+ * twice
  * \ingroup segmentation
  */
 PCL_EXPORTS bool mapLiscoClusters(const Indices& point_of_cell, std::vector<PointIndices>& clusters);
@@ -169,7 +170,6 @@ bool organizeLiscoCloud(const PCLPointCloud2& message, PointCloud<PointT>& cloud
       cloud.is_dense = false;
       continue;
     }
-    cloud.points[cell] = PointT();
     reader.copyPoint(point_of_cell[cell], reinterpret_cast<std::uint8_t*>(&cloud.points[cell]));
   }
   return (true);
