@@ -22,8 +22,8 @@ namespace lisco {
 
 /// How a rotation is to be clustered. Only the tolerance changes the result.
 struct Parameters {
-  float tolerance = 0.0F;  ///< eps, metres; see Tolerance for 0, negative, NaN and infinite values
-  ViewHints view;
+  float tolerance = 0.0F;                ///< eps, metres; see Tolerance for 0, negative, NaN and infinite values
+  ViewHints view;                        ///< what is known of the sensor
   std::size_t expected_returns = 65536;  ///< to reserve memory; more are welcome
   std::size_t lasers = 0;                ///< most cells of a column; 0: any number
   /// How many columns are read together, 1..64. Whoever asks for the subclusters gets them for all columns
@@ -82,7 +82,7 @@ class ColumnClusterer {
   /// \param subcluster 0..subclusterCount()-1
   std::uint32_t sizeOf(std::uint32_t subcluster) const { return subcluster_sizes_[subcluster]; }
 
-  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};  ///< no subcluster
   /// The subcluster of what a laser measured in a column, kNone if that was no return; after update().
   /// \param column counted from begin()
   std::uint32_t subclusterAt(std::size_t laser, std::size_t column);

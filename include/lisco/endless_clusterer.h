@@ -19,8 +19,8 @@ class EndlessCluster;
 
 /// How a stream without end is to be clustered. Positions are in turns of the sensor since any moment.
 struct EndlessParameters {
-  float tolerance = 0.0F;  ///< eps, metres; see Tolerance for 0, negative, NaN and infinite values
-  std::size_t min_size = 1;
+  float tolerance = 0.0F;                  ///< eps, metres; see Tolerance for 0, negative, NaN and infinite values
+  std::size_t min_size = 1;                ///< as max_size
   std::size_t max_size = ~std::size_t{0};  ///< clusters of fewer or more returns are not delivered
   std::array<float, 3> origin{};           ///< where the sensor stands, metres
   bool clockwise = false;                  ///< how the sensor turns, seen from above
@@ -164,9 +164,11 @@ class EndlessClusterer {
 /// A cluster that no later column can reach.
 class EndlessCluster {
  public:
+  /// Number of its returns.
   std::size_t size() const { return set_.size; }
-  /// Positions of its first and of its last column, turns; less than one turn apart.
+  /// Position of its first column, turns.
   double firstPosition() const { return set_.first_position; }
+  /// Position of its last column, turns; less than one turn after the first.
   double lastPosition() const { return set_.last_position; }
   /// Columns from this position on could not reach it.
   double reachEnd() const { return set_.reach_end; }

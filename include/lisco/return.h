@@ -11,7 +11,9 @@ namespace lisco {
 /// One cell of a column: what one laser measured in one step of the rotation (the paper's section II-A), in
 /// Cartesian coordinates.
 struct Return {
-  float x, y, z;               ///< metres, in the cloud's own frame
+  float x;                     ///< metres, in the cloud's own frame
+  float y;                     ///< the same
+  float z;                     ///< the same
   std::uint32_t source_index;  ///< the caller's name for this cell, handed back with its subcluster
 };
 

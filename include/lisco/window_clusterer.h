@@ -50,8 +50,9 @@ class WindowClusterer {
   /// \throws std::logic_error before begin (), std::invalid_argument if there are more cells than lasers
   bool addColumn(const Return* cells, std::size_t lasers);
 
-  /// Number of columns of the last window, and of the returns in them.
+  /// Number of columns of the last window.
   std::size_t columnCount() const { return columns_; }
+  /// Number of returns of the last window.
   std::size_t returnCount() const { return returns_; }
 
   /// Number of subclusters of the last window.

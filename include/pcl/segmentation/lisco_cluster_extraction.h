@@ -91,17 +91,14 @@ class LiscoClusterExtraction : public PCLBase<PointT> {
   using BasePCLBase = PCLBase<PointT>;
 
  public:
-  using PointCloud = pcl::PointCloud<PointT>;
-  using PointCloudPtr = typename PointCloud::Ptr;
-  using PointCloudConstPtr = typename PointCloud::ConstPtr;
-
-  using KdTree = pcl::search::Search<PointT>;
-  using KdTreePtr = typename KdTree::Ptr;
-
-  using PointIndicesPtr = PointIndices::Ptr;
-  using PointIndicesConstPtr = PointIndices::ConstPtr;
-
-  using Labels = pcl::PointCloud<pcl::Label>;
+  using PointCloud = pcl::PointCloud<PointT>;                ///< as in EuclideanClusterExtraction
+  using PointCloudPtr = typename PointCloud::Ptr;            ///< the same
+  using PointCloudConstPtr = typename PointCloud::ConstPtr;  ///< the same
+  using KdTree = pcl::search::Search<PointT>;                ///< the same
+  using KdTreePtr = typename KdTree::Ptr;                    ///< the same
+  using PointIndicesPtr = PointIndices::Ptr;                 ///< the same
+  using PointIndicesConstPtr = PointIndices::ConstPtr;       ///< the same
+  using Labels = pcl::PointCloud<pcl::Label>;                ///< a label image
 
   /** \brief Empty constructor: tolerance 0, clusters of any size. */
   LiscoClusterExtraction() = default;

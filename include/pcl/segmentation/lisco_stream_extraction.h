@@ -135,7 +135,7 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
   using Base = detail::LiscoColumnStream<PointT>;
 
  public:
-  using PointCloud = typename Base::PointCloud;
+  using PointCloud = typename Base::PointCloud;  ///< of its points
 
   /** \brief Where the sensor stands in the coordinates of the points (default: the origin). Helps the speed if it is not
    * there, and is the sensor_origin_ of the cloud.
@@ -251,7 +251,7 @@ class LiscoWindowExtraction : public detail::LiscoColumnStream<PointT> {
   using Base = detail::LiscoColumnStream<PointT>;
 
  public:
-  using PointCloud = typename Base::PointCloud;
+  using PointCloud = typename Base::PointCloud;  ///< of its points
 
   /** \brief Set W, the number of columns of a window: a multiple of the hop. Takes effect when the next stream begins. */
   inline void setWindowSize(std::size_t columns) { window_size_ = columns; }
@@ -319,7 +319,7 @@ struct LiscoEndlessCluster {
   /** \brief Where a point was measured. */
   struct Cell {
     std::uint64_t column;  ///< counted from beginStream () or finish ()
-    std::uint32_t row;
+    std::uint32_t row;     ///< its place in the column
   };
 
   pcl::PointCloud<PointT> cloud;  ///< the points, in one row
@@ -355,9 +355,9 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
   using Base = detail::LiscoColumnStream<PointT>;
 
  public:
-  using PointCloud = typename Base::PointCloud;
-  using Cluster = LiscoEndlessCluster<PointT>;
-  using ClusterCallback = std::function<void(const Cluster&)>;
+  using PointCloud = typename Base::PointCloud;                 ///< of its points
+  using Cluster = LiscoEndlessCluster<PointT>;                  ///< what is delivered
+  using ClusterCallback = std::function<void(const Cluster&)>;  ///< who gets it
 
   LiscoEndlessExtraction() = default;
   LiscoEndlessExtraction(const LiscoEndlessExtraction&) = delete;
@@ -431,6 +431,7 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
 
   /** \brief The same; the points of the cloud are the rows. */
   bool addColumn(const PointCloud& column, double position);
+  /** \brief The same without a position. */
   bool addColumn(const PointCloud& column);
 
   /** \brief Deliver what can be delivered with the columns so far, without waiting for a block of them. */

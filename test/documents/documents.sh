@@ -1,0 +1,82 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# documents.sh ROOT PROGRAMS: what README.md and doc/*.md point to is there: relative links; paths in `backticks`; scripts, programs
+# and options in ```sh blocks; quoted code, after <!-- FILE --> in the file of that name; the README's diff in the example. Lines are
+# compared without blanks. The README stays short. Says all that is wrong.
+set -euo pipefail
+cd "$1"
+programs=$2
+failures=$(mktemp)
+scratch=$(mktemp -d)
+trap 'rm -rf "$failures" "$scratch"' EXIT
+wrong() { echo "$*" | tee -a "$failures" >&2; }
+
+# in_order FILE < LINES: each line is in the file, after the one before. Prints the first that is not.
+in_order() {
+  awk 'function bare(line) { gsub(/[ \t]/, "", line); return line }
+       FILENAME != "-" { lines[++count] = bare($0); next }
+       bare($0) == "" || bare($0) == "..." { next }
+       { while (++at <= count && lines[at] != bare($0)); if (at > count) { print; exit } }' "$1" -
+}
+
+documents=(README.md doc/*.md)
+for document in "${documents[@]}"; do
+  folder=$(dirname "$document")
+
+  # Links, but those in comments
+  while IFS= read -r link; do
+    [ -z "$link" ] || [ -e "$folder/$link" ] || wrong "$document: link to $link, which does not exist"
+  done < <(awk '/^<!--/ { hidden = 1 } !hidden; /-->$/ { hidden = 0 }' "$document" | grep -o '](\([^)]*\))' | sed 's/^](//; s/)$//; s/#.*//' | grep -v '^[a-z]*://' || true)
+
+  # Paths
+  while IFS= read -r path; do
+    [ -e "$path" ] || wrong "$document: \`$path\` does not exist"
+  done < <(grep -oE '`(\.ci|apps|benchmarks|cmake|doc|include|src|test)/[A-Za-z0-9_./-]*[ `]' "$document" | tr -d '` ' || true)
+
+  # Commands
+  while IFS= read -r line; do
+    read -ra words <<<"${line%%#*}"
+    command=${words[0]:-}
+    case $command in
+      lisco_*)
+        if [ ! -x "$programs/$command" ]; then
+          wrong "$document: there is no program $command"
+          continue
+        fi
+        help=$("$programs/$command" --help)
+        for word in "${words[@]:1}"; do
+          case $word in
+            --*) grep -q -e "$word\b" <<<"$help" || wrong "$document: $command has no option $word" ;;
+          esac
+        done
+        ;;
+      */*) [ -x "$command" ] || wrong "$document: there is no $command to be run" ;;
+      "" | cmake | ctest) ;;
+      *) wrong "$document: what is the command $command?" ;;
+    esac
+  done < <(awk '/^```sh$/ { inside = 1; next } /^```/ { inside = 0 } inside' "$document")
+
+  # Quoted code
+  for file in $(sed -n 's/^<!-- \(examples\/[^ ]*\) -->$/\1/p' "$document" | sort -u); do
+    missing=$(awk -v mark="<!-- $file -->" '$0 == mark { found = 1; next }
+      found && /^```/ { inside = !inside; if (!inside) found = 0; next } inside' "$document" | in_order "$folder/$file")
+    [ -z "$missing" ] || wrong "$document: not in this place in $file: $missing"
+  done
+done
+
+# The diff
+for document in README.md doc/migration.md; do
+  awk '/^```diff$/ { inside = 1; next } /^```/ { inside = 0 } inside' "$document" >"$scratch/diff"
+  [ -s "$scratch/diff" ] || wrong "$document: no diff"
+  for side in "before -" "after +"; do
+    read -r name sign <<<"$side"
+    missing=$(grep "^[$sign ]" "$scratch/diff" | cut -c2- | in_order "doc/examples/$name.cpp")
+    [ -z "$missing" ] || wrong "$document: the diff's line is not in this place in $name.cpp: $missing"
+  done
+  grep '^-' "$scratch/diff" | cut -c2- | while IFS= read -r line; do
+    [ -n "$(in_order doc/examples/after.cpp <<<"$line")" ] || wrong "$document: the diff's line is still in after.cpp: $line"
+  done
+done
+
+[ "$(wc -l <README.md)" -le 150 ] || wrong "README.md: $(wc -l <README.md) lines, more than 150"
+[ ! -s "$failures" ]
