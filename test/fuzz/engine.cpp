@@ -22,14 +22,14 @@ namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-/// One of the levels of vector instructions, as long as this lives.
-class Level {
- public:
-  explicit Level(Input& input) { hold(lisco::useSimdLevel(levels()[input.below(levels().size())]), "a level is gone"); }
-  ~Level() { lisco::useSimdLevel({}); }
-  Level(const Level&) = delete;
-  Level& operator=(const Level&) = delete;
-};
+/// Chooses one of the levels of vector instructions; to change it takes as long as a scan.
+void useLevel(Input& input) {
+  static std::size_t in_use = levels().size();
+  const std::size_t level = input.below(levels().size());
+  if (level == in_use) return;
+  hold(lisco::useSimdLevel(levels()[level]), "a level is gone");
+  in_use = level;
+}
 
 /// The subcluster of each point.
 template <typename Clusterer>
@@ -102,7 +102,7 @@ void clusterScan(Input& input, float unit) {
                                    : parameters.view.steps_per_turn == 0 ? 160
                                                                          : Shape::kMostColumns;
   parameters.tolerance = toleranceFrom(input, unit);
-  const Level level(input);
+  useLevel(input);
   const unsigned portions = input.byte();
   lisco::ViewHints shape_hints = parameters.view;
   if (!turns_as_told) shape_hints.clockwise = !shape_hints.clockwise;
@@ -135,7 +135,7 @@ void clusterWindows(Input& input, float unit) {
   static lisco::WindowClusterer clusterer;
   static Shape shape;
   const float tolerance = toleranceFrom(input, unit);
-  const Level level(input);
+  useLevel(input);
   const std::size_t lasers = 1 + input.below(4);
   const unsigned sizes = input.byte();
   const std::size_t hop = sizes % 16 == 15 ? 70 : 1 + sizes % 16;
@@ -157,7 +157,7 @@ void clusterWindows(Input& input, float unit) {
 
 void clusterEndlessly(Input& input) {
   static lisco::EndlessClusterer clusterer;
-  const Level level(input);
+  useLevel(input);
   const EndlessStream stream = endlessStreamFrom(input);
   if (stream.columns.empty()) return;
   const EndlessTruth truth = endlessTruth(stream);
