@@ -184,21 +184,22 @@ void checkPcdHeader(const fs::path& file) {
 }
 
 /// Looks at a PLY file's header before PCL does, which asks for all the memory that a wrong one promises,
-/// and aborts at a list in a vertex.
+/// and aborts at a list in a vertex, or if there are more vertices than cells.
 void checkPlyHeader(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   const auto file_size = static_cast<double>(fs::file_size(file));
-  double columns = 0, rows = 0;
+  double columns = 0, rows = 0, vertices = 0;
   bool in_vertex = false;
   std::string line;
   for (int i = 0; i < kMostHeaderLines && std::getline(stream, line); ++i) {
     const std::vector<std::string> words = wordsOf(line);
     if (words.empty()) continue;
     if (words[0] == "end_header") {
-      if (!(columns * rows <= file_size)) break;
+      if (!(columns * rows <= file_size) || (columns * rows > 0 && vertices > columns * rows)) break;
       return;
     }
     if (words[0] == "element") in_vertex = words.size() > 1 && words[1] == "vertex";
+    if (words[0] == "element" && in_vertex) vertices = countOf(words, 2);
     if (words[0] == "property" && in_vertex && words.size() != 3) break;
     // Each takes a byte at least.
     if (words[0] == "element" && !(countOf(words, 2) <= file_size)) break;

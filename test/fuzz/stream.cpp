@@ -380,31 +380,24 @@ class Endless {
   std::optional<double> position_;
 };
 
+template <typename Clusterer>
+void callAnyhow(Input& input) {
+  Clusterer clusterer;
+  for (int calls = 0; calls < 200 && input.left() > 0; ++calls) clusterer.act(input);
+  clusterer.end();
+}
+
 }  // namespace
 
 void fuzzStream(const std::uint8_t* data, std::size_t size) {
   Input input(data, size);
-  const unsigned which = input.byte();
-  Rotations rotations;
-  Windows windows;
-  Endless endless;
-  for (int calls = 0; calls < 200 && input.left() > 0; ++calls) switch (which % 3) {
-      case 0:
-        rotations.act(input);
-        break;
-      case 1:
-        windows.act(input);
-        break;
-      default:
-        endless.act(input);
-    }
-  switch (which % 3) {
+  switch (input.below(3)) {
     case 0:
-      return rotations.end();
+      return callAnyhow<Rotations>(input);
     case 1:
-      return windows.end();
+      return callAnyhow<Windows>(input);
     default:
-      return endless.end();
+      return callAnyhow<Endless>(input);
   }
 }
 
