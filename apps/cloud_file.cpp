@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <sstream>
@@ -17,8 +18,6 @@
 
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/console/print.h>
-#include <pcl/io/ifs_io.h>
-#include <pcl/io/obj_io.h>
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
 
@@ -60,8 +59,7 @@ void copyField(const pcl::PCLPointCloud2& blob, const fs::path& file, const char
   if (!is_float && field->datatype != pcl::PCLPointField::FLOAT64)
     fail(file, std::string("field '") + name + "' is neither float nor double");
   const std::size_t size = is_float ? sizeof(float) : sizeof(double);
-  if (field->offset + size > blob.point_step || blob.data.size() / blob.point_step < cloud.size())
-    fail(file, "holds less data than its header says");
+  if (field->offset + size > blob.point_step) fail(file, "holds less data than its header says");
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const std::uint8_t* const value = blob.data.data() + i * blob.point_step + field->offset;
     if (is_float) {
@@ -78,7 +76,9 @@ void copyField(const pcl::PCLPointCloud2& blob, const fs::path& file, const char
 std::vector<std::uint32_t> labelsIn(const pcl::PCLPointCloud2& blob) {
   std::vector<std::uint32_t> labels;
   for (const pcl::PCLPointField& field : blob.fields) {
-    if (field.name != "label" || field.datatype != pcl::PCLPointField::UINT32) continue;
+    if (field.name != "label" || field.datatype != pcl::PCLPointField::UINT32 ||
+        field.offset + sizeof(std::uint32_t) > blob.point_step)
+      continue;
     labels.resize(static_cast<std::size_t>(blob.width) * blob.height);
     for (std::size_t i = 0; i < labels.size(); ++i)
       std::memcpy(&labels[i], blob.data.data() + i * blob.point_step + field.offset, sizeof(std::uint32_t));
@@ -86,53 +86,198 @@ std::vector<std::uint32_t> labelsIn(const pcl::PCLPointCloud2& blob) {
   return labels;
 }
 
-/// Looks at a PCD file's header before PCL does: PCL 1.13's reader crashes without one, and asks for all the memory
-/// that a wrong one promises.
+/// The words of a line.
+std::vector<std::string> wordsOf(const std::string& line) {
+  std::istringstream stream(line);
+  return {std::istream_iterator<std::string>(stream), std::istream_iterator<std::string>()};
+}
+
+/// A count as headers have it; NaN if it is none.
+double countOf(const std::vector<std::string>& words, std::size_t at) {
+  double count = std::numeric_limits<double>::quiet_NaN();
+  if (at < words.size() && words[at].find_first_not_of("0123456789") == std::string::npos)
+    count = std::strtod(words[at].c_str(), nullptr);
+  return count;
+}
+
+/// How many values a line of a PCD file holds.
+std::size_t valuesIn(std::string_view line) {
+  constexpr std::string_view kBetween = " \t\r";
+  std::size_t count = 0;
+  while (true) {
+    line.remove_prefix(std::min(line.find_first_not_of(kBetween), line.size()));
+    if (line.empty()) return count;
+    const std::string_view value = line.substr(0, line.find_first_of(kBetween));
+    line.remove_prefix(value.size());
+    count += value.find_first_not_of("\v\f") != std::string_view::npos ? 1 : 0;
+  }
+}
+
+constexpr int kMostHeaderLines = 1000;
+
+/// Looks at a PCD file's header before PCL does: PCL 1.13's reader crashes without one, asks for all the memory that a
+/// wrong one promises, and reads beyond lines and compressed data that are too short.
 void checkPcdHeader(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  constexpr int kMostLines = 1000;
-  bool fields = false;
-  double width = 0;
-  double height = 1;
+  const auto file_size = static_cast<double>(fs::file_size(file));
+  std::vector<std::string> names, sizes, types, counts;
+  double width = 0, height = 1, points = 0;
+  constexpr std::array<std::string_view, 11> kKeys{"VERSION", "FIELDS", "COLUMNS",   "SIZE",   "TYPE", "COUNT",
+                                                   "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
+  std::set<std::string> seen;  // of these; each comes once
   std::string line;
-  for (int i = 0; i < kMostLines && std::getline(stream, line); ++i) {
-    std::istringstream words(line);
-    std::string key, value;
-    words >> key >> value;
-    fields = fields || key == "FIELDS" || key == "COLUMNS";
-    if (key == "WIDTH") width = std::strtod(value.c_str(), nullptr);
-    if (key == "HEIGHT") height = std::strtod(value.c_str(), nullptr);
-    if (key != "DATA") continue;
-    // A point takes a byte at least; compressed, a few hundred may share one.
-    const double most = static_cast<double>(fs::file_size(file)) * (value == "binary_compressed" ? 300 : 1);
-    if (fields && width * height > most) fail(file, "is truncated: it holds fewer points than its header says");
-    if (fields) return;
-    break;
+  bool is_header = false;
+  std::vector<std::string> words;
+  for (int i = 0; i < kMostHeaderLines && !is_header && std::getline(stream, line); ++i) {
+    words = wordsOf(line);
+    if (words.empty() || words.front()[0] == '#') continue;
+    const std::string key = words.front();
+    if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end() || !seen.insert(key).second ||
+        line.find_first_of("\v\f") != std::string::npos)
+      break;
+    const auto values = [&] { return std::vector<std::string>(words.begin() + 1, words.end()); };
+    if (key == "FIELDS" || key == "COLUMNS") names = values();
+    if (key == "SIZE") sizes = values();
+    if (key == "TYPE") types = values();
+    if (key == "COUNT") counts = values();
+    if (key == "WIDTH") width = countOf(words, 1);
+    if (key == "HEIGHT") height = countOf(words, 1);
+    if (key == "POINTS") points = countOf(words, 1);
+    is_header = key == "DATA";
   }
-  fail(file, "is no pcd file: it has no header");
+  if (!is_header || names.empty()) fail(file, "is no pcd file: it has no header");
+  if (words.size() != 2 || (words[1] != "ascii" && words[1] != "binary" && words[1] != "binary_compressed"))
+    fail(file, "is damaged: its header does not say how its data are written");
+  if (counts.empty()) counts.assign(names.size(), "1");
+  if (sizes.size() != names.size() || types.size() != names.size() || counts.size() != names.size())
+    fail(file, "is damaged: its header does not describe each of its fields");
+  double values_of_point = 0;
+  double stored = 0;  // bytes of a point, compressed ones without the padding
+  const bool is_compressed = words[1] == "binary_compressed";
+  constexpr double kMostBytes = 1e6;  // of a point
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const double size = countOf(sizes, i);
+    const double count = countOf(counts, i);
+    if (!(size == 1 || size == 2 || size == 4 || size == 8) || !(count >= 1 && count <= kMostBytes) ||
+        types[i].size() != 1 || (types[i] != "F" && types[i] != "U" && types[i] != "I") ||
+        (types[i] == "F" && size < 4))
+      fail(file, "is damaged: its header describes a field '" + names[i] + "' of no known kind");
+    if (!is_compressed || names[i] != "_") stored += size * count;
+    values_of_point += count;
+  }
+  if (!(stored <= kMostBytes)) fail(file, "is damaged: its header describes points of no sensible size");
+  // A point takes a byte at least; compressed, a few hundred may share one.
+  const double most = file_size * (is_compressed ? 300 : 1);
+  if (!(width * height <= most) || !(points <= most))
+    fail(file, "is truncated: it holds fewer points than its header says");
+  if (words[1] == "ascii") {
+    while (std::getline(stream, line))
+      if (const std::size_t values = valuesIn(line); values != 0 && static_cast<double>(values) < values_of_point)
+        fail(file, "is truncated: a line of it holds fewer values than a point has");
+    return;
+  }
+  std::uint32_t compressed[2]{};  // its size, and what it becomes
+  if (is_compressed && (!stream.read(reinterpret_cast<char*>(compressed), sizeof compressed) ||
+                        static_cast<double>(stream.tellg()) + compressed[0] > file_size ||
+                        compressed[1] < stored * width * height || compressed[1] > 300.0 * compressed[0] + 300))
+    fail(file, "is truncated: it holds fewer points than its header says");
+}
+
+/// Looks at a PLY file's header before PCL does, which asks for all the memory that a wrong one promises,
+/// and aborts at a list in a vertex, or if there are more vertices than cells.
+void checkPlyHeader(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  const auto file_size = static_cast<double>(fs::file_size(file));
+  double columns = 0, rows = 0, vertices = 0;
+  bool in_vertex = false;
+  std::string line;
+  for (int i = 0; i < kMostHeaderLines && std::getline(stream, line); ++i) {
+    const std::vector<std::string> words = wordsOf(line);
+    if (words.empty()) continue;
+    if (words[0] == "end_header") {
+      if (!(columns * rows <= file_size) || (columns * rows > 0 && vertices > columns * rows)) break;
+      return;
+    }
+    if (words[0] == "element") in_vertex = words.size() > 1 && words[1] == "vertex";
+    if (words[0] == "element" && in_vertex) vertices = countOf(words, 2);
+    if (words[0] == "property" && in_vertex && words.size() != 3) break;
+    // Each takes a byte at least.
+    if (words[0] == "element" && !(countOf(words, 2) <= file_size)) break;
+    if (words[0] != "obj_info" || words.size() < 3) continue;
+    if (words[1] == "num_cols") columns = countOf(words, 2);
+    if (words[1] == "num_rows") rows = countOf(words, 2);
+  }
+  fail(file, "is damaged, truncated or no ply file");
+}
+
+/// Reads an IFS file: its name, then `VERTICES` and their coordinates. Not by PCL 1.13, which asks for all the memory that
+/// a damaged one promises.
+Cloud::Ptr readIfs(const fs::path& file) {
+  const std::string content = readWhole(file);
+  std::size_t at = 0;
+  const auto skip = [&](std::size_t bytes) {
+    if (bytes > content.size() - at) fail(file, "is damaged, truncated or no ifs file");
+    at += bytes;
+    return content.data() + at - bytes;
+  };
+  const auto nextCount = [&] {
+    std::uint32_t count;
+    std::memcpy(&count, skip(sizeof count), sizeof count);
+    return count;
+  };
+  const auto nextText = [&] {
+    const std::uint32_t length = nextCount();
+    const std::string text(skip(length), length);
+    return text.substr(0, text.find('\0'));
+  };
+  const bool is_ifs = nextText() == "IFS";
+  skip(sizeof(float));  // the version
+  nextText();
+  if (!is_ifs || nextText() != "VERTICES") fail(file, "is damaged, truncated or no ifs file");
+  const std::uint32_t points = nextCount();
+  const char* const coordinates = skip(3 * sizeof(float) * points);
+  auto cloud = std::make_shared<Cloud>();
+  cloud->resize(points);
+  for (std::size_t i = 0; i < points; ++i)
+    std::memcpy((*cloud)[i].data, coordinates + 3 * sizeof(float) * i, 3 * sizeof(float));
+  return cloud;
+}
+
+/// Reads the vertices of an OBJ file. Not by PCL 1.13, which crashes where one has fewer than three coordinates.
+Cloud::Ptr readObj(const fs::path& file) {
+  std::ifstream stream(file);
+  auto cloud = std::make_shared<Cloud>();
+  std::string line;
+  for (std::size_t number = 1; std::getline(stream, line); ++number) {
+    const std::vector<std::string> words = wordsOf(line);
+    if (words.empty() || words.front() != "v") continue;
+    pcl::PointXYZ point;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      char* end = nullptr;
+      if (axis + 1 < words.size()) point.data[axis] = std::strtof(words[axis + 1].c_str(), &end);
+      if (end == nullptr || *end != '\0')
+        fail(file, "line " + std::to_string(number) + " is no vertex of three coordinates");
+    }
+    cloud->push_back(point);
+  }
+  if (cloud->empty()) fail(file, "is damaged, truncated or no obj file");
+  return cloud;
 }
 
 Cloud::Ptr readByPcl(const fs::path& file, const std::string& ending, std::vector<std::uint32_t>* object_of) {
   // PCL's readers print what they think; this program says it once, in its own words.
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
   if (ending == ".pcd") checkPcdHeader(file);
+  if (ending == ".ply") checkPlyHeader(file);
   pcl::PCLPointCloud2 blob;
   auto cloud = std::make_shared<Cloud>();
   Eigen::Vector4f origin = Eigen::Vector4f::Zero();
   Eigen::Quaternionf orientation = Eigen::Quaternionf::Identity();
   int status = -1;
   try {
-    if (ending == ".pcd") {
-      int version;
-      status = pcl::PCDReader().read(file.string(), blob, origin, orientation, version);
-    } else if (ending == ".ply") {
-      int version;
-      status = pcl::PLYReader().read(file.string(), blob, origin, orientation, version);
-    } else if (ending == ".obj") {
-      status = pcl::OBJReader().read(file.string(), blob);
-    } else {
-      status = pcl::io::loadIFSFile(file.string(), blob);
-    }
+    int version;
+    status = ending == ".pcd" ? pcl::PCDReader().read(file.string(), blob, origin, orientation, version)
+                              : pcl::PLYReader().read(file.string(), blob, origin, orientation, version);
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception&) {
@@ -140,6 +285,8 @@ Cloud::Ptr readByPcl(const fs::path& file, const std::string& ending, std::vecto
   }
   if (status < 0) fail(file, "is damaged, truncated or no " + ending.substr(1) + " file");
   if (blob.point_step == 0) fail(file, "has no fields");
+  if (blob.data.size() / blob.point_step < static_cast<std::size_t>(blob.width) * blob.height)
+    fail(file, "holds less data than its header says");
 
   cloud->width = blob.width;
   cloud->height = blob.height;
@@ -243,6 +390,8 @@ Cloud::Ptr readCloudFile(const fs::path& file, std::vector<std::uint32_t>* objec
   const std::string ending = endingOf(file);
   if (ending == ".bin") return readKittiBin(file);
   if (ending == ".csv") return readAuthorsCsv(file);
+  if (ending == ".ifs") return readIfs(file);
+  if (ending == ".obj") return readObj(file);
   if (std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end())
     fail(file, "has an unknown ending (known: pcd, ply, obj, ifs, bin, csv)");
   try {

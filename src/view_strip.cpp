@@ -781,6 +781,7 @@ void ViewStrip::claim() {
 }
 
 void ViewStrip::linkPart(DisjointSets& subclusters) {
+  if (lowest.size() < lasers.size()) updateElevations();  // some have been added since claim ()
   HWY_DYNAMIC_DISPATCH(linkPart)(*this, linked, linked_parts, linking.front(), subclusters);
   if (++linked_parts < kParts) return;
   linked_parts = 0;

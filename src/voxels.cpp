@@ -50,6 +50,16 @@ HWY_BEFORE_NAMESPACE();
 namespace lisco {
 namespace HWY_NAMESPACE {
 
+/// Numbers that may be converted to integers: what is no return, or too far away, counts for nothing. Instructions make
+/// something of any number, but C++ does not.
+HWY_INLINE FloatVector convertible(FloatVector number) {
+#if HWY_TARGET == HWY_EMU128 || HWY_TARGET == HWY_SCALAR
+  return hn::IfThenElseZero(hn::Le(hn::Abs(number), hn::Set(kFloats, kSafeNumbers)), number);
+#else
+  return number;
+#endif
+}
+
 /// The numbers of each return's cube along the axes.
 /// \param which bit i: return i
 /// \param changes bit i is set if return i lies in another cube than return i - 1
@@ -67,7 +77,8 @@ bool numberCubes(const Row& row, std::uint64_t which, float per_metre, CubeNumbe
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const FloatVector number = hn::Mul(hn::LoadU(kFloats, coordinates[axis] + k), scale);
       farthest = hn::Max(farthest, hn::IfThenElseZero(returned, hn::Abs(number)));
-      hn::StoreU(hn::BitCast(kWords, hn::ConvertTo(signed_words, hn::Floor(number))), kWords, numbers.of[axis] + 1 + k);
+      hn::StoreU(hn::BitCast(kWords, hn::ConvertTo(signed_words, convertible(hn::Floor(number)))), kWords,
+                 numbers.of[axis] + 1 + k);
     }
   }
   // Not at once: what has just been stored is slow to be read at another offset.

@@ -78,7 +78,7 @@ class EndlessClusterer {
   /// The stream has ended: delivers all. More columns may follow; they have nothing to do with those before.
   void finish();
 
-  std::uint64_t returnCount() const { return returns_; }  ///< since begin ()
+  std::uint64_t returnCount() const { return returns_; }  ///< since begin (); update () counts all
   std::uint64_t strayCount() const { return strays_; }    ///< of these, astray
   /// Returns in memory: of the open clusters and of delivered ones that are not yet forgotten.
   std::size_t returnsHeld() const;

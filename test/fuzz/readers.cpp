@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "bodies.h"
+#include "cloud_file.h"
+#include "scratch_file.h"
+
+namespace lisco_test {
+
+void fuzzReaders(const std::uint8_t* data, std::size_t size) {
+  static const std::array<ScratchFile, 6> files{ScratchFile(".pcd"), ScratchFile(".ply"), ScratchFile(".obj"),
+                                                ScratchFile(".ifs"), ScratchFile(".bin"), ScratchFile(".csv")};
+  if (size == 0) return;
+  const std::filesystem::path& file = files[data[0] % files.size()].holding(data + 1, size - 1);
+  std::vector<std::uint32_t> labels;
+  try {
+    const lisco_apps::Cloud::Ptr cloud = lisco_apps::readCloudFile(file, &labels);
+    hold(cloud->size() == std::size_t{cloud->width} * cloud->height, "the size of a cloud");
+    hold(labels.empty() || labels.size() == cloud->size(), "the number of labels");
+    hold(std::count_if(cloud->begin(), cloud->end(), [](const pcl::PointXYZ& p) { return p.x < p.y; }) >= 0, "memory");
+  } catch (const std::runtime_error& refusal) {
+    const std::string what = refusal.what();
+    hold(what.compare(0, file.string().size(), file.string()) == 0, "a refusal that does not name the file");
+    hold(what.find('\n') == std::string::npos, "a refusal of several lines");
+  }
+}
+
+}  // namespace lisco_test
