@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <pcl/point_cloud.h>
+#include <pcl/segmentation/lisco_pcl_version.h>
 
 namespace pcl {
 
