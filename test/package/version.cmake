@@ -3,6 +3,7 @@
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 string(REPLACE "." "[.]" number ${VERSION})
 
+set(ENV{LD_LIBRARY_PATH} ${PREFIX}/${LIBRARY_DIR})  # for programs that are to be installed in /usr
 foreach(program IN LISTS PROGRAMS)
   run(${PREFIX}/bin/${program} --version)
   expect("${output}" "^${program} ${number}\n$" "${program} --version")
