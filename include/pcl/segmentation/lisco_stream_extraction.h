@@ -379,6 +379,7 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
   LiscoEndlessExtraction() = default;
   LiscoEndlessExtraction(const LiscoEndlessExtraction&) = delete;
   LiscoEndlessExtraction& operator=(const LiscoEndlessExtraction&) = delete;
+  ~LiscoEndlessExtraction() = default;
 
   // All of these take effect when the next stream begins, sizes as well; the callback at once.
 
