@@ -60,7 +60,8 @@ bool parse(int argc, char** argv, Options& options) {
   std::string output;
   // clang-format off
   shown.add_options()
-    ("tolerance,t", po::value<double>(), "points nearer to each other than this many metres belong together")
+    ("tolerance,t", po::value<double>()->value_name("M"),
+     "points nearer to each other than this many metres belong together")
     ("min-size", po::value<std::string>(&min_size)->value_name("N"), "least returns of a cluster (default 10)")
     ("max-size", po::value<std::string>(&max_size)->value_name("N"), "most returns of a cluster (default: no limit)")
     ("ground-z", po::value<float>(&options.ground_z)->value_name("M"),

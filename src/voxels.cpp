@@ -183,8 +183,8 @@ struct Neighbourhood {
             const int x = (cube & 3) + dx;
             const int y = (cube >> 2 & 3) + dy;
             const int z = (cube >> 4) + dz;
-            const auto block = [](int number) { return number < 0 ? 0 : number > 3 ? 2 : 1; };
-            const std::size_t i = static_cast<std::size_t>(block(z) * 9 + block(y) * 3 + block(x));
+            const auto block = [](int number) -> std::size_t { return number < 0 ? 0 : number > 3 ? 2 : 1; };
+            const std::size_t i = block(z) * 9 + block(y) * 3 + block(x);
             const std::uint64_t bit = std::uint64_t{1} << ((x & 3) | (y & 3) << 2 | (z & 3) << 4);
             all[cube][i] |= bit;
           }

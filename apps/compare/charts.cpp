@@ -62,6 +62,7 @@ void writeScript(const Chart& chart, const fs::path& png, std::ostream& script) 
 }  // namespace
 
 void checkCharts() {
+  // No other thread runs meanwhile. NOLINTNEXTLINE(concurrency-mt-unsafe)
   if (std::system("gnuplot --version >/dev/null 2>&1") != 0)
     throw std::runtime_error("charts need gnuplot (Debian's package gnuplot-nox)");
 }
@@ -73,6 +74,7 @@ void drawChart(const Chart& chart, const fs::path& png) {
   stream.precision(10);
   writeScript(chart, png, stream);
   stream.close();
+  // NOLINTNEXTLINE(concurrency-mt-unsafe)
   const bool drawn = stream && std::system(("gnuplot " + forShell(script.string()) + " >/dev/null 2>&1").c_str()) == 0;
   std::error_code ignored;
   fs::remove(script, ignored);

@@ -123,6 +123,7 @@ class ByThePaper {
     const auto& cluster_of_cell = paper_.cluster(matrix_, cloud.height, sensor_, static_cast<float>(problem.tolerance));
     component_of_.clear();
     for (const auto index : *problem.returns) {
+      // A cloud with returns is not empty. NOLINTNEXTLINE(clang-analyzer-core.DivideZero)
       const auto row = static_cast<std::size_t>(index) / cloud.width;
       const auto column = static_cast<std::size_t>(index) % cloud.width;
       component_of_.push_back(cluster_of_cell[column * cloud.height + row]);

@@ -9,6 +9,7 @@
 
 #include "lisco/column_block.h"
 #include "lisco/disjoint_sets.h"
+#include "lisco/export.h"
 #include "lisco/parallel.h"
 #include "lisco/return.h"
 #include "lisco/row.h"
@@ -52,7 +53,7 @@ struct Parameters {
 ///
 /// Nothing is allocated once the buffers have grown to the largest rotation seen. Not thread safe; any number
 /// of instances may work side by side.
-class ColumnClusterer {
+class LISCO_EXPORT ColumnClusterer {
  public:
   /// Starts a new rotation and forgets the last one. After an exception that is not about the arguments (memory was
   /// refused, or a callback threw), this is the only call that is of use.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lisco/column_block.h"
+#include "lisco/export.h"
 #include "lisco/pane.h"
 #include "lisco/return.h"
 #include "lisco/tolerance.h"
@@ -51,7 +52,7 @@ struct EndlessParameters {
 ///
 /// Memory is bounded by the returns of two turns; nothing is allocated once the buffers have grown. Not thread safe; any
 /// number of instances may work side by side.
-class EndlessClusterer {
+class LISCO_EXPORT EndlessClusterer {
  public:
   /// Receives a cluster, which is valid during the call. Must not call the clusterer.
   using Callback = std::function<void(const EndlessCluster&)>;

@@ -5,13 +5,15 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "lisco/export.h"
+
 namespace lisco {
 
 /// The number of threads that setNumberOfThreads (0) of PCL's classes means: one for each core.
-std::size_t allThreads();
+LISCO_EXPORT std::size_t allThreads();
 
 /// Calls work (context, i) for each i below `threads`, each in a thread of its own, and returns when all have.
-void inParallel(std::size_t threads, void (*work)(void* context, std::size_t thread), void* context);
+LISCO_EXPORT void inParallel(std::size_t threads, void (*work)(void* context, std::size_t thread), void* context);
 
 template <typename Work>
 void inParallel(std::size_t threads, Work&& work) {

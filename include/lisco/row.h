@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "lisco/export.h"
+
 namespace lisco {
 
 /// What one laser measured in up to 64 columns that follow each other: one bit of a machine word for each.
@@ -39,6 +41,7 @@ struct FarRange {
 
 /// Finds the returns of a row, their links and their distances. Cells that are no returns get NaN for x.
 /// \param columns number of columns; those behind are taken for empty
-void measureRow(Row& row, std::size_t columns, float squared_tolerance, const FarRange& range, MeasuredRow& measured);
+LISCO_EXPORT void measureRow(Row& row, std::size_t columns, float squared_tolerance, const FarRange& range,
+                             MeasuredRow& measured);
 
 }  // namespace lisco

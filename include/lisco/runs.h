@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "lisco/disjoint_sets.h"
+#include "lisco/export.h"
 #include "lisco/row.h"
 
 namespace lisco {
 
 /// The returns of some columns as *runs*: chains of neighbours that one laser returned in columns side by side.
-struct Runs {
+struct LISCO_EXPORT Runs {
   struct Run {
     std::uint32_t first_cell;  ///< its cells follow each other
     std::uint32_t count;

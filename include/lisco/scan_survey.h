@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "lisco/column_clusterer.h"
+#include "lisco/export.h"
 #include "lisco/return.h"
 
 namespace lisco {
@@ -32,7 +33,7 @@ class Sample {
 };
 
 /// A few pairs of adjacent cells, by which a whole cloud is judged before it is clustered.
-class ScanSurvey {
+class LISCO_EXPORT ScanSurvey {
  public:
   /// Two returns of one laser in adjacent columns.
   void addAlongRow(const Return& a, const Return& b) { along_row_.push_back({a, b}); }

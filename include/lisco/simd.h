@@ -5,17 +5,19 @@
 #include <string>
 #include <vector>
 
+#include "lisco/export.h"
+
 namespace lisco {
 
 /// The vector instructions in use, as Highway names them: "AVX3" is AVX-512. Chosen when the program runs; every
 /// level gives the same clusters.
-std::string simdLevel();
+LISCO_EXPORT std::string simdLevel();
 
 /// The levels that this processor has, the best first.
-std::vector<std::string> simdLevels();
+LISCO_EXPORT std::vector<std::string> simdLevels();
 
 /// Uses one of simdLevels () from now on, or the best again if the name is empty. For tests and benchmarks: not
 /// while another thread clusters. \return false if there is no such level
-bool useSimdLevel(const std::string& name);
+LISCO_EXPORT bool useSimdLevel(const std::string& name);
 
 }  // namespace lisco

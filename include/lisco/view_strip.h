@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lisco/disjoint_sets.h"
+#include "lisco/export.h"
 #include "lisco/row.h"
 #include "lisco/tolerance.h"
 #include "lisco/view_hints.h"
@@ -137,7 +138,7 @@ struct StripData {
 /// A return is far if its horizontal distance is at least a certain multiple of the tolerance. Neighbours that are both
 /// far are found here, but for those with a loose one: a far return that found its place taken. Loose returns must be
 /// kept elsewhere as well.
-class ViewStrip : private StripData {
+class LISCO_EXPORT ViewStrip : private StripData {
  public:
   /// Starts a rotation. Keeps its memory.
   /// \param threads how many may place returns of different lasers, or link, at the same time

@@ -9,6 +9,7 @@
 
 #include "lisco/box.h"
 #include "lisco/disjoint_sets.h"
+#include "lisco/export.h"
 #include "lisco/row.h"
 #include "lisco/tolerance.h"
 
@@ -20,7 +21,7 @@ namespace lisco {
 /// A cube is so small (eps / sqrt (3)) that what lies in it belongs together, so a thousand near returns are a handful of
 /// cubes. 4 x 4 x 4 cubes are a block: one bit of a word for each cube in use, so that the cubes around one come from a
 /// few words. What a run has in a cube is a *piece*.
-class Voxels {
+class LISCO_EXPORT Voxels {
  public:
   /// Starts a rotation. Keeps its memory.
   void prepare(const Tolerance& tolerance);

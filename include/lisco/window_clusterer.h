@@ -8,6 +8,7 @@
 
 #include "lisco/column_block.h"
 #include "lisco/disjoint_sets.h"
+#include "lisco/export.h"
 #include "lisco/pane.h"
 #include "lisco/return.h"
 #include "lisco/tolerance.h"
@@ -37,7 +38,7 @@ struct WindowParameters {
 ///
 /// Nothing is allocated once the buffers have grown to the largest window seen. Not thread safe; any number of instances
 /// may work side by side.
-class WindowClusterer {
+class LISCO_EXPORT WindowClusterer {
  public:
   /// Starts a new stream and forgets the last one. After an exception that is not about the arguments, this is the only
   /// call that is of use.

@@ -16,6 +16,7 @@
 #include <pcl/segmentation/lisco_cluster_writer.h>
 
 #include "lisco/column_clusterer.h"
+#include "lisco/export.h"
 
 namespace pcl {
 
@@ -24,7 +25,7 @@ namespace detail {
 /** \brief What LiscoClusterExtraction and extractLiscoClusters () share: reads a PCL cloud into the
  * clustering engine and writes its subclusters as PCL's clusters. Keeps its memory from cloud to cloud.
  */
-class LiscoCloudClusterer {
+class LISCO_EXPORT LiscoCloudClusterer {
  public:
   /** \brief Clusters a cloud.
    * \param[in] indices which of its points; nullptr: all
@@ -117,7 +118,20 @@ class LiscoClusterExtraction : public PCLBase<PointT> {
    * otherwise 1 + the place of the point's cluster in \a clusters. Clusters that were there before give no
    * labels.
    */
-  void extract(std::vector<PointIndices>& clusters, Labels& labels);
+  inline void extract(std::vector<PointIndices>& clusters, Labels& labels) {
+    // Here, not in the library: the image's memory belongs to the caller; see LiscoColumnStore.
+    labels = Labels();
+    if (input_) {
+      const bool organized = static_cast<std::size_t>(input_->width) * input_->height == input_->size();
+      labels.header = input_->header;
+      labels.points.resize(input_->size());
+      labels.width = organized ? input_->width : static_cast<std::uint32_t>(input_->size());
+      labels.height = organized ? input_->height : 1;
+      labels.is_dense = true;
+      for (auto& label : labels) label.label = 0;
+    }
+    extractWithLabels(clusters, labels.points.data());
+  }
 
   /** \brief Accepted for compatibility. Lisco searches no tree: it changes nothing. */
   inline void setSearchMethod(const KdTreePtr& tree) { tree_ = tree; }
@@ -181,6 +195,11 @@ class LiscoClusterExtraction : public PCLBase<PointT> {
    * \return how many were there before
    */
   std::size_t appendClusters(std::vector<PointIndices>& clusters);
+
+  /** \brief Extracts the clusters and numbers them.
+   * \param[out] labels one for each point of the input; those of points in no cluster are left as they are
+   */
+  void extractWithLabels(std::vector<PointIndices>& clusters, Label* labels);
 
   detail::LiscoCloudClusterer clusterer_;
   unsigned int threads_ = 1;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <pcl/PointIndices.h>
+#include <pcl/segmentation/lisco_pcl_version.h>
 
 namespace pcl {
 

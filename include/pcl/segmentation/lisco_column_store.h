@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <pcl/point_cloud.h>
+#include <pcl/segmentation/lisco_pcl_version.h>
 
 namespace pcl {
 
@@ -16,6 +17,10 @@ namespace detail {
 
 /** \brief The latest columns of a stream. Their cells have names, which the clustering engine is given in place of the points:
  * a running number, modulo 2^32. Keeps its memory, which is that of the most cells that were there at once.
+ *
+ * Its memory comes from std::allocator, and so does all that the library allocates: Eigen's allocator works differently where
+ * the code is compiled for AVX, so what one side has allocated by it (every PointCloud), the other side must not free.
+ * Clouds that are handed out are therefore made in headers, by the compiler of the one who wants them.
  */
 template <typename PointT>
 class LiscoColumnStore {
@@ -117,7 +122,7 @@ class LiscoColumnStore {
     if (cells + rows <= points_.size()) return;
     std::size_t room = std::max(2 * points_.size(), std::size_t{4096});
     while (room < cells + rows) room *= 2;
-    typename PointCloud<PointT>::VectorType points(room);
+    std::vector<PointT> points(room);
     std::vector<std::uint32_t> column_of_cell(room);
     for (std::size_t cell = 0; cell < cells; ++cell) {
       const std::size_t from = (first_cell_ + cell) & (points_.size() - 1);
@@ -135,7 +140,7 @@ class LiscoColumnStore {
   std::uint64_t first_column_ = 0, end_column_ = 0;
   std::uint32_t first_cell_ = kFirstName, end_cell_ = kFirstName;  ///< names
   std::vector<Column> columns_;
-  typename PointCloud<PointT>::VectorType points_;
+  std::vector<PointT> points_;
   std::vector<std::uint32_t> column_of_cell_;  ///< its lowest 32 bits
 };
 

@@ -17,6 +17,8 @@
 #include <pcl/point_struct_traits.h>
 #include <pcl/types.h>
 
+#include "lisco/export.h"
+
 namespace pcl {
 
 /** \brief Arranges a driver's point cloud message, as pcl_conversions::toPCL () gives it for a
@@ -76,7 +78,7 @@ bool organizeLiscoCloud(const PCLPointCloud2& message, PointCloud<PointT>& cloud
  * twice
  * \ingroup segmentation
  */
-PCL_EXPORTS bool mapLiscoClusters(const Indices& point_of_cell, std::vector<PointIndices>& clusters);
+LISCO_EXPORT bool mapLiscoClusters(const Indices& point_of_cell, std::vector<PointIndices>& clusters);
 
 namespace detail {
 
@@ -89,7 +91,7 @@ struct LiscoField {
 };
 
 /** \brief Reads a message, which is checked first: any bytes are fine. */
-class PCL_EXPORTS LiscoMessageReader {
+class LISCO_EXPORT LiscoMessageReader {
  public:
   /** \brief Checks the message and arranges its points in cells.
    * \param[in] message must stay as it is while the reader is used

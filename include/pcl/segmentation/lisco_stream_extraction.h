@@ -16,9 +16,11 @@
 #include <pcl/segmentation/lisco_cluster_writer.h>
 #include <pcl/segmentation/lisco_column_store.h>
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "lisco/column_clusterer.h"
 #include "lisco/endless_clusterer.h"
+#include "lisco/export.h"
 #include "lisco/view_hints.h"
 #include "lisco/window_clusterer.h"
 
@@ -194,7 +196,12 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
   void getSubclusters(std::vector<PointIndices>& clusters);
 
   /** \brief The organized cloud of the columns so far. Cells that were not given are NaN. */
-  void getCloud(PointCloud& cloud) const;
+  inline void getCloud(PointCloud& cloud) const {
+    store_.organize(0, store_.endColumn(), cloud);
+    cloud.header = header_;
+    cloud.sensor_origin_ = getSensorOrigin();
+    cloud.sensor_orientation_ = Eigen::Quaternionf::Identity();
+  }
 
   /** \brief End the rotation.
    * \param[in,out] clusters receives the clusters after those it already holds; then all are sorted by size, largest first,
@@ -206,7 +213,14 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
   /** \brief The same, and the organized cloud.
    * \param[out] cloud the one the indices are of; empty if no rotation has begun
    */
-  bool endRotation(std::vector<PointIndices>& clusters, PointCloud& cloud);
+  inline bool endRotation(std::vector<PointIndices>& clusters, PointCloud& cloud) {
+    const bool ended = endRotation(clusters);
+    if (ended)
+      getCloud(cloud);
+    else
+      cloud.clear();
+    return (ended);
+  }
 
  private:
   using Base::begun_;
@@ -295,7 +309,10 @@ class LiscoWindowExtraction : public detail::LiscoColumnStream<PointT> {
   /** \brief The organized cloud of the last window that ended, until the next one ends: what the indices are of. Empty if no
    * window has ended.
    */
-  void getWindow(PointCloud& cloud) const;
+  inline void getWindow(PointCloud& cloud) const {
+    store_.organize(window_first_, window_end_, cloud);
+    cloud.header = header_;
+  }
 
  private:
   using Base::begun_;
@@ -362,13 +379,32 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
   LiscoEndlessExtraction() = default;
   LiscoEndlessExtraction(const LiscoEndlessExtraction&) = delete;
   LiscoEndlessExtraction& operator=(const LiscoEndlessExtraction&) = delete;
+  ~LiscoEndlessExtraction() = default;
 
   // All of these take effect when the next stream begins, sizes as well; the callback at once.
 
   /** \brief Set who receives the clusters. The cluster is valid during the call: copy what is to last. It must neither throw
    * nor call this object.
    */
-  inline void setClusterCallback(ClusterCallback callback) { callback_ = std::move(callback); }
+  inline void setClusterCallback(ClusterCallback callback) {
+    callback_ = nullptr;
+    if (!callback) return;
+    // The cluster is made here, not in the library: see LiscoColumnStore.
+    callback_ = [callback = std::move(callback), cluster = Cluster()](const LiscoEndlessExtraction& from,
+                                                                      const lisco::EndlessCluster& delivered) mutable {
+      cluster.cloud.points.assign(from.delivered_points_.begin(), from.delivered_points_.end());
+      cluster.cloud.header = from.header_;
+      cluster.cloud.width = static_cast<std::uint32_t>(cluster.cloud.points.size());
+      cluster.cloud.height = 1;
+      cluster.cloud.is_dense = true;
+      cluster.cells = from.delivered_cells_;
+      cluster.first_position = delivered.firstPosition();
+      cluster.last_position = delivered.lastPosition();
+      cluster.is_cut = delivered.isCut();
+      cluster.is_continued = delivered.isContinued();
+      callback(cluster);
+    };
+  }
 
   /** \brief Where the sensor stands in the coordinates of the points (default: the origin). Azimuths are seen from there. */
   inline void setSensorOrigin(const Eigen::Vector4f& origin) { parameters_.origin = {origin[0], origin[1], origin[2]}; }
@@ -465,9 +501,11 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
 
   lisco::EndlessParameters parameters_;
   double columns_per_turn_ = 0;  ///< of the stream
-  ClusterCallback callback_;
+  std::function<void(const LiscoEndlessExtraction&, const lisco::EndlessCluster&)> callback_;
   lisco::EndlessClusterer clusterer_;
-  Cluster cluster_;  ///< that is being delivered
+  // Of the cluster that is being delivered:
+  std::vector<PointT> delivered_points_;
+  std::vector<typename Cluster::Cell> delivered_cells_;
 };
 
 }  // namespace pcl

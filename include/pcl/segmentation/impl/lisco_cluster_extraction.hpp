@@ -77,7 +77,7 @@ void pcl::LiscoClusterExtraction<PointT>::extract(std::vector<PointIndices>& clu
 }
 
 template <typename PointT>
-void pcl::LiscoClusterExtraction<PointT>::extract(std::vector<PointIndices>& clusters, Labels& labels) {
+void pcl::LiscoClusterExtraction<PointT>::extractWithLabels(std::vector<PointIndices>& clusters, Label* labels) {
   const std::size_t first = appendClusters(clusters);
 
   // The same sort on the sizes alone moves them as it moves the clusters, which tells where each came from:
@@ -90,15 +90,6 @@ void pcl::LiscoClusterExtraction<PointT>::extract(std::vector<PointIndices>& clu
   std::sort(origins.rbegin(), origins.rend(), [](const Origin& a, const Origin& b) { return (a.size < b.size); });
   std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);
 
-  labels = Labels();
-  if (!input_) return;
-  const bool organized = static_cast<std::size_t>(input_->width) * input_->height == input_->size();
-  labels.header = input_->header;
-  labels.points.resize(input_->size());
-  labels.width = organized ? input_->width : static_cast<std::uint32_t>(input_->size());
-  labels.height = organized ? input_->height : 1;
-  labels.is_dense = true;
-  for (auto& label : labels) label.label = 0;
   for (std::size_t number = 0; number < clusters.size(); ++number)
     if (origins[number].place >= first)
       for (const auto& point : clusters[number].indices)
@@ -126,10 +117,11 @@ void pcl::extractLiscoClusters(const PointCloud<PointT>& cloud, const Indices& i
     clusters.clear();
 }
 
-#define PCL_INSTANTIATE_LiscoClusterExtraction(T) template class PCL_EXPORTS pcl::LiscoClusterExtraction<T>;
-#define PCL_INSTANTIATE_extractLiscoClusters(T)                                            \
-  template void PCL_EXPORTS pcl::extractLiscoClusters<T>(const pcl::PointCloud<T>&, float, \
-                                                         std::vector<pcl::PointIndices>&, unsigned int, unsigned int);
-#define PCL_INSTANTIATE_extractLiscoClusters_indices(T)                                                         \
-  template void PCL_EXPORTS pcl::extractLiscoClusters<T>(const pcl::PointCloud<T>&, const pcl::Indices&, float, \
-                                                         std::vector<pcl::PointIndices>&, unsigned int, unsigned int);
+#define PCL_INSTANTIATE_LiscoClusterExtraction(T) template class LISCO_EXPORT pcl::LiscoClusterExtraction<T>;
+#define PCL_INSTANTIATE_extractLiscoClusters(T)            \
+  template void LISCO_EXPORT pcl::extractLiscoClusters<T>( \
+      const pcl::PointCloud<T>&, float, std::vector<pcl::PointIndices>&, unsigned int, unsigned int);
+#define PCL_INSTANTIATE_extractLiscoClusters_indices(T)                                                          \
+  template void LISCO_EXPORT pcl::extractLiscoClusters<T>(const pcl::PointCloud<T>&, const pcl::Indices&, float, \
+                                                          std::vector<pcl::PointIndices>&, unsigned int,         \
+                                                          unsigned int);

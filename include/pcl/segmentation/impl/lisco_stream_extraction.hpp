@@ -144,14 +144,6 @@ void pcl::LiscoStreamExtraction<PointT>::getSubclusters(std::vector<PointIndices
 }
 
 template <typename PointT>
-void pcl::LiscoStreamExtraction<PointT>::getCloud(PointCloud& cloud) const {
-  store_.organize(0, store_.endColumn(), cloud);
-  cloud.header = header_;
-  cloud.sensor_origin_ = getSensorOrigin();
-  cloud.sensor_orientation_ = Eigen::Quaternionf::Identity();
-}
-
-template <typename PointT>
 bool pcl::LiscoStreamExtraction<PointT>::endRotation(std::vector<PointIndices>& clusters) {
   if (!begun_) {
     PCL_ERROR("[pcl::LiscoStreamExtraction::endRotation] No rotation has begun.\n");
@@ -163,16 +155,6 @@ bool pcl::LiscoStreamExtraction<PointT>::endRotation(std::vector<PointIndices>& 
   begun_ = false;
   has_ended_ = true;
   return (true);
-}
-
-template <typename PointT>
-bool pcl::LiscoStreamExtraction<PointT>::endRotation(std::vector<PointIndices>& clusters, PointCloud& cloud) {
-  const bool ended = endRotation(clusters);
-  if (ended)
-    getCloud(cloud);
-  else
-    cloud.clear();
-  return (ended);
 }
 
 // --- Sliding windows ------------------------------------------------------------------------------------------------
@@ -220,12 +202,6 @@ bool pcl::LiscoWindowExtraction<PointT>::extract(std::vector<PointIndices>& clus
   }
   this->appendClusters(clusterer_, window_first_, window_end_, clusters);
   return (true);
-}
-
-template <typename PointT>
-void pcl::LiscoWindowExtraction<PointT>::getWindow(PointCloud& cloud) const {
-  store_.organize(window_first_, window_end_, cloud);
-  cloud.header = header_;
 }
 
 // --- Without end ----------------------------------------------------------------------------------------------------
@@ -313,26 +289,18 @@ void pcl::LiscoEndlessExtraction<PointT>::finish() {
 template <typename PointT>
 void pcl::LiscoEndlessExtraction<PointT>::deliver(const lisco::EndlessCluster& delivered) {
   if (!callback_) return;
-  cluster_.cloud.points.clear();
-  cluster_.cells.clear();
+  delivered_points_.clear();
+  delivered_cells_.clear();
   delivered.forEachRun([this](const std::uint32_t* names, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
       const auto cell = store_.cellOf(names[i]);
-      cluster_.cloud.points.push_back(store_.pointOf(names[i]));
-      cluster_.cells.push_back({cell.column, cell.row});
+      delivered_points_.push_back(store_.pointOf(names[i]));
+      delivered_cells_.push_back({cell.column, cell.row});
     }
   });
-  cluster_.cloud.header = header_;
-  cluster_.cloud.width = static_cast<std::uint32_t>(cluster_.cloud.points.size());
-  cluster_.cloud.height = 1;
-  cluster_.cloud.is_dense = true;
-  cluster_.first_position = delivered.firstPosition();
-  cluster_.last_position = delivered.lastPosition();
-  cluster_.is_cut = delivered.isCut();
-  cluster_.is_continued = delivered.isContinued();
-  callback_(cluster_);
+  callback_(*this, delivered);
 }
 
-#define PCL_INSTANTIATE_LiscoStreamExtraction(T) template class PCL_EXPORTS pcl::LiscoStreamExtraction<T>;
-#define PCL_INSTANTIATE_LiscoWindowExtraction(T) template class PCL_EXPORTS pcl::LiscoWindowExtraction<T>;
-#define PCL_INSTANTIATE_LiscoEndlessExtraction(T) template class PCL_EXPORTS pcl::LiscoEndlessExtraction<T>;
+#define PCL_INSTANTIATE_LiscoStreamExtraction(T) template class LISCO_EXPORT pcl::LiscoStreamExtraction<T>;
+#define PCL_INSTANTIATE_LiscoWindowExtraction(T) template class LISCO_EXPORT pcl::LiscoWindowExtraction<T>;
+#define PCL_INSTANTIATE_LiscoEndlessExtraction(T) template class LISCO_EXPORT pcl::LiscoEndlessExtraction<T>;
