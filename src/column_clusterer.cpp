@@ -153,8 +153,13 @@ void ColumnClusterer::linkStrip() {
 void ColumnClusterer::update() {
   if (!begun_) return;
   begun_ = is_ordered_ = false;
-  if (staged_.columns() > 0) stagedBlockIsComplete();
-  finishPending();
+  if (staged_.columns() > 0) {
+    stagedBlockIsComplete();
+    finishPending();
+    std::swap(staged_, pending_);  // back, so that the next rotation finds the same memory
+  } else {
+    finishPending();
+  }
   DisjointSets& subclusters = forests_.front();
   if (strip_.inUse()) linkStrip();
   Voxels& voxels = readings_.front().voxels;
