@@ -26,15 +26,16 @@ std::atomic<std::size_t> refused_allocation{0};  ///< that one, by its number; 0
 
 }  // namespace
 
-void* operator new(std::size_t size) {
+// Not inlined: GCC would see malloc () and free () beside the other operators and warn.
+[[gnu::noinline]] void* operator new(std::size_t size) {
   if (++allocations == refused_allocation) throw std::bad_alloc();
   if (void* const memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept {
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
   std::free(memory);
 }
-void operator delete(void* memory, std::size_t) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
   std::free(memory);
 }
 
