@@ -29,7 +29,7 @@ void EndlessClusterer::begin(const EndlessParameters& parameters, Callback callb
   range_.origin = parameters.origin;
   const double cosine = std::cos(parameters.stagger) - 1e-6;
   cos_stagger_ = static_cast<float>(cosine);
-  turns_of_stagger_ = 2 * std::acos(cosine - 1e-6) / (2 * kPi);
+  turns_of_stagger_ = 2 * (std::acos(cosine - 1e-6) / (2 * kPi));  // on either side
   block_.clear();
   any_column_ = false;
   for (EndlessPane& pane : panes_) pane.in_use = false;

@@ -496,7 +496,6 @@ void Voxels::linkInOrder(DisjointSets& subclusters) {
   }
 }
 
-/// Compares the new units of a block with all units around them; each pair of new ones once.
 /// Finds the blocks around one that hold anything, and that somebody wants: wanted(block) says which.
 template <typename Wanted>
 std::size_t Voxels::findNear(const Key& key, NearBlock* near, Wanted&& wanted) const {
