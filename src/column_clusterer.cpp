@@ -28,7 +28,8 @@ void ColumnClusterer::begin(const Parameters& parameters) {
   subcluster_sizes_.clear();
   staged_.clear();
   pending_.clear();
-  pending_laser_ = columns_since_block_ = parts_of_block_ = 0;
+  pending_laser_ = columns_since_block_ = 0;
+  pace_.begin();
   column_ = 0;
   is_ordered_ = false;
   begun_ = true;
@@ -88,12 +89,12 @@ void ColumnClusterer::stagedBlockIsComplete() {
 }
 
 /// Does as much of what is left to be done as so many columns are to take: a block of columns is read while the next one
-/// comes, and linked while the one after it comes.
+/// comes, and linked while those after it come.
 void ColumnClusterer::workOnPending(std::size_t columns) {
   const std::size_t block = parameters_.block_columns;
   columns_since_block_ = std::min(columns_since_block_ + columns, block);
-  const std::size_t parts_left = parts_of_block_ - parts_of_block_ * columns_since_block_ / block;
-  while (strip_.partsLeft() > parts_left) strip_.linkPart(forests_.front());
+  pace_.addColumns(columns);
+  while (strip_.partsLeft() > 0 && pace_.isBehind()) pace_.spend(strip_.linkPart(forests_.front()));
   if (pending_.columns() == 0) return;
   for (; pending_laser_ < pending_.lasers() * columns_since_block_ / block; ++pending_laser_)
     readRow(readings_[threads_ - 1], threads_ - 1, pending_.row(pending_laser_), pending_laser_, column_,
@@ -103,7 +104,7 @@ void ColumnClusterer::workOnPending(std::size_t columns) {
   column_ += static_cast<std::uint32_t>(pending_.columns());
   pending_.clear();
   strip_.claim();
-  parts_of_block_ = strip_.partsLeft();
+  pace_.plan(strip_.partsLeft());
 }
 
 /// Reads the rest of the block.

@@ -42,7 +42,13 @@ constexpr double kReturnsPerSquare = 400.0;
 constexpr double kRoughReturnsPerSquare = 60.0;
 // What it costs to look for a segment's neighbours in a sector, in comparisons of registers of places.
 constexpr std::uint32_t kSegmentCost = 2;
-constexpr double kLeastNearEnd = 2.5;  // in units of the tolerance
+// Work, where it is done in parts: about 5 ns each.
+constexpr std::uint32_t kWorkOfSamePlaces = 12;  // of a laser
+constexpr std::uint32_t kWorkOfCutting = 20;     // of a laser
+constexpr std::uint32_t kWorkOfPlaces = 2;       // of comparing a register of places
+constexpr std::uint32_t kWorkOfSegment = 10;
+constexpr std::uint32_t kWorkOfPair = 6;  // of segments that are compared
+constexpr double kLeastNearEnd = 2.5;     // in units of the tolerance
 
 /// An upper bound on asin (ratio), 0 <= ratio < 1.
 inline float asinBound(float ratio) {
@@ -428,6 +434,8 @@ class Windows {
       const std::size_t same = strip_.at(other, place);
       const bool both_ways = other < laser && !linking_.masks[other].by_places;
       const int first = both_ways ? -mask.before : other > laser + 1 ? 0 : 1;  // the next laser's: linkSamePlaces
+      linking_.work +=
+          static_cast<std::size_t>(mask.before + 1 - first) * (StripData::kSector / kLanes) * kWorkOfPlaces;
       for (int k = first; k <= mask.before; ++k)
         comparePlacesWith(own, same - static_cast<std::size_t>(static_cast<std::int64_t>(k)));
     }
@@ -476,6 +484,7 @@ class Windows {
       window.highest = sector.highest[i] + reach;
       window.first = sector.first[i] - places;
       window.last = sector.last[i] + places;
+      linking_.work += kWorkOfSegment;
       visit(window);
       sector.head[i] = window.head;
     }
@@ -517,6 +526,7 @@ class Windows {
   HWY_INLINE void search(Window& window, StripData::Sector& other, std::uint32_t limit) {
     const std::uint32_t begin = other.begin[window.first_laser];
     const std::uint32_t end = std::min(limit, other.begin[window.last_laser + 1]);
+    linking_.work += 1 + (end - begin) / kLanes;
     for (std::uint32_t i = begin; i < end; i += std::uint32_t{kLanes}) {
       const auto load = [&](const std::vector<float>& bound) { return hn::LoadU(kFloats, &bound[i]); };
       const auto all = [](float value) { return hn::Set(kFloats, value); };
@@ -536,6 +546,7 @@ class Windows {
         const std::uint32_t other_head = subclusters_.head(other.head[candidate]);
         other.head[candidate] = other_head;
         if (other_head == window.head) continue;
+        linking_.work += kWorkOfPair;
         if (haveNeighbours(strip_, window.cell, window.count, other.cell[candidate], other.count[candidate]))
           other.head[candidate] = window.head = subclusters_.merge(window.head, other_head);
       }
@@ -561,20 +572,25 @@ void linkPlaces(const StripData& strip, std::size_t begin, std::size_t end, Stri
   }
 }
 
-/// One of the parts of what linkPlaces does for a sector, in their order, all of them about as long.
+/// One of the parts of what linkPlaces does for a sector, in their order.
 void linkPart(const StripData& strip, std::size_t place, std::size_t part, StripData::Linking& linking,
               DisjointSets& subclusters) {
-  constexpr std::size_t kSame = 4;
-  constexpr std::size_t kPrepare = 4;
+  constexpr std::size_t kSame = 8;
+  constexpr std::size_t kPrepare = 8;
   constexpr std::size_t kLink = StripData::kParts - kSame - kPrepare;
   const auto sector = static_cast<std::int64_t>(place / StripData::kSector);
   Windows windows(strip, linking, subclusters);
-  if (part < kSame)
-    linkSamePlaces(strip, place, place + StripData::kSector, strip.someLasers(part, kSame), subclusters);
-  else if (part < kSame + kPrepare)
-    windows.prepareSector(sector, strip.someLasers(part - kSame, kPrepare));
-  else
+  if (part < kSame) {
+    const StripData::Lasers lasers = strip.someLasers(part, kSame);
+    linkSamePlaces(strip, place, place + StripData::kSector, lasers, subclusters);
+    linking.work += (lasers.end - lasers.begin) * kWorkOfSamePlaces;
+  } else if (part < kSame + kPrepare) {
+    const StripData::Lasers lasers = strip.someLasers(part - kSame, kPrepare);
+    windows.prepareSector(sector, lasers);
+    linking.work += (lasers.end - lasers.begin) * kWorkOfCutting;
+  } else {
     windows.linkSector(sector, part - kSame - kPrepare, kLink);
+  }
 }
 
 void linkSeam(const StripData& strip, std::size_t end, StripData::Linking& linking, DisjointSets& subclusters) {
@@ -780,12 +796,15 @@ void ViewStrip::claim() {
   claimed = std::max(claimed, passed());
 }
 
-void ViewStrip::linkPart(DisjointSets& subclusters) {
+std::size_t ViewStrip::linkPart(DisjointSets& subclusters) {
   if (lowest.size() < lasers.size()) updateElevations();  // some have been added since claim ()
+  const std::size_t before = linking.front().work;
   HWY_DYNAMIC_DISPATCH(linkPart)(*this, linked, linked_parts, linking.front(), subclusters);
-  if (++linked_parts < kParts) return;
-  linked_parts = 0;
-  linked += kSector;
+  if (++linked_parts == kParts) {
+    linked_parts = 0;
+    linked += kSector;
+  }
+  return linking.front().work - before;
 }
 
 void ViewStrip::linkAll(DisjointSets* forests, std::size_t threads) {

@@ -107,6 +107,38 @@ class LISCO_EXPORT ColumnClusterer {
     MeasuredRow measured{};
   };
 
+  /// How much each column is to take of the linking, so that all take about as much, though some parts of a scene take
+  /// several times what others do: what is left is to be done in so many columns, if it takes what it usually does.
+  class Pace {
+   public:
+    void begin() {
+      parts_ = 1 + parts_ / 2;  // what was long ago counts less
+      work_ = kFirstGuess + work_ / 2;
+      per_column_ = credit_ = 0;
+    }
+    /// So many parts are left from now on.
+    void plan(std::size_t parts) {
+      per_column_ = static_cast<double>(parts) * (work_ / parts_) / kSpreadOver;
+      credit_ = std::min(credit_, 0.0);
+    }
+    void addColumns(std::size_t columns) { credit_ += per_column_ * static_cast<double>(columns); }
+    bool isBehind() const { return credit_ > 0; }
+    /// A part took so much.
+    void spend(std::size_t work) {
+      credit_ -= static_cast<double>(work);
+      work_ += static_cast<double>(work);
+      ++parts_;
+    }
+
+   private:
+    static constexpr double kSpreadOver = 192;  // columns; more even if more, but then more is left at the end
+    static constexpr double kFirstGuess = 64;   // of a part's work
+    double parts_ = 0;
+    double work_ = 0;  ///< that those parts took
+    double per_column_ = 0;
+    double credit_ = 0;
+  };
+
   void stagedBlockIsComplete();
   void workOnPending(std::size_t columns);
   void finishPending();
@@ -134,8 +166,8 @@ class LISCO_EXPORT ColumnClusterer {
   ColumnBlock pending_;                 ///< a complete block, read while the next one is staged
   std::size_t pending_laser_ = 0;       ///< whose row is the next to be read
   std::size_t columns_since_block_ = 0;
-  std::size_t parts_of_block_ = 0;  ///< what the strip had to link when the last block had been read
-  std::uint32_t column_ = 0;        ///< number of columns added
+  Pace pace_;                 ///< of linking
+  std::uint32_t column_ = 0;  ///< number of columns added
   std::vector<std::uint32_t> subcluster_sizes_;
   LaserOrder order_;
   bool is_ordered_ = false;  ///< since the last update()

@@ -24,7 +24,7 @@ struct StripData {
   static constexpr std::int64_t kNowhere = std::numeric_limits<std::int64_t>::min();
   static constexpr std::size_t kSectorsKept = 8;
   static constexpr std::int64_t kNoSector = -1;
-  static constexpr std::size_t kParts = 24;  ///< in which a sector may be linked
+  static constexpr std::size_t kParts = 48;  ///< in which a sector may be linked
 
   /// What is known of a laser.
   struct Laser {
@@ -69,6 +69,7 @@ struct StripData {
     std::array<Sector, kSectorsKept> sectors;
     Sector beyond;            ///< a sector around the beginning, seen as if a turn later
     std::vector<Mask> masks;  ///< of each laser in the sector at hand
+    std::size_t work = 0;     ///< done so far, about in comparisons of registers
   };
 
   /// A return as it lies seen from the strip's start, turning with time.
@@ -165,7 +166,8 @@ class LISCO_EXPORT ViewStrip : private StripData {
   /// The same in small parts, so that no column takes much longer than others: claim () says what is to be compared.
   void claim();
   std::size_t partsLeft() const { return (claimed - linked) / kSector * kParts - linked_parts; }
-  void linkPart(DisjointSets& subclusters);
+  /// \return what it took, about in comparisons of registers
+  std::size_t linkPart(DisjointSets& subclusters);
 
   /// Compares all that has not been compared, the seam included. More returns may follow.
   void linkAll(DisjointSets& subclusters) { linkAll(&subclusters, 1); }
