@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "lisco/column_clusterer.h"
 
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -14,17 +15,10 @@ void ColumnClusterer::begin(const Parameters& parameters) {
   parameters_.block_columns = std::clamp<std::size_t>(parameters.block_columns, 1, Row::kColumns);
   if (parameters.threads == 0) parameters_.threads = allThreads();
   tolerance_ = Tolerance(parameters.tolerance);
-  threads_ = 1;
+  threads_ = 0;
+  are_linked_ = false;
   if (readings_.size() < parameters_.threads) readings_.resize(parameters_.threads);
-  for (Reading& reading : readings_) {
-    reading.first_element = 0;
-    reading.runs.clear();
-    reading.voxels.prepare(tolerance_);
-  }
-  readings_.front().runs.source_index.reserve(parameters.expected_returns / parameters_.threads);
-  strip_.prepare(tolerance_, parameters_.view, parameters_.threads);
-  if (forests_.size() < parameters_.threads) forests_.resize(parameters_.threads);
-  forests_.front().reset(0);
+  subclusters_.reset(0);
   subcluster_sizes_.clear();
   staged_.clear();
   pending_.clear();
@@ -43,43 +37,51 @@ void ColumnClusterer::checkColumns(std::size_t lasers) const {
 
 std::size_t ColumnClusterer::returnCount() const {
   std::size_t count = 0;
-  for (const Reading& reading : readings_) count += reading.runs.returns;
+  for (std::size_t thread = 0; thread < threads_; ++thread) count += readings_[thread].runs.returns;
   return count;
 }
 
-bool ColumnClusterer::readsInParallel(std::size_t columns, std::size_t lasers) const {
+bool ColumnClusterer::isWorthThreads(std::size_t columns, std::size_t lasers) const {
   constexpr std::size_t kWorthThreads = 8192;  // cells
-  return parameters_.threads > 1 && column_ == 0 && staged_.columns() == 0 && pending_.columns() == 0 && lasers > 1 &&
-         columns * lasers >= kWorthThreads;
+  return parameters_.threads > 1 && columns * lasers >= kWorthThreads;
 }
 
-/// Gives each thread some lasers, of about the same weight, and elements for as many runs as they can have.
-void ColumnClusterer::prepareReadings(std::size_t columns, std::size_t lasers) {
-  threads_ = std::min(parameters_.threads, lasers);
-  forests_.front().reset(lasers * columns + Row::kColumns);
-  std::uint64_t all = 0;
-  for (const std::uint32_t weight : weights_) all += weight;
+/// Gives each thread columns of about the same weight, and elements for as many runs as they can have.
+void ColumnClusterer::shareOut(std::size_t columns, std::size_t lasers) {
+  constexpr std::size_t kFewestWeights = 4;  // of a thread
+  threads_ = isWorthThreads(columns, lasers)
+                 ? std::clamp<std::size_t>(weights_.size() / kFewestWeights, 1, parameters_.threads)
+                 : 1;
+  weighed_lasers_ = lasers;
+  if (threads_ > 1) subclusters_.reset(lasers * columns + Row::kColumns);
+  const auto all = std::accumulate(weights_.begin(), weights_.end(), std::uint64_t{0});
   std::uint64_t sum = 0;
-  std::size_t laser = 0;
+  std::size_t weight = 0;
   for (std::size_t thread = 0; thread < threads_; ++thread) {
-    readings_[thread].first_laser = laser;
-    readings_[thread].first_element = static_cast<std::uint32_t>(laser * columns);
-    while (laser < lasers && (thread + 1 == threads_ || sum < all * (thread + 1) / threads_)) sum += weights_[laser++];
-    readings_[thread].end_laser = laser;
+    Reading& reading = readings_[thread];
+    reading.first_column = weight * kWeighed;
+    reading.first_element = static_cast<std::uint32_t>(lasers * reading.first_column);
+    while (weight < weights_.size() && sum < all * (thread + 1) / threads_) sum += weights_[weight++];
+    reading.end_column = std::min(weight * kWeighed, columns);
   }
-  if (strip_.inUse()) strip_.addLasers(lasers);
 }
 
-/// Lets the strip begin at the first far return of a row.
-void ColumnClusterer::startStripAt(const Row& row, const MeasuredRow& measured, std::uint32_t first_column) {
-  const auto first = static_cast<std::size_t>(__builtin_ctzll(measured.far));
-  strip_.start(row.x[Row::kMargin + first], row.y[Row::kMargin + first],
-               first_column + static_cast<std::uint32_t>(first));
+/// Notes what some columns took, for the next rotation.
+void ColumnClusterer::weigh(std::size_t first, std::size_t columns, std::size_t work) {
+  const std::size_t begin = first / kWeighed;
+  const std::size_t end = (first + columns + kWeighed - 1) / kWeighed;
+  std::fill(weights_.begin() + static_cast<std::ptrdiff_t>(begin), weights_.begin() + static_cast<std::ptrdiff_t>(end),
+            static_cast<std::uint32_t>(work / (end - begin)));
 }
 
-void ColumnClusterer::startStrip(Reading& reading, Row& row, std::uint32_t first_column, std::size_t columns) {
-  measureRow(row, columns, tolerance_.squared(), strip_.farRange(), reading.measured);
-  if (reading.measured.far != 0 && !strip_.hasStarted()) startStripAt(row, reading.measured, first_column);
+void ColumnClusterer::prepareReading(Reading& reading) {
+  reading.runs.clear();
+  reading.runs.source_index.reserve(parameters_.expected_returns / threads_);
+  reading.voxels.prepare(tolerance_);
+  if (threads_ > 1)
+    reading.strip.prepare(tolerance_, parameters_.view, reading.end_column - reading.first_column);
+  else
+    reading.strip.prepare(tolerance_, parameters_.view);
 }
 
 void ColumnClusterer::stagedBlockIsComplete() {
@@ -94,17 +96,17 @@ void ColumnClusterer::workOnPending(std::size_t columns) {
   const std::size_t block = parameters_.block_columns;
   columns_since_block_ = std::min(columns_since_block_ + columns, block);
   pace_.addColumns(columns);
-  while (strip_.partsLeft() > 0 && pace_.isBehind()) pace_.spend(strip_.linkPart(forests_.front()));
+  ViewStrip& strip = lastReading().strip;
+  while (strip.partsLeft() > 0 && pace_.isBehind()) pace_.spend(strip.linkPart(subclusters_));
   if (pending_.columns() == 0) return;
   for (; pending_laser_ < pending_.lasers() * columns_since_block_ / block; ++pending_laser_)
-    readRow(readings_[threads_ - 1], threads_ - 1, pending_.row(pending_laser_), pending_laser_, column_,
-            pending_.columns());
+    readRow(lastReading(), pending_.row(pending_laser_), pending_laser_, column_, pending_.columns());
   if (pending_laser_ < pending_.lasers()) return;
   pending_laser_ = 0;
   column_ += static_cast<std::uint32_t>(pending_.columns());
   pending_.clear();
-  strip_.claim();
-  pace_.plan(strip_.partsLeft());
+  strip.claim();
+  pace_.plan(strip.partsLeft());
 }
 
 /// Reads the rest of the block.
@@ -114,41 +116,65 @@ void ColumnClusterer::finishPending() {
 
 /// Chains the returns of one laser into runs: each a neighbour of the one before. Far ones go to their places in the
 /// strip, all others, and some far ones that others must find, into voxels.
-void ColumnClusterer::readRow(Reading& reading, std::size_t thread, Row& row, std::size_t laser,
-                              std::uint32_t first_column, std::size_t columns) {
+void ColumnClusterer::readRow(Reading& reading, Row& row, std::size_t laser, std::uint32_t first_column,
+                              std::size_t columns) {
   MeasuredRow& measured = reading.measured;
-  measureRow(row, columns, tolerance_.squared(), strip_.farRange(), measured);
+  ViewStrip& strip = reading.strip;
+  measureRow(row, columns, tolerance_.squared(), strip.farRange(), measured);
   if (measured.returns == 0) return;
 
-  reading.runs.add(row, measured, laser, first_column, columns, reading.first_element, forests_.front());
+  reading.runs.add(row, measured, laser, first_column, columns, reading.first_element, subclusters_);
   std::uint64_t loose = 0;
   if (measured.far != 0) {
-    if (!strip_.hasStarted()) startStripAt(row, measured, first_column);
-    loose = strip_.place(row, measured, laser, first_column, thread);
+    if (!strip.hasStarted()) {
+      const auto first = static_cast<std::size_t>(__builtin_ctzll(measured.far));
+      strip.start(row.x[Row::kMargin + first], row.y[Row::kMargin + first],
+                  first_column + static_cast<std::uint32_t>(first));
+    }
+    loose = strip.place(row, measured, laser, first_column);
   }
   const std::uint64_t near = measured.returns & (~measured.only_far | loose);
-  if (near != 0) reading.voxels.add(row, measured, near, forests_.front());
+  if (near != 0) reading.voxels.add(row, measured, near, subclusters_);
 }
 
-void ColumnClusterer::linkStrip() {
-  const auto forEachReading = [this](auto&& visit) {
-    for (std::size_t thread = 0; thread < threads_; ++thread) {
-      const std::uint32_t first = readings_[thread].first_element;
-      visit(first, first + static_cast<std::uint32_t>(readings_[thread].runs.runs.size()));
-    }
-  };
-  if (threads_ > 1)
-    inParallel(threads_, [&](std::size_t thread) {
-      if (thread == 0) return;
-      forests_[thread].reset(forests_.front().room());
-      forEachReading([&](std::uint32_t first, std::uint32_t last) {
-        for (std::uint32_t element = first; element < last; ++element) forests_[thread].create(element);
-      });
-    });
-  strip_.linkAll(forests_.data(), threads_);
-  for (std::size_t thread = 1; thread < threads_; ++thread)
-    forEachReading(
-        [&](std::uint32_t first, std::uint32_t last) { forests_.front().absorb(forests_[thread], first, last); });
+/// Joins neighbours in the voxels of two readings.
+class ColumnClusterer::VoxelJoiner : public Voxels::Joiner {
+ public:
+  explicit VoxelJoiner(DisjointSets& subclusters) : subclusters_(subclusters) {}
+  bool areApart(std::uint32_t own, std::uint32_t others) override {
+    return subclusters_.head(own) != subclusters_.head(others);
+  }
+  void join(std::uint32_t own, std::uint32_t others) override { subclusters_.merge(own, others); }
+
+ private:
+  DisjointSets& subclusters_;
+};
+
+/// Links each reading with itself, by a thread of its own, and then with those before it.
+void ColumnClusterer::linkAll() {
+  // Once they are linked with each other, subclusters belong to several of them, and only the last one gets more columns.
+  const std::size_t first = are_linked_ ? threads_ - 1 : 0;
+  are_linked_ = threads_ > 0;
+  inParallel(threads_ - first, [&](std::size_t thread) {
+    readings_[first + thread].strip.linkRest(subclusters_);
+    readings_[first + thread].voxels.link(subclusters_);
+  });
+  bool full = false;
+  for (std::size_t thread = first; thread < threads_; ++thread) {
+    for (std::size_t earlier = 0; earlier < thread; ++earlier) linkReadings(readings_[thread], readings_[earlier]);
+    readings_[thread].strip.linkTo(readings_[thread].strip, subclusters_);
+    full = full || readings_[thread].strip.isFull();
+  }
+  for (std::size_t thread = 0; thread < threads_; ++thread) {
+    readings_[thread].voxels.settle();
+    if (full) readings_[thread].strip.stopPlacing();
+  }
+}
+
+void ColumnClusterer::linkReadings(Reading& later, Reading& earlier) {
+  VoxelJoiner joiner(subclusters_);
+  later.strip.linkTo(earlier.strip, subclusters_);
+  later.voxels.linkTo(earlier.voxels, Voxels::Part::kNew, joiner);
 }
 
 void ColumnClusterer::update() {
@@ -161,12 +187,7 @@ void ColumnClusterer::update() {
   } else {
     finishPending();
   }
-  DisjointSets& subclusters = forests_.front();
-  if (strip_.inUse()) linkStrip();
-  Voxels& voxels = readings_.front().voxels;
-  for (std::size_t thread = 1; thread < threads_; ++thread) voxels.absorb(readings_[thread].voxels, subclusters);
-  voxels.link(subclusters);
-  voxels.settle();
+  linkAll();
 
   // A head is the first element of its set.
   subcluster_sizes_.clear();
@@ -175,7 +196,7 @@ void ColumnClusterer::update() {
     for (std::size_t i = 0; i < reading.runs.runs.size(); ++i) {
       Runs::Run& run = reading.runs.runs[i];
       const std::uint32_t element = reading.first_element + static_cast<std::uint32_t>(i);
-      const std::uint32_t head = subclusters.head(element);
+      const std::uint32_t head = subclusters_.head(element);
       if (head == element) {
         run.subcluster = static_cast<std::uint32_t>(subcluster_sizes_.size());
         subcluster_sizes_.push_back(run.count);

@@ -3,11 +3,8 @@
 #include "lisco/view_strip.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
-
-#include "lisco/parallel.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "view_strip.cpp"
@@ -105,7 +102,8 @@ std::uint64_t store(StripData& strip, const Row& row, const MeasuredRow& measure
 }
 
 std::uint64_t placeReturns(StripData& strip, const Row& row, const MeasuredRow& measured, std::size_t laser_number,
-                           std::uint32_t first_column, StripData::Placing& placing) {
+                           std::uint32_t first_column) {
+  StripData::Placing& placing = strip.placing;
   StripData::Laser& laser = strip.lasers[laser_number];
   const auto places = static_cast<std::int64_t>(strip.places);
   const auto turn = static_cast<std::int64_t>(strip.steps);
@@ -163,6 +161,7 @@ std::uint64_t placeReturns(StripData& strip, const Row& row, const MeasuredRow& 
         loose |= store(strip, row, measured, laser_number, first_place, placed);
         const auto last = static_cast<std::int64_t>(63 - __builtin_clzll(placed));
         placing.placed += static_cast<std::size_t>(__builtin_popcountll(placed & ~loose));
+        placing.begin = std::min(placing.begin, static_cast<std::size_t>(first_place + __builtin_ctzll(placed)));
         placing.end = std::max(placing.end, static_cast<std::size_t>(first_place + last + 1));
         if (first_place + static_cast<std::int64_t>(next) < static_cast<std::int64_t>(strip.claimed))
           for (std::uint64_t some = placed & ~loose; some != 0; some &= some - 1) {
@@ -228,10 +227,10 @@ void linkSamePlaces(const StripData& strip, std::size_t begin, std::size_t end, 
 
 /// Cuts the runs in sixteen places of some lasers into segments. The lasers of a sector are to follow each other.
 /// \param later places are counted from so many before the strip's
-void cutSector(const StripData& strip, std::int64_t number, std::size_t later, const StripData::Lasers& lasers,
+void cutSector(const StripData& strip, std::int64_t number, float later, const StripData::Lasers& lasers,
                StripData::Sector& sector, DisjointSets& subclusters) {
   const std::int64_t first_place = number * static_cast<std::int64_t>(StripData::kSector);
-  const float offset = static_cast<float>(first_place + static_cast<std::int64_t>(later));
+  const float offset = static_cast<float>(first_place) + later;
   constexpr std::uint32_t kWorthVectors = 6;  // returns
   sector.number = StripData::kNoSector;
   std::uint32_t count = lasers.begin == 0 ? 0 : sector.begin[lasers.begin];
@@ -310,22 +309,25 @@ void cutSector(const StripData& strip, std::int64_t number, std::size_t later, c
   if (lasers.end == strip.lasers.size()) sector.number = number;
 }
 
+/// The returns of a segment.
+struct Returns {
+  const StripData* strip;
+  std::size_t cell, count;
+};
+
 /// Whether any return of one segment is a neighbour of any return of the other.
-bool haveNeighbours(const StripData& strip, std::size_t a, std::size_t a_count, std::size_t b, std::size_t b_count) {
-  if (a_count > b_count) {
-    std::swap(a, b);
-    std::swap(a_count, b_count);
-  }
-  const FloatVector r2 = hn::Set(kFloats, strip.tolerance.squared());
-  const std::uint32_t lanes = (1U << b_count) - 1;
-  for (std::size_t i = a; i < a + a_count; ++i) {
-    const FloatVector x = hn::Set(kFloats, strip.x[i]);
-    const FloatVector y = hn::Set(kFloats, strip.y[i]);
-    const FloatVector z = hn::Set(kFloats, strip.z[i]);
-    for (std::size_t k = 0; k < b_count; k += kLanes) {
-      const FloatMask near = areNeighbours(hn::Sub(x, hn::LoadU(kFloats, &strip.x[b + k])),
-                                           hn::Sub(y, hn::LoadU(kFloats, &strip.y[b + k])),
-                                           hn::Sub(z, hn::LoadU(kFloats, &strip.z[b + k])), r2);
+bool haveNeighbours(Returns a, Returns b) {
+  if (a.count > b.count) std::swap(a, b);
+  const FloatVector r2 = hn::Set(kFloats, a.strip->tolerance.squared());
+  const std::uint32_t lanes = (1U << b.count) - 1;
+  for (std::size_t i = a.cell; i < a.cell + a.count; ++i) {
+    const FloatVector x = hn::Set(kFloats, a.strip->x[i]);
+    const FloatVector y = hn::Set(kFloats, a.strip->y[i]);
+    const FloatVector z = hn::Set(kFloats, a.strip->z[i]);
+    for (std::size_t k = 0; k < b.count; k += kLanes) {
+      const FloatMask near = areNeighbours(hn::Sub(x, hn::LoadU(kFloats, &b.strip->x[b.cell + k])),
+                                           hn::Sub(y, hn::LoadU(kFloats, &b.strip->y[b.cell + k])),
+                                           hn::Sub(z, hn::LoadU(kFloats, &b.strip->z[b.cell + k])), r2);
       if ((bitsOf(near) & lanes >> k) != 0) return true;
     }
   }
@@ -344,7 +346,7 @@ class Windows {
   /// Prepares some lasers of a sector for being linked. The lasers of a sector are to follow each other.
   void prepareSector(std::int64_t number, const StripData::Lasers& lasers) {
     StripData::Sector& sector = sectorOf(number);
-    cutSector(strip_, number, 0, lasers, sector, subclusters_);
+    cutSector(strip_, number, 0.0F, lasers, sector, subclusters_);
     for (std::size_t laser = lasers.begin; laser < lasers.end; ++laser) prepareMask(sector, laser);
   }
 
@@ -356,7 +358,7 @@ class Windows {
       if (linking_.masks[laser].by_places)
         comparePlaces(number, laser);
       else
-        forEachSegment(sector, laser, [&](Window& window) {
+        forEachSegment(strip_, sector, laser, [&](Window& window) {
           const std::int64_t sectors = (window.before + 15) / 16;
           for (std::int64_t other = std::max<std::int64_t>(number - sectors, 0); other < number; ++other)
             search(window, cut(other), ~0U);
@@ -365,19 +367,27 @@ class Windows {
     }
   }
 
-  /// Links what lies around the beginning with what lies a turn later.
-  void linkSeam(std::size_t end) {
-    const auto turn = static_cast<std::int64_t>(strip_.steps);
-    const auto last = (static_cast<std::int64_t>(end) - 1) / 16;
-    for (std::int64_t number = 0; number * 16 + turn - kMostReach < static_cast<std::int64_t>(end); ++number) {
+  /// Links another strip with this one, so many places later: a turn, if it is this one, which joins its end with its beginning.
+  /// Both know of all lasers how high and low they have been.
+  void linkAcross(const StripData& other, double later) {
+    // Places of different strips may be apart by a fraction of one.
+    const double reach = placesWithin(asinBound(strip_.reach / strip_.range.near_end)) + 1;
+    const auto last = sectorAt(static_cast<double>(strip_.placing.end - 1));
+    const auto first_of_other = sectorAt(
+        std::max(static_cast<double>(other.placing.begin), static_cast<double>(strip_.placing.begin) - reach - later));
+    const auto last_of_other = sectorAt(
+        std::min(static_cast<double>(other.placing.end), static_cast<double>(strip_.placing.end) + reach - later));
+    for (std::int64_t number = first_of_other; number <= last_of_other; ++number) {
       StripData::Sector& sector = linking_.beyond;
-      cutSector(strip_, number, strip_.steps, strip_.allLasers(), sector, subclusters_);
+      cutSector(other, number, static_cast<float>(later), strip_.allLasers(), sector, subclusters_);
       for (std::size_t laser = 0; laser < strip_.lasers.size(); ++laser) {
         prepareMask(sector, laser);
-        forEachSegment(sector, laser, [&](Window& window) {
-          const std::int64_t from = std::max<std::int64_t>(0, number * 16 + turn - window.before) / 16;
-          const std::int64_t to = std::min(last, (number * 16 + 15 + turn + window.before) / 16);
-          for (std::int64_t other = from; other <= to; ++other) search(window, cut(other), ~0U);
+        forEachSegment(other, sector, laser, [&](Window& window) {
+          window.first -= 1;
+          window.last += 1;
+          const std::int64_t from = std::max<std::int64_t>(0, sectorAt(static_cast<double>(window.first)));
+          const std::int64_t to = std::min(last, sectorAt(static_cast<double>(window.last)));
+          for (std::int64_t one = from; one <= to; ++one) search(window, cut(one), ~0U);
         });
       }
     }
@@ -390,9 +400,13 @@ class Windows {
     std::uint32_t head;
     std::int64_t before;  ///< places that it reaches over
     std::size_t first_laser, last_laser;
-    std::size_t cell, count;
+    Returns returns;
     float nearest, farthest, lowest, highest, first, last;
   };
+
+  static std::int64_t sectorAt(double place) {
+    return static_cast<std::int64_t>(std::floor(place / static_cast<double>(StripData::kSector)));
+  }
 
   StripData::Sector& sectorOf(std::int64_t number) {
     return linking_.sectors[static_cast<std::size_t>(number) % StripData::kSectorsKept];
@@ -400,7 +414,7 @@ class Windows {
 
   StripData::Sector& cut(std::int64_t number) {
     StripData::Sector& sector = sectorOf(number);
-    if (sector.number != number) cutSector(strip_, number, 0, strip_.allLasers(), sector, subclusters_);
+    if (sector.number != number) cutSector(strip_, number, 0.0F, strip_.allLasers(), sector, subclusters_);
     return sector;
   }
 
@@ -463,7 +477,7 @@ class Windows {
 
   /// Calls visit with the window of each of a laser's segments. It may change the segment's head.
   template <typename Visit>
-  void forEachSegment(StripData::Sector& sector, std::size_t laser, Visit&& visit) {
+  void forEachSegment(const StripData& strip, StripData::Sector& sector, std::size_t laser, Visit&& visit) {
     const StripData::Mask& mask = linking_.masks[laser];
     constexpr float kWorthNarrowing = 1.25F;
     Window window{};
@@ -476,8 +490,7 @@ class Windows {
       const auto places = static_cast<float>(window.before);
       window.segment = i;
       window.head = subclusters_.head(sector.head[i]);
-      window.cell = sector.cell[i];
-      window.count = sector.count[i];
+      window.returns = {&strip, sector.cell[i], sector.count[i]};
       window.nearest = sector.nearest[i] - reach;
       window.farthest = sector.farthest[i] + reach;
       window.lowest = sector.lowest[i] - reach;
@@ -547,7 +560,7 @@ class Windows {
         other.head[candidate] = other_head;
         if (other_head == window.head) continue;
         linking_.work += kWorkOfPair;
-        if (haveNeighbours(strip_, window.cell, window.count, other.cell[candidate], other.count[candidate]))
+        if (haveNeighbours(window.returns, {&strip_, other.cell[candidate], other.count[candidate]}))
           other.head[candidate] = window.head = subclusters_.merge(window.head, other_head);
       }
     }
@@ -561,10 +574,9 @@ class Windows {
   std::uint32_t last_b_ = ~std::uint32_t{0};
 };
 
-void linkPlaces(const StripData& strip, std::size_t begin, std::size_t end, StripData::Linking& linking,
-                DisjointSets& subclusters) {
+void linkPlaces(StripData& strip, std::size_t begin, std::size_t end, DisjointSets& subclusters) {
   linkSamePlaces(strip, begin, end, strip.allLasers(), subclusters);
-  Windows windows(strip, linking, subclusters);
+  Windows windows(strip, strip.linking, subclusters);
   for (std::size_t place = begin; place < end; place += StripData::kSector) {
     const auto sector = static_cast<std::int64_t>(place / StripData::kSector);
     windows.prepareSector(sector, strip.allLasers());
@@ -573,28 +585,27 @@ void linkPlaces(const StripData& strip, std::size_t begin, std::size_t end, Stri
 }
 
 /// One of the parts of what linkPlaces does for a sector, in their order.
-void linkPart(const StripData& strip, std::size_t place, std::size_t part, StripData::Linking& linking,
-              DisjointSets& subclusters) {
+void linkPart(StripData& strip, std::size_t place, std::size_t part, DisjointSets& subclusters) {
   constexpr std::size_t kSame = 8;
   constexpr std::size_t kPrepare = 8;
   constexpr std::size_t kLink = StripData::kParts - kSame - kPrepare;
   const auto sector = static_cast<std::int64_t>(place / StripData::kSector);
-  Windows windows(strip, linking, subclusters);
+  Windows windows(strip, strip.linking, subclusters);
   if (part < kSame) {
     const StripData::Lasers lasers = strip.someLasers(part, kSame);
     linkSamePlaces(strip, place, place + StripData::kSector, lasers, subclusters);
-    linking.work += (lasers.end - lasers.begin) * kWorkOfSamePlaces;
+    strip.linking.work += (lasers.end - lasers.begin) * kWorkOfSamePlaces;
   } else if (part < kSame + kPrepare) {
     const StripData::Lasers lasers = strip.someLasers(part - kSame, kPrepare);
     windows.prepareSector(sector, lasers);
-    linking.work += (lasers.end - lasers.begin) * kWorkOfCutting;
+    strip.linking.work += (lasers.end - lasers.begin) * kWorkOfCutting;
   } else {
     windows.linkSector(sector, part - kSame - kPrepare, kLink);
   }
 }
 
-void linkSeam(const StripData& strip, std::size_t end, StripData::Linking& linking, DisjointSets& subclusters) {
-  Windows(strip, linking, subclusters).linkSeam(end);
+void linkAcross(StripData& strip, const StripData& other, double later, DisjointSets& subclusters) {
+  Windows(strip, strip.linking, subclusters).linkAcross(other, later);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -608,23 +619,20 @@ namespace {
 HWY_EXPORT(placeReturns);
 HWY_EXPORT(linkPlaces);
 HWY_EXPORT(linkPart);
-HWY_EXPORT(linkSeam);
+HWY_EXPORT(linkAcross);
 
 }  // namespace
 
-void ViewStrip::prepare(const Tolerance& new_tolerance, const ViewHints& hints, std::size_t threads) {
+void ViewStrip::prepare(const Tolerance& new_tolerance, const ViewHints& hints, std::size_t columns) {
   tolerance = new_tolerance;
   started = false;
   linked = claimed = 0;
   linked_parts = 0;
-  placing.resize(std::max(placing.size(), threads));
-  for (Placing& one : placing) {
-    one.loose.clear();
-    one.late.clear();
-    one.placed = one.end = 0;
-    one.full = one.elevations_changed = false;
-  }
-  linking.resize(std::max(linking.size(), threads));
+  placing.loose.clear();
+  placing.late.clear();
+  placing.placed = placing.end = 0;
+  placing.begin = places;
+  placing.full = elevations_changed = false;
 
   const double turn_steps = std::clamp<double>(hints.steps_per_turn, 0, 1e9);
   const auto new_steps = static_cast<std::size_t>(turn_steps);
@@ -652,10 +660,11 @@ void ViewStrip::prepare(const Tolerance& new_tolerance, const ViewHints& hints, 
   range.far_enough = range.near_end * 1.00001F + reach;
   range.not_too_far = kFarEnd * 0.9999F - reach;
   direction = hints.clockwise ? -1.0F : 1.0F;
-  if (new_steps != steps) {
+  const std::size_t new_places = (std::min(columns, new_steps) + kSector - 1) / kSector * kSector + 4 * kMargin;
+  if (new_steps != steps || new_places > places) {
     steps = new_steps;
     radians_per_place = static_cast<float>(step);
-    places = steps + 4 * kMargin;
+    places = new_places;
     stride = kMargin + places + 2 * kMargin;
     cosine.resize(stride + kMargin);
     sine.resize(stride + kMargin);
@@ -676,7 +685,7 @@ void ViewStrip::addLasers(std::size_t count) {
   if (count <= before) return;
   linked_parts = 0;  // of a sector with fewer lasers
   lasers.resize(count, {kInfinity, -kInfinity, kNowhere, 0});
-  placing.front().elevations_changed = true;  // there are more of them
+  elevations_changed = true;  // there are more of them
   const std::size_t size = count * stride + kMargin;
   if (x.size() < size) {
     for (auto* coordinate : {&x, &y, &z}) coordinate->resize(size);
@@ -685,66 +694,54 @@ void ViewStrip::addLasers(std::size_t count) {
   std::fill(x.begin() + static_cast<std::ptrdiff_t>(before * stride),
             x.begin() + static_cast<std::ptrdiff_t>(count * stride + kMargin), kNan);
   const std::size_t segments = count * kSector + kSector;  // vectors are read a little behind the last
-  for (Linking& one : linking) {
-    one.masks.assign(count, Mask());
-    const auto prepareSector = [&](Sector& sector) {
-      sector.number = kNoSector;
-      for (auto* bound :
-           {&sector.nearest, &sector.farthest, &sector.lowest, &sector.highest, &sector.first, &sector.last})
-        bound->resize(segments);
-      sector.head.resize(segments);
-      sector.cell.resize(segments);
-      sector.count.resize(segments);
-      sector.begin.resize(count + 1);
-    };
-    for (Sector& sector : one.sectors) prepareSector(sector);
-    prepareSector(one.beyond);
-  }
+  linking.masks.assign(count, Mask());
+  const auto prepareSector = [&](Sector& sector) {
+    sector.number = kNoSector;
+    for (auto* bound :
+         {&sector.nearest, &sector.farthest, &sector.lowest, &sector.highest, &sector.first, &sector.last})
+      bound->resize(segments);
+    sector.head.resize(segments);
+    sector.cell.resize(segments);
+    sector.count.resize(segments);
+    sector.begin.resize(count + 1);
+  };
+  for (Sector& sector : linking.sectors) prepareSector(sector);
+  prepareSector(linking.beyond);
 }
 
 void ViewStrip::start(float x_seen, float y_seen, std::uint32_t column) {
   started = true;
-  const float azimuth = std::atan2(y_seen - range.origin[1], x_seen - range.origin[0]);
-  const float before = direction * static_cast<float>(kMargin) * radians_per_place;
-  start_cosine = std::cos(azimuth - before);
-  start_sine = std::sin(azimuth - before);
+  const double azimuth =
+      std::atan2(static_cast<double>(y_seen - range.origin[1]), static_cast<double>(x_seen - range.origin[0]));
+  start_azimuth = azimuth - static_cast<double>(direction * static_cast<float>(kMargin) * radians_per_place);
+  start_cosine = static_cast<float>(std::cos(start_azimuth));
+  start_sine = static_cast<float>(std::sin(start_azimuth));
   first_column = column;
 }
 
-std::uint64_t ViewStrip::place(const Row& row, const MeasuredRow& measured, std::size_t laser, std::uint32_t column,
-                               std::size_t thread) {
-  Placing& own = placing[thread];
+std::uint64_t ViewStrip::place(const Row& row, const MeasuredRow& measured, std::size_t laser, std::uint32_t column) {
   if (measured.lowest < lasers[laser].lowest || measured.highest > lasers[laser].highest) {
     constexpr float kWidening = 1e-3F;  // so that bounds settle soon
     lasers[laser].lowest =
         std::min(lasers[laser].lowest, measured.lowest - kWidening * (1 + std::fabs(measured.lowest)));
     lasers[laser].highest =
         std::max(lasers[laser].highest, measured.highest + kWidening * (1 + std::fabs(measured.highest)));
-    own.elevations_changed = true;
+    elevations_changed = true;
   }
   const std::uint64_t loose =
-      own.full ? measured.far : HWY_DYNAMIC_DISPATCH(placeReturns)(*this, row, measured, laser, column, own);
+      placing.full ? measured.far : HWY_DYNAMIC_DISPATCH(placeReturns)(*this, row, measured, laser, column);
   for (std::uint64_t some = loose; some != 0; some &= some - 1) {
     const auto i = static_cast<std::size_t>(__builtin_ctzll(some));
-    own.loose.push_back({row.x[Row::kMargin + i], row.y[Row::kMargin + i], row.z[Row::kMargin + i], measured.run[i]});
+    placing.loose.push_back(
+        {row.x[Row::kMargin + i], row.y[Row::kMargin + i], row.z[Row::kMargin + i], measured.run[i]});
   }
-  if (loose != 0) own.full = own.full || own.loose.size() > kFewLoose + own.placed / kPlacedPerLoose;
+  if (placing.loose.size() > kFewLoose + placing.placed / kPlacedPerLoose) placing.full = true;
   return loose;
 }
 
-std::size_t ViewStrip::end() const {
-  std::size_t last = 0;
-  for (const Placing& one : placing) last = std::max(last, one.end);
-  return last;
-}
-
 void ViewStrip::updateElevations() {
-  bool changed = false;
-  for (Placing& one : placing) {
-    changed = changed || one.elevations_changed;
-    one.elevations_changed = false;
-  }
-  if (!changed) return;
+  if (!elevations_changed) return;
+  elevations_changed = false;
   const std::size_t count = lasers.size();
   // Lasers are taken from top to bottom; if they come the other way round, elevations are turned over.
   float first = 0;
@@ -786,7 +783,7 @@ std::size_t ViewStrip::passed() const {
 void ViewStrip::link(DisjointSets& subclusters) {
   claim();
   while (linked_parts > 0) linkPart(subclusters);
-  if (linked < claimed) HWY_DYNAMIC_DISPATCH(linkPlaces)(*this, linked, claimed, linking.front(), subclusters);
+  if (linked < claimed) HWY_DYNAMIC_DISPATCH(linkPlaces)(*this, linked, claimed, subclusters);
   linked = claimed;
 }
 
@@ -798,49 +795,65 @@ void ViewStrip::claim() {
 
 std::size_t ViewStrip::linkPart(DisjointSets& subclusters) {
   if (lowest.size() < lasers.size()) updateElevations();  // some have been added since claim ()
-  const std::size_t before = linking.front().work;
-  HWY_DYNAMIC_DISPATCH(linkPart)(*this, linked, linked_parts, linking.front(), subclusters);
+  const std::size_t before = linking.work;
+  HWY_DYNAMIC_DISPATCH(linkPart)(*this, linked, linked_parts, subclusters);
   if (++linked_parts == kParts) {
     linked_parts = 0;
     linked += kSector;
   }
-  return linking.front().work - before;
+  return linking.work - before;
 }
 
-void ViewStrip::linkAll(DisjointSets* forests, std::size_t threads) {
-  DisjointSets& subclusters = forests[0];
+void ViewStrip::linkRest(DisjointSets& subclusters) {
   if (!started) return;
+  link(subclusters);
+  if (placing.end > linked) HWY_DYNAMIC_DISPATCH(linkPlaces)(*this, linked, placing.end, subclusters);
+  if (!placing.late.empty()) forgetSectors();
+  for (const Loose& late : placing.late) search(late, subclusters);
+  placing.late.clear();
+}
+
+/// More returns may come there, or have come late.
+void ViewStrip::forgetSectors() {
+  for (Sector& sector : linking.sectors) sector.number = kNoSector;
+}
+
+/// Takes over what another strip has seen of the lasers.
+void ViewStrip::shareElevations(const ViewStrip& other) {
+  addLasers(other.lasers.size());
+  for (std::size_t laser = 0; laser < other.lasers.size(); ++laser) {
+    if (other.lasers[laser].lowest >= lasers[laser].lowest && other.lasers[laser].highest <= lasers[laser].highest)
+      continue;
+    lasers[laser].lowest = std::min(lasers[laser].lowest, other.lasers[laser].lowest);
+    lasers[laser].highest = std::max(lasers[laser].highest, other.lasers[laser].highest);
+    elevations_changed = true;
+  }
+}
+
+void ViewStrip::linkTo(ViewStrip& other, DisjointSets& subclusters) {
+  if (!started || !other.started) return;
+  if (&other != this) {
+    shareElevations(other);
+    other.shareElevations(*this);
+    other.updateElevations();
+  }
   updateElevations();
-  const std::size_t last = end();
-  if (last > linked) {
-    // Threads take parts of the turn as they come; what reaches into the part before is found from the later one.
-    constexpr std::size_t kPartsPerThread = 4;
-    const std::size_t sectors = (last - linked + kSector - 1) / kSector;
-    const std::size_t parts = threads > 1 ? std::min(kPartsPerThread * threads, sectors) : 1;
-    const auto firstOf = [&](std::size_t part) { return linked + sectors * part / parts * kSector; };
-    std::atomic<std::size_t> next{0};
-    inParallel(std::min(threads, parts), [&](std::size_t thread) {
-      for (std::size_t part = next++; part < parts; part = next++) HWY_DYNAMIC_DISPATCH(linkPlaces)
-      (*this, firstOf(part), std::min(last, firstOf(part + 1)), linking[thread], forests[thread]);
-    });
-  }
-  linked = claimed = std::max(claimed, passed());
-  linked_parts = 0;
-  HWY_DYNAMIC_DISPATCH(linkSeam)(*this, last, linking.front(), subclusters);
-  for (Linking& one : linking)
-    for (Sector& sector : one.sectors) sector.number = kNoSector;  // more may come there, or has come late
-  bool full = false;
-  for (Placing& one : placing) {
-    for (const Loose& late : one.late) search(late, subclusters);
-    one.late.clear();
-    for (const Loose& loose : one.loose) search(loose, subclusters);
-    full = full || one.full;
-  }
-  if (!full) return;
-  for (Placing& one : placing) {  // no more are placed by anyone, so nothing comes after the loose ones
-    one.full = true;
-    one.loose.clear();
-  }
+  const auto turn = static_cast<double>(steps);
+  const double ahead = direction * (other.start_azimuth - start_azimuth) / static_cast<double>(radians_per_place);
+  const double least = &other == this ? 1.0 : -static_cast<double>(other.placing.end) - kMostReach;
+  const double most = static_cast<double>(placing.end) + kMostReach;
+  if (placing.placed > 0 && other.placing.placed > 0)
+    for (double later = ahead + turn * std::ceil((least - ahead) / turn); later <= most; later += turn)
+      HWY_DYNAMIC_DISPATCH(linkAcross)(*this, other, later, subclusters);
+  forgetSectors();
+  for (const Loose& loose : other.placing.loose) search(loose, subclusters);
+  if (&other == this) return;
+  for (const Loose& loose : placing.loose) other.search(loose, subclusters);
+}
+
+void ViewStrip::stopPlacing() {
+  placing.full = true;
+  placing.loose.clear();
 }
 
 /// Compares one return with all places that may hold its neighbours.
@@ -851,16 +864,21 @@ void ViewStrip::search(const Loose& loose, DisjointSets& subclusters) const {
   const auto turn = static_cast<std::int64_t>(steps);
   const std::int64_t measured = placeOf(seenFromStart(east, north)) % turn;
   const std::int64_t middle = measured < 0 ? measured + turn : measured;
+  const std::array<std::int64_t, 3> centers{middle - turn, middle, middle + turn};
   const float angle = asinBound(reach / rho);
   const auto before = static_cast<std::int64_t>(angle / radians_per_place + (kDeviation + 1.0F));
   const float slope = std::atan((loose.z - range.origin[2]) / rho);
   const float elevation = upside_down ? -slope : slope;
   const float squared_tolerance = tolerance.squared();
-  const auto last = static_cast<std::int64_t>(end()) - 1;
+  const auto last = static_cast<std::int64_t>(placing.end) - 1;
+  const bool is_seen = std::any_of(centers.begin(), centers.end(), [&](std::int64_t center) {
+    return center + before >= 0 && center - before <= last;
+  });
+  if (!is_seen) return;
   for (std::size_t laser = 0; laser < lasers.size(); ++laser) {
     if (lowest[laser] > elevation + angle + kAngleRounding || highest[laser] < elevation - angle - kAngleRounding)
       continue;
-    for (const std::int64_t center : {middle - turn, middle, middle + turn}) {
+    for (const std::int64_t center : centers) {
       const std::int64_t from = std::max<std::int64_t>(0, center - before);
       const std::int64_t to = std::min(last, center + before);
       for (std::int64_t place = from; place <= to; ++place) {

@@ -317,7 +317,7 @@ void Voxels::addPiece(const Key& cube, const Box& box, std::uint32_t piece, std:
     return;
   }
   const auto number = static_cast<std::uint32_t>(units_.size());
-  units_.push_back({box, element, piece, piece, first, true});
+  units_.push_back({box, element, piece, first, true});
   first = number;
   recent = {cube, number};
 }
@@ -380,52 +380,6 @@ std::uint32_t& Voxels::firstUnit(Block& block, std::uint32_t cube) {
   const auto list = first_units_.begin() + block.units;
   std::copy_backward(list + rank, list + used, list + used + 1);
   return *(list + rank) = kNone;
-}
-
-void Voxels::absorb(Voxels& other, DisjointSets& subclusters) {
-  const auto points = static_cast<std::uint32_t>(newPoints(other.points_));
-  const auto pieces = static_cast<std::uint32_t>(pieces_.size());
-  std::copy_n(other.x_.begin(), other.points_, x_.begin() + points);
-  std::copy_n(other.y_.begin(), other.points_, y_.begin() + points);
-  std::copy_n(other.z_.begin(), other.points_, z_.begin() + points);
-  for (Piece piece : other.pieces_) {
-    piece.first_point += points;
-    if (piece.next_in_unit != kNone) piece.next_in_unit += pieces;
-    pieces_.push_back(piece);
-  }
-  for (const Block& block : other.blocks_) {
-    const std::uint32_t own_number = makeBlock(block.key);
-    Block& own = blocks_[own_number];
-    if (!own.is_new) {
-      own.is_new = true;
-      new_blocks_.push_back(own_number);
-    }
-    std::uint32_t rank = 0;
-    for (std::uint64_t left = block.occupied; left != 0; left &= left - 1, ++rank)
-      for (std::uint32_t i = other.first_units_[block.units + rank]; i != kNone;) {
-        Unit unit = other.units_[i];
-        i = unit.next_in_cube;
-        unit.first_piece += pieces;
-        unit.last_piece += pieces;
-        std::uint32_t& first = firstUnit(own, static_cast<std::uint32_t>(__builtin_ctzll(left)));
-        Unit* like = nullptr;
-        for (std::uint32_t j = first; j != kNone && like == nullptr; j = units_[j].next_in_cube)
-          if (Box::squaredSpan(units_[j].box, unit.box) < tolerance_.squared()) like = &units_[j];
-        if (like != nullptr) {
-          like->box.add(unit.box);
-          like->is_new = true;
-          pieces_[unit.last_piece].next_in_unit = like->first_piece;
-          like->first_piece = unit.first_piece;
-          like->head = subclusters.merge(like->head, unit.head);
-        } else {
-          unit.next_in_cube = first;
-          first = static_cast<std::uint32_t>(units_.size());
-          units_.push_back(unit);
-        }
-      }
-  }
-  all_safe_ = all_safe_ && other.all_safe_;
-  other.prepare(tolerance_);
 }
 
 /// Calls visit(cube, unit) for all units of a block.
@@ -638,7 +592,6 @@ void Voxels::unite(Unit& unit) {
       z_[point] = z_[k];
     }
   pieces_[unit.first_piece] = {static_cast<std::uint32_t>(first), count, end};
-  if (end == kNone) unit.last_piece = unit.first_piece;
 }
 
 /// Whether any return of one unit is a neighbour of any return of another one's.

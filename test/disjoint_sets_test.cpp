@@ -101,35 +101,5 @@ TEST(DisjointSets, AsATableSaysAfterManyMerges) {
   }
 }
 
-// Merges dealt out to several forests, and absorbed by the first, give the sets of one that did all.
-TEST(DisjointSets, AbsorbsWhatOthersHaveJoined) {
-  constexpr std::uint32_t kElements = 3000;
-  std::array<lisco::DisjointSets, 4> forests;
-  lisco::DisjointSets alone;
-  for (std::uint64_t seed = 1; seed < 60; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
-    const bool long_chains = random.chance(0.5);
-    alone.reset(kElements);
-    for (std::uint32_t element = 0; element < kElements; ++element) alone.create(element);
-    for (lisco::DisjointSets& forest : forests) {
-      forest.reset(kElements);
-      for (std::uint32_t element = 0; element < kElements; ++element) forest.create(element);
-    }
-    for (std::uint32_t i = 0; i < kElements / 2; ++i) {
-      const auto a = static_cast<std::uint32_t>(random.below(kElements));
-      const auto b = long_chains ? std::max(a, 1U) - 1 : static_cast<std::uint32_t>(random.below(kElements));
-      alone.merge(a, b);
-      forests[random.below(forests.size())].merge(a, b);
-    }
-    for (std::size_t i = 1; i < forests.size(); ++i) {
-      forests[0].absorb(forests[i], 0, kElements / 3);  // in parts, as the engine does
-      forests[0].absorb(forests[i], kElements / 3, kElements);
-    }
-    for (std::uint32_t element = 0; element < kElements; ++element)
-      ASSERT_EQ(forests[0].head(element), alone.head(element)) << element;
-  }
-}
-
 }  // namespace
 }  // namespace lisco_test

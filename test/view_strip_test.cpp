@@ -12,7 +12,6 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,16 +36,19 @@ class Probe {
  public:
   Probe(float tolerance, const lisco::ViewHints& hints) { begin(tolerance, hints); }
 
-  void begin(float tolerance, const lisco::ViewHints& hints, std::size_t threads = 1) {
+  /// \param columns that each strip is told to expect
+  void begin(float tolerance, const lisco::ViewHints& hints, std::size_t columns = ~std::size_t{0}) {
     hints_ = hints;
     tolerance_ = lisco::Tolerance(tolerance);
-    threads_ = threads;
-    if (forests_.size() < threads) throw std::logic_error("too many threads");
     lasers_ = 0;
     points_.clear();
     subclusters_.reset(0);
-    strip_.prepare(tolerance_, hints, threads);
+    for (lisco::ViewStrip& strip : strips_) strip.prepare(tolerance_, hints, columns);
+    strip_ = &strips_.front();
   }
+
+  /// What follows goes to a strip of its own.
+  void useStrip(std::size_t number) { strip_ = &strips_.at(number); }
 
   /// The point a laser sees in the direction of a place (fractions count) of the strip, at a horizontal distance.
   Point pointAt(double place, double rho, double slope) const {
@@ -58,13 +60,13 @@ class Probe {
   }
 
   /// \return whether it is loose
-  bool put(std::size_t laser, std::uint32_t column, const Point& point, std::size_t thread = 0) {
+  bool put(std::size_t laser, std::uint32_t column, const Point& point) {
     const std::uint32_t i = column % lisco::Row::kColumns;
     std::fill_n(row_.x, lisco::Row::kMargin + lisco::Row::kColumns, kNan);
     row_.x[lisco::Row::kMargin + i] = point.x;
     row_.y[lisco::Row::kMargin + i] = point.y;
     row_.z[lisco::Row::kMargin + i] = point.z;
-    return putRow(laser, column - i, lisco::Row::kColumns, thread) != 0;
+    return putRow(laser, column - i, lisco::Row::kColumns) != 0;
   }
   bool put(std::size_t laser, double place, double rho, double slope) {
     return put(laser, static_cast<std::uint32_t>(std::lround(place)), pointAt(place, rho, slope));
@@ -78,18 +80,19 @@ class Probe {
       row_.y[lisco::Row::kMargin + i] = points[i].y;
       row_.z[lisco::Row::kMargin + i] = points[i].z;
     }
-    return putRow(laser, first_column, points.size(), 0);
+    return putRow(laser, first_column, points.size());
   }
 
-  void link() { strip_.link(subclusters_); }
+  void link() { strip_->link(subclusters_); }
   void linkAll() {
-    const auto elements = static_cast<std::uint32_t>(points_.size());
-    for (std::size_t thread = 1; thread < threads_; ++thread) {
-      forests_[thread].reset(elements);
-      for (std::uint32_t element = 0; element < elements; ++element) forests_[thread].create(element);
+    bool full = false;
+    for (lisco::ViewStrip& strip : strips_) strip.linkRest(subclusters_);
+    for (std::size_t i = 0; i < strips_.size(); ++i) {
+      for (std::size_t earlier = 0; earlier <= i; ++earlier) strips_[i].linkTo(strips_[earlier], subclusters_);
+      full = full || strips_[i].isFull();
     }
-    strip_.linkAll(forests_.data(), threads_);
-    for (std::size_t thread = 1; thread < threads_; ++thread) subclusters_.absorb(forests_[thread], 0, elements);
+    if (full)
+      for (lisco::ViewStrip& strip : strips_) strip.stopPlacing();
   }
   bool joined(std::uint32_t a, std::uint32_t b) { return subclusters_.head(a) == subclusters_.head(b); }
   bool neighbours(std::size_t a, std::size_t b, float tolerance) const {
@@ -97,8 +100,8 @@ class Probe {
   }
   std::size_t size() const { return points_.size(); }
   const std::vector<Point>& points() const { return points_; }
-  const lisco::ViewStrip& strip() const { return strip_; }
-  double nearEnd() const { return static_cast<double>(strip_.farRange().near_end); }
+  const lisco::ViewStrip& strip() const { return *strip_; }
+  double nearEnd() const { return static_cast<double>(strip_->farRange().near_end); }
 
   Clustering clusters() {
     std::map<std::uint32_t, Cluster> by_head;
@@ -109,8 +112,8 @@ class Probe {
   }
 
  private:
-  std::uint64_t putRow(std::size_t laser, std::uint32_t first_column, std::size_t columns, std::size_t thread) {
-    lisco::measureRow(row_, columns, tolerance_.squared(), strip_.farRange(), measured_);
+  std::uint64_t putRow(std::size_t laser, std::uint32_t first_column, std::size_t columns) {
+    lisco::measureRow(row_, columns, tolerance_.squared(), strip_->farRange(), measured_);
     for (std::size_t i = 0; i < columns; ++i) {
       if ((measured_.returns >> i & 1U) == 0) continue;
       const auto element = static_cast<std::uint32_t>(points_.size());
@@ -121,22 +124,21 @@ class Probe {
       measured_.run[i] = element;
     }
     lasers_ = std::max(lasers_, laser + 1);
-    strip_.addLasers(lasers_);
+    strip_->addLasers(lasers_);
     if (measured_.far == 0) return 0;
-    if (!strip_.hasStarted()) {
+    if (!strip_->hasStarted()) {
       const auto first = static_cast<std::size_t>(__builtin_ctzll(measured_.far));
-      strip_.start(row_.x[lisco::Row::kMargin + first], row_.y[lisco::Row::kMargin + first],
-                   first_column + static_cast<std::uint32_t>(first));
+      strip_->start(row_.x[lisco::Row::kMargin + first], row_.y[lisco::Row::kMargin + first],
+                    first_column + static_cast<std::uint32_t>(first));
     }
-    return strip_.place(row_, measured_, laser, first_column, thread);
+    return strip_->place(row_, measured_, laser, first_column);
   }
 
-  lisco::ViewStrip strip_;
+  std::array<lisco::ViewStrip, 3> strips_;
+  lisco::ViewStrip* strip_ = &strips_.front();  ///< in use
   lisco::ViewHints hints_;
   lisco::Tolerance tolerance_;
-  std::vector<lisco::DisjointSets> forests_ = std::vector<lisco::DisjointSets>(8);
-  lisco::DisjointSets& subclusters_ = forests_.front();
-  std::size_t threads_ = 1;
+  lisco::DisjointSets subclusters_;
   std::size_t lasers_ = 0;
   lisco::Row row_{};
   lisco::MeasuredRow measured_{};
@@ -320,6 +322,42 @@ TEST(ViewStrip, TheSeam) {
         ASSERT_TRUE(probe.neighbours(2, 6, kTolerance));
         probe.linkAll();
         EXPECT_TRUE(probe.joined(2, 6));
+      }
+}
+
+// A turn in three strips, which begin at any fraction of each other's places.
+TEST(ViewStrip, StripsOfOneTurn) {
+  Probe probe(kTolerance, kHints);
+  const int turn = kHints.steps_per_turn;
+  const int third = turn / 3;
+  for (int apart = 0; apart <= mostApart(); ++apart)
+    for (int border = 0; border < 3; ++border)
+      for (const double shift : {0.0, 0.3, 0.5, 0.9}) {
+        SCOPED_TRACE(std::to_string(apart) + " places apart at border " + std::to_string(border) + ", shifted by " +
+                     std::to_string(shift));
+        const double rho = apart == 0 ? 50.0 : distanceFor(apart);
+        probe.begin(kTolerance, kHints, static_cast<std::size_t>(third));
+        std::array<std::uint32_t, 2> number{};
+        for (int strip = 0; strip < 3; ++strip) {
+          probe.useStrip(static_cast<std::size_t>(strip));
+          const double first = kFirstPlace + third * strip + shift * strip;
+          const double last = kFirstPlace + third * (strip + 1) - 1;
+          EXPECT_FALSE(probe.put(0, first + (apart + 1) / 2, 300.0, 0.0));
+          if (strip == (border + 1) % 3) {
+            number[1] = static_cast<std::uint32_t>(probe.size());
+            EXPECT_FALSE(probe.put(1, first + (apart + 1) / 2, rho, 0.0));
+          }
+          if (strip == border) {
+            number[0] = static_cast<std::uint32_t>(probe.size());
+            const double end =
+                border == 2 ? kFirstPlace + turn : kFirstPlace + third * (strip + 1) + shift * (strip + 1);
+            EXPECT_FALSE(probe.put(2, end - apart / 2, rho, 0.0)) << last;
+          }
+          EXPECT_FALSE(probe.put(0, last, 300.0, 0.0));
+        }
+        ASSERT_TRUE(probe.neighbours(number[0], number[1], kTolerance));
+        probe.linkAll();
+        EXPECT_TRUE(probe.joined(number[0], number[1]));
       }
 }
 
@@ -512,17 +550,18 @@ TEST(ViewStrip, TooManyLooseReturnsEndThePlacing) {
   }
 }
 
-// One thread has seen too many loose returns; what another one places must still find them.
-TEST(ViewStrip, LooseReturnsOfOneThreadAreFoundByAnother) {
+// One strip has too many loose returns; what another one places must still find them.
+TEST(ViewStrip, LooseReturnsOfOneStripAreFoundByAnother) {
   Probe probe(kTolerance, kHints);
   for (const bool looked_before : {false, true}) {
-    probe.begin(kTolerance, kHints, 2);
+    probe.begin(kTolerance, kHints);
     EXPECT_FALSE(probe.put(0, kFirstPlace, 60.0, 0.0));
     EXPECT_FALSE(probe.put(0, kFirstPlace + 40, 300.0, 0.0));
     const auto loose = static_cast<std::uint32_t>(probe.size());
     for (int i = 0; i < 5000; ++i) EXPECT_TRUE(probe.put(0, kFirstPlace + 40, 60.0, 0.0));
     if (looked_before) probe.linkAll();
-    const bool also_loose = probe.put(1, kFirstPlace + 41, probe.pointAt(kFirstPlace + 41, 60.0, 0.0), 1);
+    probe.useStrip(1);
+    const bool also_loose = probe.put(1, kFirstPlace + 41, 60.0, 0.0);
     const auto element = static_cast<std::uint32_t>(probe.size() - 1);
     probe.linkAll();
     EXPECT_TRUE(also_loose || probe.joined(loose, element)) << looked_before;  // those that are loose others find
@@ -635,7 +674,8 @@ TEST(ViewStrip, CriticalPairs) {
     for (int ulp = 0; ulp < 20 && !areNeighbours(points[0], points[1], pair.tolerance); ++ulp)
       pair.tolerance = std::nextafter(pair.tolerance, 1e30F);
     if (!areNeighbours(points[0], points[1], pair.tolerance)) continue;  // they all but coincide
-    probe.begin(pair.tolerance, pair.hints, seed % 8 == 0 ? 2 + seed / 8 % 3 : 1);
+    const bool apart_in_strips = random.chance(0.3);
+    probe.begin(pair.tolerance, pair.hints, random.chance(0.5) ? ~std::size_t{0} : random.below(600));
     if (!probe.strip().inUse()) continue;
     const double near_end = probe.nearEnd();
     if (std::min(pair.rho[0], pair.rho[1]) < near_end * (1.0 + 1e-6)) continue;
@@ -647,6 +687,7 @@ TEST(ViewStrip, CriticalPairs) {
     std::array<std::uint32_t, 2> number{};
     int loose = 0;
     for (std::size_t i = 0; i < 2; ++i) {
+      if (i == 1 && apart_in_strips) probe.useStrip(1 + random.below(2));
       if (i == 1 && late) {
         for (const std::size_t laser : {0, 1, 3}) probe.put(laser, pair.place[1] + 200.0, behind, 0.0);
         probe.link();
@@ -670,7 +711,8 @@ TEST(ViewStrip, CriticalPairs) {
     ASSERT_TRUE(probe.joined(number[0], number[1]))
         << pair.hints.steps_per_turn << " steps, tolerance " << pair.tolerance << " at " << pair.rho[0] << " and "
         << pair.rho[1] << ", places " << pair.place[0] << " and " << pair.place[1] << ", slopes " << pair.slope[0]
-        << " and " << pair.slope[1] << (late ? ", late" : "") << (loose > 0 ? ", loose" : "");
+        << " and " << pair.slope[1] << (late ? ", late" : "") << (apart_in_strips ? ", in two strips" : "")
+        << (loose > 0 ? ", loose" : "");
   }
   EXPECT_GT(pairs, timesEffort(10000));
 }
@@ -832,7 +874,7 @@ TEST(StripScans, WhatIsFarNeedsNoVoxels) {
         SCOPED_TRACE((clockwise ? "clockwise, blocks of " : "counter-clockwise, blocks of ") + std::to_string(block));
         lisco::ViewHints hints = kHints;
         hints.clockwise = clockwise;
-        probe.begin(kWidth, hints, lag == 0 ? 1 : 3);
+        probe.begin(kWidth, hints);
         Random random(5);
         for (int column = 128; column < 1152; column += block)
           for (std::size_t laser = 0; laser < 4; ++laser) {

@@ -176,6 +176,19 @@ Vector secondOfPair(Random& random, const Geometry& geometry, const Vector& p) {
   return {p.x + by.x * length, p.y + by.y * length, p.z + by.z * length};
 }
 
+/// Joins what voxels find in others.
+class Joiner : public lisco::Voxels::Joiner {
+ public:
+  explicit Joiner(lisco::DisjointSets& subclusters) : subclusters_(subclusters) {}
+  bool areApart(std::uint32_t own, std::uint32_t others) override {
+    return subclusters_.head(own) != subclusters_.head(others);
+  }
+  void join(std::uint32_t own, std::uint32_t others) override { subclusters_.merge(own, others); }
+
+ private:
+  lisco::DisjointSets& subclusters_;
+};
+
 /// Voxels and the sets they join.
 class Probe {
  public:
@@ -191,8 +204,8 @@ class Probe {
   }
 
   /// Adds a row of up to 64 cells, of which some are no returns, and of those that are some only.
-  /// \param absorbed to the voxels that are absorbed by absorb()
-  void addRow(const std::vector<Point>& cells, std::uint64_t which = ~std::uint64_t{0}, bool absorbed = false) {
+  /// \param apart to other voxels, to which these are linked
+  void addRow(const std::vector<Point>& cells, std::uint64_t which = ~std::uint64_t{0}, bool apart = false) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       row_.x[lisco::Row::kMargin + i] = cells[i].x;
       row_.y[lisco::Row::kMargin + i] = cells[i].y;
@@ -210,13 +223,15 @@ class Probe {
       measured_.run[i] = runs_ - 1;
       if ((which >> i & 1U) != 0) added_.push_back({cells[i], runs_ - 1});
     }
-    if (which != 0) (absorbed ? others_ : voxels_).add(row_, measured_, which, subclusters_);
+    if (which != 0) (apart ? others_ : voxels_).add(row_, measured_, which, subclusters_);
   }
   void add(const Point& point) { addRow({point}); }
-  void absorb() { voxels_.absorb(others_, subclusters_); }
   void link() {
-    voxels_.link(subclusters_);
-    voxels_.settle();
+    Joiner joiner(subclusters_);
+    for (lisco::Voxels* one : {&voxels_, &others_}) one->link(subclusters_);
+    voxels_.linkTo(others_, lisco::Voxels::Part::kNew, joiner);
+    others_.linkTo(voxels_, lisco::Voxels::Part::kNew, joiner);
+    for (lisco::Voxels* one : {&voxels_, &others_}) one->settle();
   }
 
   /// Two of the returns added, in their order.
@@ -298,9 +313,8 @@ TEST_P(VoxelPairs, AreJoinedIfTheyAreNeighbours) {
     probe.add(p);
     if (random.chance(0.5)) probe.link();
     probe.addRow({q}, 1, true);
-    probe.absorb();
     probe.link();
-    ASSERT_EQ(probe.joined(0, 1), near) << "absorbed";
+    ASSERT_EQ(probe.joined(0, 1), near) << "apart";
   }
   EXPECT_GT(neighbours, kPairs / 20);
 }
@@ -354,15 +368,13 @@ TEST_P(VoxelClouds, EqualTheOracle) {
     probe.begin(tolerance);
     const std::array<double, 4> chances{0.0, 0.0, 0.2, 1.0};
     const double looks = random.oneOf(chances);
-    const double absorbed = random.oneOf(chances);
+    const double apart = random.oneOf(chances);
     for (const auto& row : rows) {
-      probe.addRow(row, ~std::uint64_t{0}, random.chance(absorbed));
+      probe.addRow(row, ~std::uint64_t{0}, random.chance(apart));
       if (!random.chance(looks)) continue;
-      probe.absorb();
       probe.link();
       ASSERT_EQ(probe.wrong(tolerance), "") << "in between";
     }
-    probe.absorb();
     probe.link();
     ASSERT_EQ(probe.wrong(tolerance), "");
     probe.link();
@@ -611,19 +623,18 @@ TEST(Voxels, NothingOfTheLastRotationIsLeft) {
   }
 }
 
-TEST(Voxels, AbsorbLeavesTheOtherEmpty) {
+TEST(Voxels, OthersAreLinkedAgainWhenTheyHaveGrown) {
   Probe probe(1.0F);
-  probe.absorb();
-  probe.addRow({{0.5F, 0, 0}}, 1, true);
-  probe.absorb();
-  probe.absorb();
-  probe.addRow({{1.0F, 0, 0}}, 1, true);
-  probe.addRow({{1.5F, 0, 0}, {9.0F, 0, 0}});
   probe.link();
-  probe.absorb();
+  probe.addRow({{0.5F, 0, 0}}, 1, true);
+  probe.link();
+  probe.addRow({{1.4F, 0, 0}, {9.0F, 0, 0}});
+  probe.addRow({{9.5F, 0, 0}}, 1, true);
   probe.link();
   EXPECT_EQ(probe.wrong(1.0F), "");
-  EXPECT_TRUE(probe.joined(0, 2));
+  EXPECT_TRUE(probe.joined(0, 1));
+  EXPECT_TRUE(probe.joined(2, 3));
+  EXPECT_FALSE(probe.joined(0, 2));
 }
 
 TEST(Voxels, WithoutNeighboursNothingIsJoined) {

@@ -97,15 +97,17 @@ class LISCO_EXPORT ColumnClusterer {
   std::size_t returnCount() const;
 
  private:
-  /// What one thread has read.
+  /// What one thread has read: some columns, of which it knows all but what they have to do with others.
   struct Reading {
-    std::size_t first_laser = 0, end_laser = 0;  ///< its part of a rotation that is read in parallel
-    std::uint32_t first_element = 0;             ///< run i is element first_element + i
+    std::size_t first_column = 0, end_column = 0;  ///< its part of a rotation that is read in parallel
+    std::uint32_t first_element = 0;               ///< run i is element first_element + i
     Runs runs;
-    Voxels voxels;
+    ViewStrip strip;  ///< far returns
+    Voxels voxels;    ///< near ones
     Row row{};
     MeasuredRow measured{};
   };
+  class VoxelJoiner;
 
   /// How much each column is to take of the linking, so that all take about as much, though some parts of a scene take
   /// several times what others do: what is left is to be done in so many columns, if it takes what it usually does.
@@ -142,29 +144,42 @@ class LISCO_EXPORT ColumnClusterer {
   void stagedBlockIsComplete();
   void workOnPending(std::size_t columns);
   void finishPending();
-  void linkStrip();
-  void readRow(Reading& reading, std::size_t thread, Row& row, std::size_t laser, std::uint32_t first_column,
-               std::size_t columns);
-  void startStrip(Reading& reading, Row& row, std::uint32_t first_column, std::size_t columns);
-  void startStripAt(const Row& row, const MeasuredRow& measured, std::uint32_t first_column);
+  template <typename CellAt>
+  void readColumns(Reading& reading, std::uint32_t column, std::size_t first, std::size_t count, std::size_t lasers,
+                   CellAt&& cell_at);
+  void readRow(Reading& reading, Row& row, std::size_t laser, std::uint32_t first_column, std::size_t columns);
+  void linkAll();
+  void linkReadings(Reading& later, Reading& earlier);
   void orderRows();
   void checkColumns(std::size_t lasers) const;
-  bool readsInParallel(std::size_t columns, std::size_t lasers) const;
-  void prepareReadings(std::size_t columns, std::size_t lasers);
+  bool isWorthThreads(std::size_t columns, std::size_t lasers) const;
+  bool areWeighed(std::size_t columns, std::size_t lasers) const {
+    return weighed_lasers_ == lasers && weights_.size() == (columns + kWeighed - 1) / kWeighed;
+  }
+  void shareOut(std::size_t columns, std::size_t lasers);
+  static constexpr std::size_t kWorkOfCell = 2;  ///< in the strip's units
+  static std::size_t workOf(const Reading& reading) { return reading.strip.work() + 2 * reading.runs.returns; }
+  void weigh(std::size_t first, std::size_t columns, std::size_t work);
+  void prepareReading(Reading& reading);
+  /// What reads the columns that come one by one.
+  Reading& lastReading() { return readings_[threads_ - 1]; }
 
   Parameters parameters_;
   bool begun_ = false;  ///< and left by no exception since
   Tolerance tolerance_;
-  ViewStrip strip_;                    ///< far returns
-  std::vector<DisjointSets> forests_;  ///< of runs: the subclusters, and one for each further thread that links
-  static constexpr std::uint32_t kReturnWeight = 4;  ///< of the work of reading
-  static constexpr std::uint32_t kCellWeight = 1;
-  std::vector<std::uint32_t> weights_;  ///< of the lasers
-  std::vector<Reading> readings_;       ///< one for each thread; near returns are in their voxels
-  std::size_t threads_ = 1;             ///< that have read
-  ColumnBlock staged_;                  ///< columns that wait for their block to be complete
-  ColumnBlock pending_;                 ///< a complete block, read while the next one is staged
-  std::size_t pending_laser_ = 0;       ///< whose row is the next to be read
+  DisjointSets subclusters_;  ///< of runs
+  std::vector<std::uint32_t>
+      weights_;  ///< of kWeighed columns each that are to be shared out: their work in the last rotation
+  std::size_t weighed_lasers_ = 0;
+  static constexpr std::size_t kWeighed = 16;
+  static constexpr std::size_t kSampledLasers =
+      4;                           ///< one in so many is looked at when nothing is known of the last rotation
+  std::vector<Reading> readings_;  ///< one for each thread
+  std::size_t threads_ = 0;        ///< that have read
+  bool are_linked_ = false;        ///< their readings, with each other
+  ColumnBlock staged_;             ///< columns that wait for their block to be complete
+  ColumnBlock pending_;            ///< a complete block, read while the next one is staged
+  std::size_t pending_laser_ = 0;  ///< whose row is the next to be read
   std::size_t columns_since_block_ = 0;
   Pace pace_;                 ///< of linking
   std::uint32_t column_ = 0;  ///< number of columns added
@@ -177,48 +192,46 @@ template <typename CellAt>
 void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt&& cell_at) {
   checkColumns(lasers);
   begun_ = false;  // unless nothing is thrown
-  if (readsInParallel(columns, lasers)) {
-    weights_.assign(lasers, 0);
-    constexpr std::size_t kSampled = 16;  // one column of so many
-    for (std::size_t laser = 0; laser < lasers; ++laser)
-      for (std::size_t column = 0; column < columns; column += kSampled) {
-        const Return cell = cell_at(laser, column);
-        weights_[laser] += isReturn(cell.x, cell.y, cell.z) ? kReturnWeight : kCellWeight;
-      }
-    prepareReadings(columns, lasers);
-    Reading& first_reading = readings_.front();
-    for (std::size_t first = 0; first < columns && strip_.inUse() && !strip_.hasStarted(); first += Row::kColumns)
-      for (std::size_t laser = 0; laser < lasers; ++laser) {
-        const std::size_t count = std::min(columns - first, Row::kColumns);
-        ColumnBlock::fill(first_reading.row, 0, laser, first, count, cell_at);
-        startStrip(first_reading, first_reading.row, static_cast<std::uint32_t>(first), count);
-      }
-    inParallel(threads_, [&](std::size_t thread) {
-      Reading& reading = readings_[thread];
-      for (std::size_t laser = reading.first_laser; laser < reading.end_laser; ++laser)
-        for (std::size_t first = 0; first < columns; first += Row::kColumns) {
-          const std::size_t count = std::min(columns - first, Row::kColumns);
-          ColumnBlock::fill(reading.row, 0, laser, first, count, cell_at);
-          readRow(reading, thread, reading.row, laser, static_cast<std::uint32_t>(first), count);
+  if (threads_ == 0) {
+    if (isWorthThreads(columns, lasers) && !areWeighed(columns, lasers)) {
+      weights_.clear();
+      for (std::size_t first = 0; first < columns; first += kWeighed) {
+        std::size_t returns = 0;
+        for (std::size_t laser = first / kWeighed % kSampledLasers; laser < lasers; laser += kSampledLasers) {
+          const Return cell = cell_at(laser, first);
+          returns += isReturn(cell.x, cell.y, cell.z) ? 1 : 0;
         }
-    });
-    column_ = static_cast<std::uint32_t>(columns);
-    begun_ = true;
-    return;
+        weights_.push_back(static_cast<std::uint32_t>(lasers + 4 * kSampledLasers * returns));
+      }
+    }
+    shareOut(columns, lasers);
+    if (threads_ > 1) {
+      inParallel(threads_, [&](std::size_t thread) {
+        Reading& reading = readings_[thread];
+        prepareReading(reading);
+        if (reading.strip.inUse()) reading.strip.addLasers(lasers);
+        for (std::size_t first = reading.first_column; first < reading.end_column; first += Row::kColumns) {
+          const std::size_t count = std::min(reading.end_column - first, Row::kColumns);
+          const std::size_t before = workOf(reading);
+          readColumns(reading, static_cast<std::uint32_t>(first), first, count, lasers, cell_at);
+          weigh(first, count, count * lasers * kWorkOfCell + workOf(reading) - before);
+        }
+      });
+      column_ = static_cast<std::uint32_t>(columns);
+      begun_ = true;
+      return;
+    }
+    prepareReading(readings_.front());
   }
   constexpr std::size_t kWorthReadingAtOnce = 16;
-  if (strip_.inUse()) strip_.addLasers(lasers);
+  Reading& reading = lastReading();
+  if (reading.strip.inUse()) reading.strip.addLasers(lasers);
   for (std::size_t first = 0; first < columns;) {
     const std::size_t count = std::min(columns - first, parameters_.block_columns - staged_.columns());
     if (count == parameters_.block_columns || (staged_.columns() == 0 && count >= kWorthReadingAtOnce)) {
       finishPending();
-      Reading& reading = readings_[threads_ - 1];
-      for (std::size_t laser = 0; laser < lasers; ++laser) {
-        ColumnBlock::fill(reading.row, 0, laser, first, count, cell_at);
-        readRow(reading, threads_ - 1, reading.row, laser, column_, count);
-      }
+      readColumns(reading, column_, first, count, lasers, cell_at);
       column_ += static_cast<std::uint32_t>(count);
-      if (strip_.inUse()) strip_.link(forests_.front());
     } else {
       staged_.add(first, count, lasers, cell_at);
       if (staged_.columns() == parameters_.block_columns) stagedBlockIsComplete();
@@ -227,6 +240,19 @@ void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt
     first += count;
   }
   begun_ = true;
+}
+
+/// Reads so many columns at once, and links what they complete.
+/// \param column the first one's number, of the rotation
+/// \param first the first one's number, of what cell_at knows
+template <typename CellAt>
+void ColumnClusterer::readColumns(Reading& reading, std::uint32_t column, std::size_t first, std::size_t count,
+                                  std::size_t lasers, CellAt&& cell_at) {
+  for (std::size_t laser = 0; laser < lasers; ++laser) {
+    ColumnBlock::fill(reading.row, 0, laser, first, count, cell_at);
+    readRow(reading, reading.row, laser, column, count);
+  }
+  reading.strip.link(subclusters_);
 }
 
 template <typename Visit>

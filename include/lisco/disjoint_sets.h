@@ -57,12 +57,6 @@ class DisjointSets {
   /// From now on, merge () tells what it has joined; nullptr: to nobody.
   void logTo(std::vector<Merge>* log) { log_ = log; }
 
-  /// Joins what another forest of the same elements has joined, for elements first..last-1.
-  void absorb(const DisjointSets& other, std::uint32_t first, std::uint32_t last) {
-    for (std::uint32_t element = first; element < last; ++element)
-      if (other.parents_[element] != element) merge(element, other.parents_[element]);
-  }
-
  private:
   std::vector<std::uint32_t> parents_;
   std::vector<Merge>* log_ = nullptr;

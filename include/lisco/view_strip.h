@@ -36,14 +36,13 @@ struct StripData {
     float x, y, z;
     std::uint32_t element;
   };
-  /// What a thread keeps while it places returns.
+  /// What is kept while returns are placed.
   struct Placing {
     std::vector<Loose> loose;
     std::vector<Loose> late;  ///< placed where all had been compared
     std::size_t placed = 0;
-    std::size_t end = 0;  ///< after the last place taken
-    bool full = false;    ///< too many were loose: all that follow are, too
-    bool elevations_changed = false;
+    std::size_t begin = 0, end = 0;  ///< the first place taken, and after the last
+    bool full = false;               ///< too many were loose: all that follow are, too
   };
   /// The segments of a sector, ordered by laser and place.
   struct Sector {
@@ -64,10 +63,10 @@ struct StripData {
     std::uint32_t above = 0, below = 0;  ///< the same lasers, counted from this one: where the next search begins
     bool by_places = false;              ///< what is cheaper: to compare places, or segments
   };
-  /// What a thread keeps while it links.
+  /// What is kept while they are linked.
   struct Linking {
     std::array<Sector, kSectorsKept> sectors;
-    Sector beyond;            ///< a sector around the beginning, seen as if a turn later
+    Sector beyond;            ///< a sector of another strip, or one around the beginning, seen as if a turn later
     std::vector<Mask> masks;  ///< of each laser in the sector at hand
     std::size_t work = 0;     ///< done so far, about in comparisons of registers
   };
@@ -102,10 +101,11 @@ struct StripData {
   FarRange range;
   float reach = 0;
   std::size_t steps = 0;   ///< places in a turn
-  std::size_t places = 0;  ///< of a laser: more than a turn
+  std::size_t places = 0;  ///< of a laser: some more than columns, or than a turn
   std::size_t stride = 0;  ///< floats per laser
   float direction = 1;     ///< +1: azimuth grows with time
   float radians_per_place = 0;
+  double start_azimuth = 0;  ///< of place 0
   float start_cosine = 1;
   float start_sine = 0;
   std::uint32_t first_column = 0;
@@ -120,8 +120,9 @@ struct StripData {
   std::size_t linked = 0;                          ///< places before this are compared
   std::size_t linked_parts = 0;                    ///< of the sector that follows
   std::size_t claimed = 0;                         ///< places before this are compared, or about to be
-  std::vector<Placing> placing;
-  std::vector<Linking> linking;
+  bool elevations_changed = false;
+  Placing placing;
+  Linking linking;
 };
 
 /// Far returns, each in a place of its own: the sensor's view unrolled, a row per laser and a place per step of the
@@ -141,25 +142,24 @@ struct StripData {
 /// kept elsewhere as well.
 class LISCO_EXPORT ViewStrip : private StripData {
  public:
-  /// Starts a rotation. Keeps its memory.
-  /// \param threads how many may place returns of different lasers, or link, at the same time
-  void prepare(const Tolerance& tolerance, const ViewHints& hints, std::size_t threads = 1);
+  /// Starts a rotation, or a part of one. Keeps its memory.
+  /// \param columns how many are expected; a turn is enough
+  void prepare(const Tolerance& tolerance, const ViewHints& hints, std::size_t columns = ~std::size_t{0});
 
   /// False if the hints give no steps, or the tolerance joins nothing: then no return is far.
   bool inUse() const { return steps > 0; }
   const FarRange& farRange() const { return range; }
 
-  /// Makes room for so many lasers. Not while another thread uses the strip.
+  /// Makes room for so many lasers.
   void addLasers(std::size_t lasers);
   bool hasStarted() const { return started; }
   /// Lays the first place where this return is seen, or a little before.
   void start(float x_seen, float y_seen, std::uint32_t column);
 
-  /// Puts the far returns of a row in their places. Different threads may do so for different lasers.
+  /// Puts the far returns of a row in their places.
   /// \param first_column column of the row's first cell, counted from the first of the rotation
   /// \return bit i is set if return i is loose
-  std::uint64_t place(const Row& row, const MeasuredRow& measured, std::size_t laser, std::uint32_t first_column,
-                      std::size_t thread = 0);
+  std::uint64_t place(const Row& row, const MeasuredRow& measured, std::size_t laser, std::uint32_t first_column);
 
   /// Compares what has come since the last call, as far as all lasers have passed it.
   void link(DisjointSets& subclusters);
@@ -169,17 +169,24 @@ class LISCO_EXPORT ViewStrip : private StripData {
   /// \return what it took, about in comparisons of registers
   std::size_t linkPart(DisjointSets& subclusters);
 
-  /// Compares all that has not been compared, the seam included. More returns may follow.
-  void linkAll(DisjointSets& subclusters) { linkAll(&subclusters, 1); }
-  /// The same by several threads, not more than prepare () was told. Each joins in a forest of its own, so that none
-  /// waits for another's memory.
-  /// \param forests the first holds what has been joined before; the others of the same elements are to be absorbed by it
-  void linkAll(DisjointSets* forests, std::size_t threads);
+  /// All that linking has taken so far, in the same.
+  std::size_t work() const { return linking.work; }
+
+  /// Compares all that has not been compared within the strip. linkTo () itself is to follow. More returns may come later.
+  void linkRest(DisjointSets& subclusters);
+  /// Compares the returns here with those of another strip of the same rotation, or those at its end with those a turn before.
+  void linkTo(ViewStrip& other, DisjointSets& subclusters);
+
+  /// Whether too many returns are loose for one strip of a rotation. Then all of them are to stopPlacing (), when each has
+  /// been linked to each: all far returns that follow are loose, and those before need not be searched for again.
+  bool isFull() const { return placing.full; }
+  void stopPlacing();
 
  private:
+  void shareElevations(const ViewStrip& other);
   void updateElevations();
+  void forgetSectors();
   void search(const Loose& loose, DisjointSets& subclusters) const;
-  std::size_t end() const;
   std::size_t passed() const;
 };
 

@@ -29,8 +29,6 @@ class LISCO_EXPORT Voxels {
   /// Takes some returns of a row.
   /// \param which bit i: return i
   void add(const Row& row, const MeasuredRow& measured, std::uint64_t which, DisjointSets& subclusters);
-  /// Takes all that another one holds, which is left empty.
-  void absorb(Voxels& other, DisjointSets& subclusters);
 
   /// Compares what is new with everything.
   void link(DisjointSets& subclusters);
@@ -82,8 +80,8 @@ class LISCO_EXPORT Voxels {
   /// Pieces of one cube that are neighbours all of them; nearly always all of the cube.
   struct Unit {
     Box box;
-    std::uint32_t head;                     ///< of its subcluster, perhaps not the newest
-    std::uint32_t first_piece, last_piece;  ///< the newest, the oldest
+    std::uint32_t head;         ///< of its subcluster, perhaps not the newest
+    std::uint32_t first_piece;  ///< the newest
     std::uint32_t next_in_cube;
     bool is_new;  ///< something in it has not been compared yet
   };
