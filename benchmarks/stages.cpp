@@ -42,8 +42,8 @@ using namespace lisco_apps;
 
 constexpr const char* kSignature = "input,rows,columns,returns,ground_z,tolerance,min_size,clusters,stage,level";
 
-enum Stage : std::size_t { kSurvey, kBegin, kRead, kUpdate, kOutput, kFree, kStages };
-constexpr std::array<const char*, kStages> kStageNames{"survey", "begin", "read", "update", "output", "free"};
+enum Stage : std::size_t { kSurvey, kRead, kUpdate, kOutput, kFree, kStages };
+constexpr std::array<const char*, kStages> kStageNames{"survey", "read", "update", "output", "free"};
 
 /// pcl::LiscoClusterExtraction::extract () of a whole cloud by the engine's own calls, each of them timed.
 class StagedExtraction {
@@ -64,7 +64,6 @@ class StagedExtraction {
     finish(kSurvey);
     parameters.tolerance = static_cast<float>(problem.tolerance);
     clusterer_.begin(parameters);
-    finish(kBegin);
     clusterer_.addColumns(columns, lasers, cell_at);
     finish(kRead);
     clusterer_.update();
@@ -142,8 +141,7 @@ bool parse(int argc, char** argv, Options& options) {
       "Usage: engine_stages SCAN-OR-FOLDER... [options]\n\n"
       "Where the time of pcl::LiscoClusterExtraction goes. One thread, best vector instructions, milliseconds:\n"
       "  survey   looking at about a hundred cells: where the sensor stands, and its steps\n"
-      "  begin    making room for a rotation\n"
-      "  read     reading all columns, and linking what all lasers have passed\n"
+      "  read     making room, reading all columns, and linking what all lasers have passed\n"
       "  update   linking the rest: last columns, seam, near returns; numbering the subclusters\n"
       "  output   writing and sorting PCL's clusters\n"
       "  free     giving back their memory\n"
