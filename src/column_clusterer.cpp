@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "lisco/column_clusterer.h"
 
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -46,42 +45,16 @@ bool ColumnClusterer::isWorthThreads(std::size_t columns, std::size_t lasers) co
   return parameters_.threads > 1 && columns * lasers >= kWorthThreads;
 }
 
-/// Gives each thread columns of about the same weight, and elements for as many runs as they can have.
-void ColumnClusterer::shareOut(std::size_t columns, std::size_t lasers) {
-  constexpr std::size_t kFewestWeights = 4;  // of a thread
-  threads_ = isWorthThreads(columns, lasers)
-                 ? std::clamp<std::size_t>(weights_.size() / kFewestWeights, 1, parameters_.threads)
-                 : 1;
-  weighed_lasers_ = lasers;
-  if (threads_ > 1) subclusters_.reset(lasers * columns + Row::kColumns);
-  const auto all = std::accumulate(weights_.begin(), weights_.end(), std::uint64_t{0});
-  std::uint64_t sum = 0;
-  std::size_t weight = 0;
-  for (std::size_t thread = 0; thread < threads_; ++thread) {
-    Reading& reading = readings_[thread];
-    reading.first_column = weight * kWeighed;
-    reading.first_element = static_cast<std::uint32_t>(lasers * reading.first_column);
-    while (weight < weights_.size() && sum < all * (thread + 1) / threads_) sum += weights_[weight++];
-    reading.end_column = std::min(weight * kWeighed, columns);
-  }
-}
-
-/// Notes what some columns took, for the next rotation.
-void ColumnClusterer::weigh(std::size_t first, std::size_t columns, std::size_t work) {
-  const std::size_t begin = first / kWeighed;
-  const std::size_t end = (first + columns + kWeighed - 1) / kWeighed;
-  std::fill(weights_.begin() + static_cast<std::ptrdiff_t>(begin), weights_.begin() + static_cast<std::ptrdiff_t>(end),
-            static_cast<std::uint32_t>(work / (end - begin)));
-}
-
 void ColumnClusterer::prepareReading(Reading& reading) {
   reading.runs.clear();
   reading.runs.source_index.reserve(parameters_.expected_returns / threads_);
   reading.voxels.prepare(tolerance_);
-  if (threads_ > 1)
-    reading.strip.prepare(tolerance_, parameters_.view, reading.end_column - reading.first_column);
-  else
+  if (threads_ == 1) {
+    reading.first_element = 0;
     reading.strip.prepare(tolerance_, parameters_.view);
+  } else {
+    reading.strip.prepare(tolerance_, parameters_.view, reading.end_column - reading.first_column);
+  }
 }
 
 void ColumnClusterer::stagedBlockIsComplete() {

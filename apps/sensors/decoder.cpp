@@ -92,10 +92,17 @@ void Decoder::measureStep(const std::uint8_t* data, const Layout& layout) {
     ++steps_[step];
     ++step_count_;
   }
-  if (step_is_set_ || step_count_ == 0) return;
+  if (step_count_ == 0) return;
   std::size_t median = 0;
   for (std::uint32_t up_to = steps_[0]; 2 * up_to < step_count_; up_to += steps_[median]) ++median;
-  step_ = static_cast<double>(median) / 100;
+  if (!step_is_set_) step_ = static_cast<double>(median) / 100;
+  // Azimuths are rounded to hundredths of a degree, so a turn has more or fewer columns than the median says.
+  double sum = 0, counted = 0;
+  for (std::size_t step = median / 2; step < std::min(2 * median, kStepLimit); ++step) {
+    sum += static_cast<double>(step) / 100 * steps_[step];
+    counted += steps_[step];
+  }
+  mean_step_ = counted > 0 ? sum / counted : 0;
   if (step_count_ < kManySteps) return;
   step_count_ = 0;
   for (std::uint32_t& count : steps_) step_count_ += count /= 2;
@@ -171,7 +178,8 @@ Decoder::Kind Decoder::decode(const Packet& packet, const std::function<void(con
 }
 
 double Decoder::columnsPerTurn() const {
-  return step_ > 0 ? 360. / step_ * static_cast<double>(model_.firings) : 0.;
+  const double step = mean_step_ > 0 ? mean_step_ : step_;
+  return step > 0 ? 360. / step * static_cast<double>(model_.firings) : 0.;
 }
 
 double Decoder::stagger() const {

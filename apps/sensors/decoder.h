@@ -79,7 +79,8 @@ class Decoder {
   /// Sets it instead of measuring it, as whoever has the whole capture can: see stepIn().
   void setStep(double degrees);
 
-  /// Columns of a full turn, and microseconds it takes, as the sensor turns now; 0 if step() is 0.
+  /// Columns of a full turn, and microseconds it takes, by the mean of the steps that lie within twice and half the median; 0 if
+  /// the sensor stands still.
   double columnsPerTurn() const;
   double turnUs() const { return columnsPerTurn() * model_.firing_period_us; }
   /// How far the azimuths of a column's lasers lie apart, degrees.
@@ -123,6 +124,7 @@ class Decoder {
   PacketOrder order_;
   double packet_period_us_;
   double step_ = 0;
+  double mean_step_ = 0;
   bool step_is_set_ = false;
   std::optional<unsigned> last_azimuth_;
   std::array<std::uint32_t, kStepLimit> steps_{};  ///< how often each was seen, hundredths of a degree

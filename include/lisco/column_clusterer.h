@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "lisco/column_block.h"
+#include "lisco/column_shares.h"
 #include "lisco/disjoint_sets.h"
 #include "lisco/export.h"
+#include "lisco/pace.h"
 #include "lisco/parallel.h"
 #include "lisco/return.h"
 #include "lisco/row.h"
@@ -109,38 +111,6 @@ class LISCO_EXPORT ColumnClusterer {
   };
   class VoxelJoiner;
 
-  /// How much each column is to take of the linking, so that all take about as much, though some parts of a scene take
-  /// several times what others do: what is left is to be done in so many columns, if it takes what it usually does.
-  class Pace {
-   public:
-    void begin() {
-      parts_ = 1 + parts_ / 2;  // what was long ago counts less
-      work_ = kFirstGuess + work_ / 2;
-      per_column_ = credit_ = 0;
-    }
-    /// So many parts are left from now on.
-    void plan(std::size_t parts) {
-      per_column_ = static_cast<double>(parts) * (work_ / parts_) / kSpreadOver;
-      credit_ = std::min(credit_, 0.0);
-    }
-    void addColumns(std::size_t columns) { credit_ += per_column_ * static_cast<double>(columns); }
-    bool isBehind() const { return credit_ > 0; }
-    /// A part took so much.
-    void spend(std::size_t work) {
-      credit_ -= static_cast<double>(work);
-      work_ += static_cast<double>(work);
-      ++parts_;
-    }
-
-   private:
-    static constexpr double kSpreadOver = 192;  // columns; more even if more, but then more is left at the end
-    static constexpr double kFirstGuess = 64;   // of a part's work
-    double parts_ = 0;
-    double work_ = 0;  ///< that those parts took
-    double per_column_ = 0;
-    double credit_ = 0;
-  };
-
   void stagedBlockIsComplete();
   void workOnPending(std::size_t columns);
   void finishPending();
@@ -153,13 +123,12 @@ class LISCO_EXPORT ColumnClusterer {
   void orderRows();
   void checkColumns(std::size_t lasers) const;
   bool isWorthThreads(std::size_t columns, std::size_t lasers) const;
-  bool areWeighed(std::size_t columns, std::size_t lasers) const {
-    return weighed_lasers_ == lasers && weights_.size() == (columns + kWeighed - 1) / kWeighed;
-  }
-  void shareOut(std::size_t columns, std::size_t lasers);
   static constexpr std::size_t kWorkOfCell = 2;  ///< in the strip's units
   static std::size_t workOf(const Reading& reading) { return reading.strip.work() + 2 * reading.runs.returns; }
-  void weigh(std::size_t first, std::size_t columns, std::size_t work);
+  template <typename CellAt>
+  void startReading(std::size_t columns, std::size_t lasers, CellAt&& cell_at);
+  template <typename CellAt>
+  void readInParallel(std::size_t lasers, CellAt&& cell_at);
   void prepareReading(Reading& reading);
   /// What reads the columns that come one by one.
   Reading& lastReading() { return readings_[threads_ - 1]; }
@@ -167,15 +136,10 @@ class LISCO_EXPORT ColumnClusterer {
   Parameters parameters_;
   bool begun_ = false;  ///< and left by no exception since
   Tolerance tolerance_;
-  DisjointSets subclusters_;  ///< of runs
-  std::vector<std::uint32_t>
-      weights_;  ///< of kWeighed columns each that are to be shared out: their work in the last rotation
-  std::size_t weighed_lasers_ = 0;
-  static constexpr std::size_t kWeighed = 16;
-  static constexpr std::size_t kSampledLasers =
-      4;                           ///< one in so many is looked at when nothing is known of the last rotation
+  DisjointSets subclusters_;       ///< of runs
   std::vector<Reading> readings_;  ///< one for each thread
   std::size_t threads_ = 0;        ///< that have read
+  ColumnShares shares_;            ///< of what threads read
   bool are_linked_ = false;        ///< their readings, with each other
   ColumnBlock staged_;             ///< columns that wait for their block to be complete
   ColumnBlock pending_;            ///< a complete block, read while the next one is staged
@@ -191,37 +155,16 @@ class LISCO_EXPORT ColumnClusterer {
 template <typename CellAt>
 void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt&& cell_at) {
   checkColumns(lasers);
+  if (columns == 0) return;
   begun_ = false;  // unless nothing is thrown
   if (threads_ == 0) {
-    if (isWorthThreads(columns, lasers) && !areWeighed(columns, lasers)) {
-      weights_.clear();
-      for (std::size_t first = 0; first < columns; first += kWeighed) {
-        std::size_t returns = 0;
-        for (std::size_t laser = first / kWeighed % kSampledLasers; laser < lasers; laser += kSampledLasers) {
-          const Return cell = cell_at(laser, first);
-          returns += isReturn(cell.x, cell.y, cell.z) ? 1 : 0;
-        }
-        weights_.push_back(static_cast<std::uint32_t>(lasers + 4 * kSampledLasers * returns));
-      }
-    }
-    shareOut(columns, lasers);
+    startReading(columns, lasers, cell_at);
     if (threads_ > 1) {
-      inParallel(threads_, [&](std::size_t thread) {
-        Reading& reading = readings_[thread];
-        prepareReading(reading);
-        if (reading.strip.inUse()) reading.strip.addLasers(lasers);
-        for (std::size_t first = reading.first_column; first < reading.end_column; first += Row::kColumns) {
-          const std::size_t count = std::min(reading.end_column - first, Row::kColumns);
-          const std::size_t before = workOf(reading);
-          readColumns(reading, static_cast<std::uint32_t>(first), first, count, lasers, cell_at);
-          weigh(first, count, count * lasers * kWorkOfCell + workOf(reading) - before);
-        }
-      });
+      readInParallel(lasers, cell_at);
       column_ = static_cast<std::uint32_t>(columns);
       begun_ = true;
       return;
     }
-    prepareReading(readings_.front());
   }
   constexpr std::size_t kWorthReadingAtOnce = 16;
   Reading& reading = lastReading();
@@ -242,6 +185,39 @@ void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt
   begun_ = true;
 }
 
+/// Decides how many threads read, and what.
+template <typename CellAt>
+void ColumnClusterer::startReading(std::size_t columns, std::size_t lasers, CellAt&& cell_at) {
+  threads_ = 1;
+  if (isWorthThreads(columns, lasers)) {
+    shares_.prepare(columns, lasers, cell_at);
+    threads_ = shares_.shares(parameters_.threads);
+    shares_.cut(threads_, [&](std::size_t thread, std::size_t first_column, std::size_t end_column) {
+      readings_[thread].first_column = first_column;
+      readings_[thread].end_column = end_column;
+      readings_[thread].first_element = static_cast<std::uint32_t>(lasers * first_column);  // a run for each cell
+    });
+  }
+  if (threads_ == 1) prepareReading(readings_.front());
+}
+
+/// Each thread reads its columns, and links them as far as it goes without the others.
+template <typename CellAt>
+void ColumnClusterer::readInParallel(std::size_t lasers, CellAt&& cell_at) {
+  subclusters_.reset(lasers * readings_[threads_ - 1].end_column + Row::kColumns);
+  inParallel(threads_, [&](std::size_t thread) {
+    Reading& reading = readings_[thread];
+    prepareReading(reading);
+    if (reading.strip.inUse()) reading.strip.addLasers(lasers);
+    for (std::size_t first = reading.first_column; first < reading.end_column; first += Row::kColumns) {
+      const std::size_t count = std::min(reading.end_column - first, Row::kColumns);
+      const std::size_t before = workOf(reading);
+      readColumns(reading, static_cast<std::uint32_t>(first), first, count, lasers, cell_at);
+      shares_.weigh(first, count, count * lasers * kWorkOfCell + workOf(reading) - before);
+    }
+  });
+}
+
 /// Reads so many columns at once, and links what they complete.
 /// \param column the first one's number, of the rotation
 /// \param first the first one's number, of what cell_at knows
@@ -259,13 +235,11 @@ template <typename Visit>
 void ColumnClusterer::forEachRun(Visit&& visit) {
   if (!begun_) return;
   orderRows();
-  for (const LaserOrder::Place& place : order_.places()) {
-    const Runs& part = readings_[place.part].runs;
-    const Runs::RowRuns& row = part.rows[place.row];
-    for (std::uint32_t run = row.first_run; run < row.first_run + row.count; ++run)
-      visit(part.source_index.data() + part.runs[run].first_cell, static_cast<std::size_t>(part.runs[run].count),
-            part.runs[run].subcluster);
-  }
+  order_.forEachRun([this](std::size_t thread) -> const Runs& { return readings_[thread].runs; },
+                    [&](std::size_t, const Runs& runs, const Runs::Run& run) {
+                      visit(runs.source_index.data() + run.first_cell, static_cast<std::size_t>(run.count),
+                            run.subcluster);
+                    });
 }
 
 }  // namespace lisco

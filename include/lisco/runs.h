@@ -74,6 +74,17 @@ class LaserOrder {
                                                             static_cast<std::uint32_t>(row)};
   }
 
+  /// Calls visit(part, runs, run) for each run in this order, after sort ().
+  template <typename PartAt, typename Visit>
+  void forEachRun(PartAt&& part_at, Visit&& visit) const {
+    for (const Place& place : places_) {
+      const Runs& part = part_at(place.part);
+      const Runs::RowRuns& row = part.rows[place.row];
+      for (std::uint32_t run = row.first_run; run < row.first_run + row.count; ++run)
+        visit(std::size_t{place.part}, part, part.runs[run]);
+    }
+  }
+
   const std::vector<Place>& places() const { return places_; }
   /// Where the rows of a laser are among the places, after sort ().
   std::size_t beginOf(std::size_t laser) const { return laser == 0 ? 0 : endOf(laser - 1); }

@@ -105,16 +105,12 @@ class LISCO_EXPORT WindowClusterer {
 template <typename Visit>
 void WindowClusterer::forEachRun(Visit&& visit) {
   if (!begun_ || columns_ == 0) return;
-  order_.sort(newest_ - oldest_, [this](std::size_t part) -> const Runs& { return pane(oldest_ + part).runs; });
-  for (const LaserOrder::Place& place : order_.places()) {
-    const WindowPane& part = pane(oldest_ + place.part);
-    const Runs::RowRuns& row = part.runs.rows[place.row];
-    for (std::uint32_t i = row.first_run; i < row.first_run + row.count; ++i) {
-      const Runs::Run& run = part.runs.runs[i];
-      visit(part.runs.source_index.data() + run.first_cell, static_cast<std::size_t>(run.count),
-            subcluster_of_element_[part.first_element + run.subcluster]);
-    }
-  }
+  const auto runs_of = [this](std::size_t part) -> const Runs& { return pane(oldest_ + part).runs; };
+  order_.sort(newest_ - oldest_, runs_of);
+  order_.forEachRun(runs_of, [&](std::size_t part, const Runs& runs, const Runs::Run& run) {
+    visit(runs.source_index.data() + run.first_cell, static_cast<std::size_t>(run.count),
+          subcluster_of_element_[pane(oldest_ + part).first_element + run.subcluster]);
+  });
 }
 
 }  // namespace lisco

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cloud_file.h"
+#include "lisco/version.h"
 #include "program_test.h"
 
 namespace {
@@ -289,7 +290,7 @@ TEST_F(LiscoCluster, TellsItsUseAndVersion) {
   for (const char* option :
        {"--tolerance", "--min-size", "--max-size", "--ground-z", "--output", "--clouds", "--threads"})
     EXPECT_NE(help.out.find(option), std::string::npos) << option;
-  EXPECT_EQ(run("--version").out.rfind("lisco_cluster 0.1.0", 0), 0U);
+  EXPECT_EQ(run("--version").out.rfind("lisco_cluster " LISCO_VERSION, 0), 0U);
 }
 
 }  // namespace

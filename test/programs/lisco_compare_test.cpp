@@ -15,6 +15,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "lisco/version.h"
 #include "program_test.h"
 
 namespace {
@@ -168,7 +169,7 @@ TEST_F(LiscoCompare, WritesJson) {
               0);
     const auto json = jsonIn("walls.json");
     EXPECT_EQ(json["program"], "lisco_compare");
-    EXPECT_EQ(json["version"], "0.1.0");
+    EXPECT_EQ(json["version"], LISCO_VERSION);
     EXPECT_EQ(json["runs"], std::stoi(runs));
     EXPECT_EQ(json["min_size"], 10);
     EXPECT_EQ(json["unorganized"], false);
@@ -576,7 +577,7 @@ TEST_F(LiscoCompare, TellsItsUseAndVersion) {
     EXPECT_NE(help.out.find(option), std::string::npos) << option;
   const Outcome version = run("--version");
   EXPECT_EQ(version.status, 0);
-  EXPECT_EQ(version.out, "lisco_compare 0.1.0\n");
+  EXPECT_EQ(version.out, "lisco_compare " LISCO_VERSION "\n");
 }
 
 }  // namespace
