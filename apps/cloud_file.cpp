@@ -195,7 +195,8 @@ void checkPlyHeader(const fs::path& file) {
     const std::vector<std::string> words = wordsOf(line);
     if (words.empty()) continue;
     if (words[0] == "end_header") {
-      if (!(columns * rows <= file_size) || (columns * rows > 0 && vertices > columns * rows)) break;
+      if (!(std::max({columns, rows, columns * rows}) <= file_size)) break;
+      if (columns * rows > 0 && vertices > columns * rows) break;
       return;
     }
     if (words[0] == "element") in_vertex = words.size() > 1 && words[1] == "vertex";

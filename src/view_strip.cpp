@@ -643,9 +643,11 @@ void ViewStrip::prepare(const Tolerance& new_tolerance, const ViewHints& hints, 
   // As near as that, but not so near that a mask has more than kMostReach places.
   const double near_end =
       tolerance.reach() * std::max({1 / spacing, kLeastNearEnd, 1 / std::sin((kMostReach - 3) * step)});
-  const bool useful = new_steps >= kFewestSteps && new_steps <= kMostSteps && tolerance.joinsAnything() &&
-                      spacing > 1e-5 && spacing < 10 && near_end > 1e-18 && near_end < 1e15 &&
-                      near_end < static_cast<double>(hints.far_distance);
+  const bool stands_somewhere = std::all_of(hints.origin.begin(), hints.origin.end(),
+                                            [](float coordinate) { return std::fabs(coordinate) <= kFarEnd; });
+  const bool useful = stands_somewhere && new_steps >= kFewestSteps && new_steps <= kMostSteps &&
+                      tolerance.joinsAnything() && spacing > 1e-5 && spacing < 10 && near_end > 1e-18 &&
+                      near_end < 1e15 && near_end < static_cast<double>(hints.far_distance);
   range = FarRange();
   range.origin = hints.origin;
   range.near_end = range.far_enough = kInfinity;
@@ -842,9 +844,12 @@ void ViewStrip::linkTo(ViewStrip& other, DisjointSets& subclusters) {
   const double ahead = direction * (other.start_azimuth - start_azimuth) / static_cast<double>(radians_per_place);
   const double least = &other == this ? 1.0 : -static_cast<double>(other.placing.end) - kMostReach;
   const double most = static_cast<double>(placing.end) + kMostReach;
-  if (placing.placed > 0 && other.placing.placed > 0)
-    for (double later = ahead + turn * std::ceil((least - ahead) / turn); later <= most; later += turn)
-      HWY_DYNAMIC_DISPATCH(linkAcross)(*this, other, later, subclusters);
+  if (placing.placed > 0 && other.placing.placed > 0) {
+    const auto first = static_cast<int>(std::ceil((least - ahead) / turn));
+    const auto last = static_cast<int>(std::floor((most - ahead) / turn));
+    for (int turns = first; turns <= last; ++turns)
+      HWY_DYNAMIC_DISPATCH(linkAcross)(*this, other, ahead + turn * turns, subclusters);
+  }
   forgetSectors();
   for (const Loose& loose : other.placing.loose) search(loose, subclusters);
   if (&other == this) return;

@@ -53,7 +53,7 @@ def mutate(source, mutation):
 
 def copy_tree():
     tree = WORK / "tree"
-    for name in ("CMakeLists.txt", "cmake", "include", "src", "test", "doc"):
+    for name in ("CMakeLists.txt", "LICENSE", "README.md", "cmake", "include", "src", "test", "doc"):
         source, target = ROOT / name, tree / name
         target.parent.mkdir(parents=True, exist_ok=True)
         for file in [source] if source.is_file() else source.rglob("*"):

@@ -194,6 +194,13 @@ TEST(ViewStrip, IsOfUseOnlyWhereItsHintsAre) {
   }
   hints.far_distance = 1.001F * near_end;
   EXPECT_TRUE(inUse(1.0F, hints));
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const float coordinate : {kNan, 1e30F, -std::numeric_limits<float>::infinity()}) {
+      hints.origin = {1.0F, 2.0F, 3.0F};
+      EXPECT_TRUE(inUse(1.0F, hints));
+      hints.origin[axis] = coordinate;
+      EXPECT_FALSE(inUse(1.0F, hints)) << coordinate << " on axis " << axis;
+    }
 }
 
 // Whoever is only among the far has far neighbours only, whatever is rounded.

@@ -41,7 +41,7 @@ unsigned azimuthOf(const std::uint8_t* block) {
 Decoder::Decoder(SensorModel model)
     : model_(std::move(model)),
       cells_(model_.lasers.size()),
-      packet_period_us_(static_cast<double>(kBlocks / model_.flags.size()) * blockPeriodUs()) {
+      packet_period_us_(static_cast<double>(kBlocks) * blockPeriodUs() / static_cast<double>(model_.flags.size())) {
   for (const Laser& laser : model_.lasers) {
     const std::size_t block = laser.number / kLasersPerBlock;
     auto direction = std::find_if(directions_.begin(), directions_.end(), [&](const Direction& d) {

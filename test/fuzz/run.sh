@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# run.sh BODY RUNS [SEED]: tries so many inputs (default seed: 1) on engine, stream, readers or packets, beginning with those of
+# test/fuzz/corpus. Prints how many were tried; stops at the first that breaks something and says where it is kept.
+# LISCO_FUZZER_SANITIZERS=address,undefined watches over memory as well, and takes several times as long. Needs clang.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+. "$root/cmake/script_tools.sh"
+body=${1:?a body: engine, stream, readers or packets}
+runs=${2:?how many inputs}
+seed=${3:-1}
+
+sanitizers=${LISCO_FUZZER_SANITIZERS:-}
+build=$root/build/fuzzers${sanitizers:+-${sanitizers//,/-}}
+build_quietly "$root" "$build" -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang \
+  -DLISCO_BUILD_FUZZERS=ON -DLISCO_BUILD_TESTS=OFF "-DLISCO_FUZZER_SANITIZERS=$sanitizers"
+found=$build/found/$body
+log=$build/$body.$seed.log
+mkdir -p "$found"
+# Threads that wait must not take the processor from those that work; inputs may be long from the beginning on.
+if ! OMP_WAIT_POLICY=passive KMP_BLOCKTIME=0 "$build/test/fuzz/lisco_fuzz_$body" -runs="$runs" -seed="$seed" \
+  -entropic=0 -len_control=0 -timeout=60 -rss_limit_mb=4096 -print_final_stats=1 -artifact_prefix="$build/$body-" \
+  "$found" "$root/test/fuzz/corpus/$body" >"$log" 2>&1; then
+  tail -n 40 "$log" >&2
+  exit 1
+fi
+grep -E '^stat::(number_of_executed_units|average_exec_per_sec)' "$log"
