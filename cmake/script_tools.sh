@@ -12,14 +12,18 @@ quietly() {
   fi
 }
 
-# build_quietly SOURCE BUILD CMAKE-OPTION...: configures and builds.
+# build_quietly SOURCE BUILD [--target TARGET --] CMAKE-OPTION...: configures and builds all, or a target.
 build_quietly() {
-  local source=$1 build=$2
+  local source=$1 build=$2 target=all
   shift 2
+  if [ "${1:-}" = --target ]; then
+    target=$2
+    shift 3
+  fi
   mkdir -p "$build"
   if command -v ccache >/dev/null; then
     set -- "$@" -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
   fi
   quietly "$build/configure.log" cmake -S "$source" -B "$build" -G Ninja "$@"
-  quietly "$build/build.log" cmake --build "$build"
+  quietly "$build/build.log" cmake --build "$build" --target "$target"
 }

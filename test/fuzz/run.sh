@@ -12,8 +12,9 @@ seed=${3:-1}
 
 sanitizers=${LISCO_FUZZER_SANITIZERS:-}
 build=$root/build/fuzzers${sanitizers:+-${sanitizers//,/-}}
-build_quietly "$root" "$build" -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang \
-  -DLISCO_BUILD_FUZZERS=ON -DLISCO_BUILD_TESTS=OFF "-DLISCO_FUZZER_SANITIZERS=$sanitizers"
+build_quietly "$root" "$build" --target "lisco_fuzz_$body" -- -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_C_COMPILER=clang -DLISCO_BUILD_FUZZERS=ON -DLISCO_BUILD_TESTS=OFF \
+  "-DLISCO_FUZZER_SANITIZERS=$sanitizers"
 found=$build/found/$body
 log=$build/$body.$seed.log
 mkdir -p "$found"
