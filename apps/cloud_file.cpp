@@ -2,6 +2,11 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "cloud_file.h"
 
+#include <unistd.h>
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -48,6 +53,42 @@ std::string readWhole(const fs::path& file) {
   if (!stream) fail(file, "cannot be read");
   return content;
 }
+
+/// What a file holds now, as a file that nobody else writes to. PCL maps files into memory: one that becomes shorter meanwhile
+/// would end the program.
+class Snapshot {
+ public:
+  explicit Snapshot(const fs::path& file) {
+#ifdef __linux__
+    std::ifstream original(file, std::ios::binary);
+    descriptor_ = memfd_create("lisco", MFD_CLOEXEC);
+    std::vector<char> some(std::size_t{1} << 20);
+    while (descriptor_ >= 0 &&
+           (original.read(some.data(), static_cast<std::streamsize>(some.size())) || original.gcount() > 0))
+      for (std::streamsize written = 0; written < original.gcount();) {
+        const ssize_t more =
+            write(descriptor_, some.data() + written, static_cast<std::size_t>(original.gcount() - written));
+        if (more < 0) throw std::bad_alloc();
+        written += more;
+      }
+    if (descriptor_ >= 0) path_ = "/proc/self/fd/" + std::to_string(descriptor_);
+#endif
+    if (!fs::exists(path_)) path_ = file;
+  }
+  ~Snapshot() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  Snapshot(const Snapshot&) = delete;
+  Snapshot& operator=(const Snapshot&) = delete;
+
+  const fs::path& path() const {
+    return path_;
+  }
+
+ private:
+  int descriptor_ = -1;
+  fs::path path_;
+};
 
 /// Reads one coordinate field, float or double.
 void copyField(const pcl::PCLPointCloud2& blob, const fs::path& file, const char* name, float pcl::PointXYZ::*member,
@@ -117,9 +158,9 @@ constexpr int kMostHeaderLines = 1000;
 
 /// Looks at a PCD file's header before PCL does: PCL 1.13's reader crashes without one, asks for all the memory that a
 /// wrong one promises, and reads beyond lines and compressed data that are too short.
-void checkPcdHeader(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  const auto file_size = static_cast<double>(fs::file_size(file));
+void checkPcdHeader(const fs::path& file, const Snapshot& content) {
+  std::ifstream stream(content.path(), std::ios::binary);
+  const auto file_size = static_cast<double>(fs::file_size(content.path()));
   std::vector<std::string> names, sizes, types, counts;
   double width = 0, height = 1, points = 0;
   constexpr std::array<std::string_view, 11> kKeys{"VERSION", "FIELDS", "COLUMNS",   "SIZE",   "TYPE", "COUNT",
@@ -185,9 +226,9 @@ void checkPcdHeader(const fs::path& file) {
 
 /// Looks at a PLY file's header before PCL does, which asks for all the memory that a wrong one promises,
 /// and aborts at a list in a vertex, or if there are more vertices than cells.
-void checkPlyHeader(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  const auto file_size = static_cast<double>(fs::file_size(file));
+void checkPlyHeader(const fs::path& file, const Snapshot& content) {
+  std::ifstream stream(content.path(), std::ios::binary);
+  const auto file_size = static_cast<double>(fs::file_size(content.path()));
   double columns = 0, rows = 0, vertices = 0;
   bool in_vertex = false;
   std::string line;
@@ -268,8 +309,9 @@ Cloud::Ptr readObj(const fs::path& file) {
 Cloud::Ptr readByPcl(const fs::path& file, const std::string& ending, std::vector<std::uint32_t>* object_of) {
   // PCL's readers print what they think; this program says it once, in its own words.
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
-  if (ending == ".pcd") checkPcdHeader(file);
-  if (ending == ".ply") checkPlyHeader(file);
+  const Snapshot content(file);
+  if (ending == ".pcd") checkPcdHeader(file, content);
+  if (ending == ".ply") checkPlyHeader(file, content);
   pcl::PCLPointCloud2 blob;
   auto cloud = std::make_shared<Cloud>();
   Eigen::Vector4f origin = Eigen::Vector4f::Zero();
@@ -277,8 +319,8 @@ Cloud::Ptr readByPcl(const fs::path& file, const std::string& ending, std::vecto
   int status = -1;
   try {
     int version;
-    status = ending == ".pcd" ? pcl::PCDReader().read(file.string(), blob, origin, orientation, version)
-                              : pcl::PLYReader().read(file.string(), blob, origin, orientation, version);
+    status = ending == ".pcd" ? pcl::PCDReader().read(content.path().string(), blob, origin, orientation, version)
+                              : pcl::PLYReader().read(content.path().string(), blob, origin, orientation, version);
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception&) {

@@ -4,6 +4,8 @@
 // The programs where the machine fails them: no room on the disk, a folder that nobody may write to, a sudden end.
 #include <signal.h>
 
+#include <fstream>
+#include <set>
 #include <string>
 
 #include "program_test.h"
@@ -66,6 +68,44 @@ TEST_F(Faults, AFolderThatNobodyMayWriteTo) {
   fs::permissions(folder_ / "closed", fs::perms::owner_read | fs::perms::owner_exec);
   expectRefusal("scan.pcd -t 0.4 -o closed/results", {"closed", "cannot be written"});
   fs::permissions(folder_ / "closed", fs::perms::owner_all);
+}
+
+// Somebody else writes the input, while it is read, again and again: a result or a refusal, never a sudden end.
+TEST_F(Faults, AFileThatChangesWhileItIsRead) {
+  ASSERT_EQ(runLine(std::string(LISCO_SIMULATE) + " --scene 3 --sensor os1-128 --seed 1 -o large.pcd").status, 0);
+  const std::string whole = textOf(folder_ / "large.pcd");
+  const pid_t writer = fork();
+  if (writer == 0) {
+    for (std::size_t round = 0;; ++round) {
+      std::ofstream(folder_ / "changing.pcd", std::ios::binary) << whole;
+      fs::resize_file(folder_ / "changing.pcd", whole.size() / (2 + round % 5));
+    }
+  }
+  std::set<int> statuses;
+  for (int i = 0; i < 40; ++i) {
+    const Outcome outcome = run("changing.pcd -t 0.4 --json results.json");
+    statuses.insert(outcome.status);
+    EXPECT_TRUE(outcome.status == 0 || outcome.status == 2) << outcome.status << ": " << outcome.err;
+  }
+  kill(writer, SIGKILL);
+  waitpid(writer, nullptr, 0);
+  EXPECT_EQ(statuses.count(2), 1U) << "it was never seen cut off";
+}
+
+TEST_F(Faults, AFileThatVanishesWhileItIsRead) {
+  const std::string whole = textOf(folder_ / "scan.pcd");
+  const pid_t writer = fork();
+  if (writer == 0)
+    for (;;) {
+      std::ofstream(folder_ / "vanishing.pcd", std::ios::binary) << whole;
+      fs::remove(folder_ / "vanishing.pcd");
+    }
+  for (int i = 0; i < 20; ++i) {
+    const Outcome outcome = run("vanishing.pcd -t 0.4");
+    EXPECT_TRUE(outcome.status == 0 || outcome.status == 2) << outcome.status << ": " << outcome.err;
+  }
+  kill(writer, SIGKILL);
+  waitpid(writer, nullptr, 0);
 }
 
 // Whenever it is killed, what is there is whole, and the next run cleans up.
