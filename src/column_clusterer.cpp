@@ -49,12 +49,9 @@ void ColumnClusterer::prepareReading(Reading& reading) {
   reading.runs.clear();
   reading.runs.source_index.reserve(parameters_.expected_returns / threads_);
   reading.voxels.prepare(tolerance_);
-  if (threads_ == 1) {
-    reading.first_element = 0;
-    reading.strip.prepare(tolerance_, parameters_.view);
-  } else {
-    reading.strip.prepare(tolerance_, parameters_.view, reading.end_column - reading.first_column);
-  }
+  // Who reads alone does not know how many columns will come.
+  reading.strip.prepare(tolerance_, parameters_.view,
+                        threads_ == 1 ? ~std::size_t{0} : reading.end_column - reading.first_column);
 }
 
 void ColumnClusterer::stagedBlockIsComplete() {
@@ -66,25 +63,29 @@ void ColumnClusterer::stagedBlockIsComplete() {
 /// Does as much of what is left to be done as so many columns are to take: a block of columns is read while the next one
 /// comes, and linked while those after it come.
 void ColumnClusterer::workOnPending(std::size_t columns) {
-  const std::size_t block = parameters_.block_columns;
-  columns_since_block_ = std::min(columns_since_block_ + columns, block);
   pace_.addColumns(columns);
   ViewStrip& strip = lastReading().strip;
   while (strip.partsLeft() > 0 && pace_.isBehind()) pace_.spend(strip.linkPart(subclusters_));
+  readPending(columns);
+}
+
+/// Reads as much of the pending block as so many columns are to take.
+void ColumnClusterer::readPending(std::size_t columns) {
   if (pending_.columns() == 0) return;
+  const std::size_t block = parameters_.block_columns;
+  columns_since_block_ = std::min(columns_since_block_ + columns, block);
   for (; pending_laser_ < pending_.lasers() * columns_since_block_ / block; ++pending_laser_)
     readRow(lastReading(), pending_.row(pending_laser_), pending_laser_, column_, pending_.columns());
   if (pending_laser_ < pending_.lasers()) return;
   pending_laser_ = 0;
   column_ += static_cast<std::uint32_t>(pending_.columns());
   pending_.clear();
-  strip.claim();
-  pace_.plan(strip.partsLeft());
+  lastReading().strip.claim();
+  pace_.plan(lastReading().strip.partsLeft());
 }
 
-/// Reads the rest of the block.
 void ColumnClusterer::finishPending() {
-  if (pending_.columns() > 0) workOnPending(parameters_.block_columns);
+  readPending(parameters_.block_columns);
 }
 
 /// Chains the returns of one laser into runs: each a neighbour of the one before. Far ones go to their places in the

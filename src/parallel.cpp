@@ -3,6 +3,7 @@
 #include "lisco/parallel.h"
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
 #include <thread>
 #include <vector>
@@ -28,12 +29,13 @@ void inParallel(std::size_t threads, void (*work)(void* context, std::size_t thr
     if (threads == 1) work(context, 0);
     return;
   }
-  std::vector<std::exception_ptr> failures(threads);
+  std::exception_ptr failure;
+  std::atomic_flag has_failed = ATOMIC_FLAG_INIT;
   const auto run = [&](std::size_t thread) {
     try {
       work(context, thread);
-    } catch (...) {  // may not leave the thread
-      failures[thread] = std::current_exception();
+    } catch (...) {  // may not leave the thread; the first one tells
+      if (!has_failed.test_and_set()) failure = std::current_exception();
     }
   };
 #ifdef LISCO_STD_THREADS
@@ -46,8 +48,7 @@ void inParallel(std::size_t threads, void (*work)(void* context, std::size_t thr
 #pragma omp parallel for num_threads(count) schedule(static, 1)
   for (int thread = 0; thread < count; ++thread) run(static_cast<std::size_t>(thread));
 #endif
-  for (const std::exception_ptr& failure : failures)
-    if (failure) std::rethrow_exception(failure);
+  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace lisco

@@ -631,7 +631,6 @@ void ViewStrip::prepare(const Tolerance& new_tolerance, const ViewHints& hints, 
   placing.loose.clear();
   placing.late.clear();
   placing.placed = placing.end = 0;
-  placing.begin = places;
   placing.full = elevations_changed = false;
 
   const double turn_steps = std::clamp<double>(hints.steps_per_turn, 0, 1e9);
@@ -677,6 +676,7 @@ void ViewStrip::prepare(const Tolerance& new_tolerance, const ViewHints& hints, 
     }
     lasers.clear();
   }
+  placing.begin = places;
   const std::size_t lasers_before = lasers.size();
   lasers.clear();
   addLasers(lasers_before);

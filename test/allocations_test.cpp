@@ -106,6 +106,30 @@ TEST(Allocations, NoneForARotationLikeTheLast) {
   }
 }
 
+// Shares follow the work of the rotation before, so it takes a third one until they are where they were.
+TEST(Allocations, NoneByThreadsOnceTheirSharesHaveSettled) {
+  const auto columns = oneTurn();
+  lisco::ColumnClusterer clusterer;
+  lisco::Parameters parameters;
+  parameters.tolerance = 0.5F;
+  parameters.view.steps_per_turn = kSteps;
+  parameters.view.elevation_step = 0.03F;
+  for (const std::size_t threads : {2, 3}) {
+    parameters.threads = threads;
+    EXPECT_EQ(allocationsOf(8,
+                            [&] {
+                              clusterer.begin(parameters);
+                              clusterer.addColumns(kSteps, kLasers, [&](std::size_t laser, std::size_t column) {
+                                return columns[column][laser];
+                              });
+                              clusterer.update();
+                              clusterer.forEachRun([](const std::uint32_t*, std::size_t, std::uint32_t) {});
+                            }),
+              0U)
+        << threads;
+  }
+}
+
 TEST(Allocations, NoneForAnEndlessStreamThatGoesOn) {
   const auto columns = oneTurn();
   lisco::EndlessClusterer clusterer;

@@ -135,6 +135,14 @@ TEST(ColumnShares, FollowTheWorkOfTheLastRotation) {
   EXPECT_EQ(cut(shares, 2)[0].end, 512U);
 }
 
+TEST(ColumnShares, HoldColumnsThatTookNothing) {
+  lisco::ColumnShares shares;
+  shares.prepare(1000, 64, [](std::size_t, std::size_t) { return lisco::Return{1, 2, 3, 0}; });
+  shares.weigh(0, 512, 100);
+  shares.weigh(512, 488, 0);
+  EXPECT_EQ(cut(shares, 3).back().end, 1000U);
+}
+
 TEST(ColumnShares, FollowTheReturnsOfTheFirstRotation) {
   lisco::ColumnShares shares;
   shares.prepare(1600, 64, [](std::size_t, std::size_t column) {

@@ -34,8 +34,8 @@ struct Parameters {
   /// cloud's memory; 1 does the work of each column at once. The work of a block is spread over the columns of the next
   /// one, so that no column takes much longer than others.
   std::size_t block_columns = Row::kColumns;
-  /// How many threads share the work of one addColumns () of a whole rotation and of the update () after it; 0: one
-  /// for each core. Columns that come one by one are the work of one thread.
+  /// How many threads share the work of the first addColumns () after begin (), which should bring a whole rotation, and of
+  /// the update () after it; 0: one for each core. Columns that come one by one, or after these, are the work of one thread.
   std::size_t threads = 1;
 };
 
@@ -53,7 +53,8 @@ struct Parameters {
 /// A *run* is a chain of neighbours that one laser returned within one block of columns; a *subcluster* is a set of
 /// runs. Far returns find their neighbours in the sensor's view (ViewStrip), near ones in space (Voxels).
 ///
-/// Nothing is allocated once the buffers have grown to the largest rotation seen. Not thread safe; any number
+/// Nothing is allocated once the buffers have grown to the largest rotation seen (with several threads, whose shares change
+/// with the scene, to the largest shares). Not thread safe; any number
 /// of instances may work side by side.
 class LISCO_EXPORT ColumnClusterer {
  public:
@@ -101,7 +102,7 @@ class LISCO_EXPORT ColumnClusterer {
  private:
   /// What one thread has read: some columns, of which it knows all but what they have to do with others.
   struct Reading {
-    std::size_t first_column = 0, end_column = 0;  ///< its part of a rotation that is read in parallel
+    std::size_t first_column = 0, end_column = 0;  ///< its share of what is read in parallel
     std::uint32_t first_element = 0;               ///< run i is element first_element + i
     Runs runs;
     ViewStrip strip;  ///< far returns
@@ -113,6 +114,7 @@ class LISCO_EXPORT ColumnClusterer {
 
   void stagedBlockIsComplete();
   void workOnPending(std::size_t columns);
+  void readPending(std::size_t columns);
   void finishPending();
   template <typename CellAt>
   void readColumns(Reading& reading, std::uint32_t column, std::size_t first, std::size_t count, std::size_t lasers,
@@ -123,8 +125,11 @@ class LISCO_EXPORT ColumnClusterer {
   void orderRows();
   void checkColumns(std::size_t lasers) const;
   bool isWorthThreads(std::size_t columns, std::size_t lasers) const;
-  static constexpr std::size_t kWorkOfCell = 2;  ///< in the strip's units
-  static std::size_t workOf(const Reading& reading) { return reading.strip.work() + 2 * reading.runs.returns; }
+  static constexpr std::size_t kWorkOfCell = 2;    ///< of reading it, in the strip's units
+  static constexpr std::size_t kWorkOfReturn = 2;  ///< more than of a cell alone
+  static std::size_t workOf(const Reading& reading) {
+    return reading.strip.work() + kWorkOfReturn * reading.runs.returns;
+  }
   template <typename CellAt>
   void startReading(std::size_t columns, std::size_t lasers, CellAt&& cell_at);
   template <typename CellAt>
@@ -189,6 +194,7 @@ void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt
 template <typename CellAt>
 void ColumnClusterer::startReading(std::size_t columns, std::size_t lasers, CellAt&& cell_at) {
   threads_ = 1;
+  readings_.front().first_element = 0;
   if (isWorthThreads(columns, lasers)) {
     shares_.prepare(columns, lasers, cell_at);
     threads_ = shares_.shares(parameters_.threads);

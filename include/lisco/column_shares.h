@@ -12,8 +12,8 @@
 
 namespace lisco {
 
-/// Shares the columns of a rotation out to threads: columns side by side, by the work that they took in the rotation before,
-/// or, where nothing is known of one, by the number of returns.
+/// Shares the columns of a rotation out to threads: columns side by side, by the work that they took in the rotation before, as far
+/// as somebody counted it; or, if there was none of as many columns and lasers, by the number of returns.
 class ColumnShares {
  public:
   /// Gets ready for a rotation.
@@ -58,8 +58,10 @@ class ColumnShares {
   void weigh(std::size_t first, std::size_t columns, std::size_t work) {
     const std::size_t begin = first / kGroup;
     const std::size_t end = (first + columns + kGroup - 1) / kGroup;
+    // Never 0: a column without weight would be nobody's.
+    const std::size_t weight = std::clamp<std::size_t>(work / (end - begin), 1, std::size_t{1} << 30U);
     std::fill(weights_.begin() + static_cast<std::ptrdiff_t>(begin),
-              weights_.begin() + static_cast<std::ptrdiff_t>(end), static_cast<std::uint32_t>(work / (end - begin)));
+              weights_.begin() + static_cast<std::ptrdiff_t>(end), static_cast<std::uint32_t>(weight));
   }
 
  private:

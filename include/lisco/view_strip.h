@@ -172,9 +172,10 @@ class LISCO_EXPORT ViewStrip : private StripData {
   /// All that linking has taken so far, in the same.
   std::size_t work() const { return linking.work; }
 
-  /// Compares all that has not been compared within the strip. linkTo () itself is to follow. More returns may come later.
+  /// Compares all that has not been compared within the strip. linkTo (*this) is to follow. More returns may come later.
   void linkRest(DisjointSets& subclusters);
-  /// Compares the returns here with those of another strip of the same rotation, or those at its end with those a turn before.
+  /// Compares the returns here with those of another strip of the same rotation; or, of this one, those at its end with those
+  /// a turn before.
   void linkTo(ViewStrip& other, DisjointSets& subclusters);
 
   /// Whether too many returns are loose for one strip of a rotation. Then all of them are to stopPlacing (), when each has
