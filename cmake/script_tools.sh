@@ -12,10 +12,11 @@ quietly() {
   fi
 }
 
-# build_quietly SOURCE BUILD CMAKE-OPTION...: configures and builds.
+# build_quietly SOURCE BUILD CMAKE-OPTION...: configures and builds. Says so the first time, when it takes long.
 build_quietly() {
   local source=$1 build=$2
   shift 2
+  [ -f "$build/build.ninja" ] || echo "building in $build (minutes; progress: $build/build.log)"
   mkdir -p "$build"
   if command -v ccache >/dev/null; then
     set -- "$@" -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
