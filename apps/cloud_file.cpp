@@ -186,6 +186,7 @@ void checkPcdHeader(const fs::path& file, const Snapshot& content) {
     if (key == "POINTS") points = countOf(words, 1);
     is_header = key == "DATA";
   }
+  if (!is_header && !seen.empty()) fail(file, "is damaged or truncated: its header breaks off");
   if (!is_header || names.empty()) fail(file, "is no pcd file: it has no header");
   if (words.size() != 2 || (words[1] != "ascii" && words[1] != "binary" && words[1] != "binary_compressed"))
     fail(file, "is damaged: its header does not say how its data are written");
@@ -217,6 +218,8 @@ void checkPcdHeader(const fs::path& file, const Snapshot& content) {
         fail(file, "is truncated: a line of it holds fewer values than a point has");
     return;
   }
+  if (!is_compressed && static_cast<double>(stream.tellg()) + stored * width * height > file_size)
+    fail(file, "is truncated: it holds fewer points than its header says");
   std::uint32_t compressed[2]{};  // its size, and what it becomes
   if (is_compressed && (!stream.read(reinterpret_cast<char*>(compressed), sizeof compressed) ||
                         static_cast<double>(stream.tellg()) + compressed[0] > file_size ||
@@ -392,7 +395,9 @@ Cloud::Ptr readAuthorsCsv(const fs::path& file) {
   const bool header = parseThree(next_line(), values);
   if (!header || values[0] < 1 || values[1] < 1 || values[0] > kMost || values[1] > kMost ||
       values[0] != std::floor(values[0]) || values[1] != std::floor(values[1]) || values[2] != 0)
-    fail(file, "line 1 is not 'lasers,steps,0'");
+    fail(file,
+         "line 1 is not 'lasers,steps,0', with which the paper authors' .csv begins; no other .csv is read, make it a "
+         ".pcd");
   const auto lasers = static_cast<std::size_t>(values[0]);
   const auto steps = static_cast<std::size_t>(values[1]);
   if (lasers * steps > content.size()) fail(file, "holds fewer cells than its first line says");
@@ -427,16 +432,18 @@ Cloud::Ptr readAuthorsCsv(const fs::path& file) {
 Cloud::Ptr readCloudFile(const fs::path& file, std::vector<std::uint32_t>* object_of) {
   if (object_of != nullptr) object_of->clear();
   std::error_code error;
-  if (!fs::exists(file, error)) fail(file, "does not exist");
+  if (!fs::exists(file, error)) fail(file, error ? "cannot be read: " + error.message() : "does not exist");
   if (!fs::is_regular_file(file, error)) fail(file, "is no file");
   if (!std::ifstream(file)) fail(file, "cannot be read");
   const std::string ending = endingOf(file);
+  if (ending == ".pcap" || ending == ".pcapng") fail(file, "is a capture of packets: give it to lisco_stream");
+  if (std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end())
+    fail(file, "has an unknown ending (known: pcd, ply, obj, ifs, bin, csv)");
+  if (fs::file_size(file, error) == 0) fail(file, "is empty");
   if (ending == ".bin") return readKittiBin(file);
   if (ending == ".csv") return readAuthorsCsv(file);
   if (ending == ".ifs") return readIfs(file);
   if (ending == ".obj") return readObj(file);
-  if (std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end())
-    fail(file, "has an unknown ending (known: pcd, ply, obj, ifs, bin, csv)");
   try {
     return readByPcl(file, ending, object_of);
   } catch (const std::bad_alloc&) {

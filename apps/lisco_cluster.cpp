@@ -54,17 +54,19 @@ bool parse(int argc, char** argv, Options& options) {
       "An input is a scan (.pcd .ply .obj .ifs, KITTI .bin, the paper authors' .csv) or a folder of "
       "scans.\n\n"
       "Options");
+  std::string tolerance;
+  std::string ground_z;
   std::string min_size = "10";
   std::string max_size;
   std::string threads = "1";
   std::string output;
   // clang-format off
   shown.add_options()
-    ("tolerance,t", po::value<double>()->value_name("M"),
+    ("tolerance,t", po::value<std::string>(&tolerance)->value_name("M"),
      "points nearer to each other than this many metres belong together")
     ("min-size", po::value<std::string>(&min_size)->value_name("N"), "least returns of a cluster (default 10)")
     ("max-size", po::value<std::string>(&max_size)->value_name("N"), "most returns of a cluster (default: no limit)")
-    ("ground-z", po::value<float>(&options.ground_z)->value_name("M"),
+    ("ground-z", po::value<std::string>(&ground_z)->value_name("M"),
      "leave out returns below this height in metres (default: none)")
     ("threads", po::value<std::string>(&threads)->value_name("N"),
      "work on N files side by side (default 1; 0: as many as there are processors)")
@@ -76,11 +78,8 @@ bool parse(int argc, char** argv, Options& options) {
   if (!readCommandLine(argc, argv, "lisco_cluster", shown, &options.inputs, given)) return false;
   if (options.inputs.empty()) throw std::runtime_error("no input; see --help");
   if (given.count("tolerance") == 0) throw std::runtime_error("--tolerance is missing; see --help");
-  options.tolerance = given["tolerance"].as<double>();
-  if (!(options.tolerance > 0) || !std::isfinite(options.tolerance))
-    throw std::runtime_error("--tolerance must be a positive number of metres");
-  if (given.count("ground-z") != 0 && !std::isfinite(options.ground_z))
-    throw std::runtime_error("--ground-z must be a number of metres");
+  options.tolerance = toleranceOf(tolerance);
+  if (given.count("ground-z") != 0) options.ground_z = heightOf(ground_z);
   options.min_size = countOf(min_size, "--min-size", 1);
   if (given.count("max-size") != 0) options.max_size = countOf(max_size, "--max-size", 1);
   if (options.max_size < options.min_size) throw std::runtime_error("--max-size is smaller than --min-size");
@@ -112,6 +111,10 @@ void printSummary(const ClusteredScan& scan, const Options& options, double read
   if (!scan.clusters.empty())  // sorted by size
     std::printf("  sizes     largest %zu, median %zu, smallest %zu\n", scan.clusters.front().indices.size(),
                 scan.clusters[scan.clusters.size() / 2].indices.size(), scan.clusters.back().indices.size());
+  if (!scan.clusters.empty() && 2 * scan.clusters.front().indices.size() > scan.clustered.size())
+    std::printf(
+        "  note      one cluster has more than half of these returns: is it the ground (see --ground-z), or is the "
+        "tolerance too large?\n");
   std::printf("  time      read %.1f ms, cluster %.2f ms", read_ms, cluster_ms);
   if (!folder.empty()) std::printf(", write %.1f ms\n  written   %s", write_ms, folder.c_str());
   std::printf("\n");

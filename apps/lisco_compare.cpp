@@ -105,9 +105,7 @@ bool parse(int argc, char** argv, Options& options) {
   if (given.count("tolerance") == 0) throw std::runtime_error("--tolerance is missing; see --help");
   CompareSettings& settings = options.settings;
   for (const std::string& item : itemsOf(tolerances)) {
-    const double tolerance = numberOf(item, "--tolerance");
-    if (!(tolerance > 0)) throw std::runtime_error("--tolerance must be positive, not '" + item + "'");
-    settings.tolerances.push_back(tolerance);
+    settings.tolerances.push_back(toleranceOf(item));
   }
   settings.min_size = countOf(min_size, "--min-size", 1);
   settings.runs = countOf(runs, "--runs", 1);
@@ -199,7 +197,13 @@ int compare(const Options& options) {
     checkMayWriteInto(options.plot, charts);
   }
 
+  std::vector<std::string> stems;
+  for (const fs::path& file : files) stems.push_back(file.stem().string());
+  for (const std::string& name : options.ground.namesNotIn(stems))
+    std::fprintf(stderr, "lisco_compare: --ground-z names '%s', which is no input\n", name.c_str());
+
   std::fputs(describeRun(settings).c_str(), stdout);
+  std::fflush(stdout);
   std::vector<InputResult> results;
   const double cases = static_cast<double>(files.size() * settings.tolerances.size());
   ProgressBar progress;

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -65,10 +64,7 @@ void listenToSignals() {
 }
 
 std::uint16_t portOf(const std::string& text) {
-  const unsigned port = countOf(text, "--port", 0);
-  if (port > std::numeric_limits<std::uint16_t>::max())
-    throw std::runtime_error("--port must be a number from 0 to 65535, not '" + text + "'");
-  return static_cast<std::uint16_t>(port);
+  return static_cast<std::uint16_t>(countOf(text, "--port", 0, std::numeric_limits<std::uint16_t>::max()));
 }
 
 /// \return false if there is nothing to do but to print help or version, which has been done
@@ -101,19 +97,18 @@ bool parse(int argc, char** argv, Options& options) {
   std::vector<std::string> inputs;
   std::string port, mode, calibration, output, rotations;
   std::string min_size = "10", max_size;
-  double tolerance = 0;
-  float& ground_z = options.stream.ground_z;
+  std::string tolerance, ground_z;
   // clang-format off
   shown.add_options()
     ("sensor", po::value<std::string>(&options.sensor)->value_name("NAME"), sensors.c_str())
-    ("tolerance,t", po::value<double>(&tolerance)->value_name("M"),
+    ("tolerance,t", po::value<std::string>(&tolerance)->value_name("M"),
      "points nearer to each other than this many metres belong together")
     ("port", po::value<std::string>(&port)->value_name("N")->implicit_value(std::to_string(kUsualPort)),
      "UDP port to receive from (without a number: 2368; 0: any that is free); of a capture, take only packets to it")
     ("mode", po::value<std::string>(&mode)->value_name("NAME"), "rotation or endless (default rotation)")
     ("min-size", po::value<std::string>(&min_size)->value_name("N"), "least returns of a cluster (default 10)")
     ("max-size", po::value<std::string>(&max_size)->value_name("N"), "most returns of a cluster (default: no limit)")
-    ("ground-z", po::value<float>(&ground_z)->value_name("M"),
+    ("ground-z", po::value<std::string>(&ground_z)->value_name("M"),
      "leave out returns below this height in metres, the sensor is at 0 (default: none)")
     ("calibration", po::value<std::string>(&calibration)->value_name("FILE"),
      "the hdl64e's own calibration (its maker's db.xml), which it needs")
@@ -141,11 +136,8 @@ bool parse(int argc, char** argv, Options& options) {
   options.calibration = calibration;
 
   if (given.count("tolerance") == 0) throw std::runtime_error("--tolerance is missing; see --help");
-  if (!(tolerance > 0) || !std::isfinite(tolerance))
-    throw std::runtime_error("--tolerance must be a positive number of metres");
-  options.stream.tolerance = static_cast<float>(tolerance);
-  if (given.count("ground-z") != 0 && !std::isfinite(ground_z))
-    throw std::runtime_error("--ground-z must be a number of metres");
+  options.stream.tolerance = static_cast<float>(toleranceOf(tolerance));
+  if (given.count("ground-z") != 0) options.stream.ground_z = heightOf(ground_z);
   options.stream.min_size = countOf(min_size, "--min-size", 1);
   if (given.count("max-size") != 0) options.stream.max_size = countOf(max_size, "--max-size", 1);
   if (options.stream.max_size < options.stream.min_size)
@@ -262,7 +254,10 @@ int run(const Options& options) {
   const bool was_cut_short = interrupted != 0 && input.queue == nullptr;
   if (decoder.counts().data == 0 && !was_cut_short)
     throw std::runtime_error((options.capture.empty() ? "" : options.capture.string() + ": ") +
-                             others.nothingCame(*input.source, decoder));
+                             others.nothingCame(*input.source, decoder) +
+                             (options.port && decoder.counts().foreign == 0
+                                  ? "; only packets to port " + std::to_string(*options.port) + " count"
+                                  : ""));
   return error.empty() ? 0 : 2;
 }
 

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "options.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <limits>
@@ -13,16 +14,16 @@ namespace lisco_apps {
 
 namespace po = boost::program_options;
 
-unsigned countOf(const std::string& text, const char* option, int least) {
+unsigned countOf(const std::string& text, const char* option, int least, int most) {
   std::size_t end = 0;
   long long value = -1;
   try {
     value = std::stoll(text, &end);
   } catch (const std::exception&) {
   }
-  if (end != text.size() || value < least || value > std::numeric_limits<int>::max())
-    throw std::runtime_error(std::string(option) + " must be a whole number from " + std::to_string(least) +
-                             " to 2147483647, not '" + text + "'");
+  if (end != text.size() || value < least || value > most)
+    throw std::runtime_error(std::string(option) + " must be a whole number from " + std::to_string(least) + " to " +
+                             std::to_string(most) + ", not '" + text + "'");
   return static_cast<unsigned>(value);
 }
 
@@ -36,6 +37,22 @@ double numberOf(const std::string& text, const char* option) {
   if (end != text.size() || !std::isfinite(value))
     throw std::runtime_error(std::string(option) + " must be a number, not '" + text + "'");
   return value;
+}
+
+double toleranceOf(const std::string& text) {
+  double tolerance = 0;
+  try {
+    tolerance = numberOf(text, "--tolerance");
+  } catch (const std::runtime_error&) {
+  }
+  if (!(tolerance > 0)) throw std::runtime_error("--tolerance must be a positive number of metres, not '" + text + "'");
+  return tolerance;
+}
+
+float heightOf(const std::string& text) {
+  const auto height = static_cast<float>(numberOf(text, "--ground-z"));
+  if (!std::isfinite(height)) throw std::runtime_error("--ground-z must be a number of metres, not '" + text + "'");
+  return height;
 }
 
 std::vector<std::string> itemsOf(const std::string& text) {
@@ -59,12 +76,15 @@ bool readCommandLine(int argc, char** argv, const char* program, po::options_des
   shown.add_options()("help,h", "print this and exit")("version", "print the version and exit");
   po::options_description all;
   all.add(shown);
+  std::vector<std::string> others;
+  all.add_options()("input", po::value<std::vector<std::string>>(inputs != nullptr ? inputs : &others));
   po::positional_options_description positional;
-  if (inputs != nullptr) {
-    all.add_options()("input", po::value<std::vector<std::string>>(inputs));
-    positional.add("input", -1);
+  positional.add("input", -1);
+  try {
+    po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), given);
+  } catch (const po::error& error) {
+    throw std::runtime_error(std::string(error.what()) + "; see --help");
   }
-  po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), given);
   if (given.count("help") != 0) {
     std::cout << shown;
     return false;
@@ -74,6 +94,7 @@ bool readCommandLine(int argc, char** argv, const char* program, po::options_des
     return false;
   }
   po::notify(given);
+  if (!others.empty()) throw std::runtime_error("'" + others.front() + "' is no option; see --help");
   return true;
 }
 
@@ -82,8 +103,15 @@ GroundHeights::GroundHeights(const std::vector<std::string>& items) {
     const std::size_t equals = item.rfind('=');
     const std::string name = equals == std::string::npos ? "" : item.substr(0, equals);
     const std::string height = equals == std::string::npos ? item : item.substr(equals + 1);
-    of_name_[name] = static_cast<float>(numberOf(height, "--ground-z"));
+    of_name_[name] = heightOf(height);
   }
+}
+
+std::vector<std::string> GroundHeights::namesNotIn(const std::vector<std::string>& names) const {
+  std::vector<std::string> unknown;
+  for (const auto& [name, height] : of_name_)
+    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) unknown.push_back(name);
+  return unknown;
 }
 
 float GroundHeights::of(const std::string& name) const {

@@ -73,17 +73,26 @@ class MadeFolder {
   bool kept_ = false;
 };
 
+/// Looks whether things can be made in a folder that is there.
+/// \param wanted named in the error
+void checkWritable(const fs::path& folder, const fs::path& wanted) {
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    throw std::runtime_error(wanted.string() + ": cannot be written: " + std::generic_category().message(errno));
+}
+
 }  // namespace
 
 void checkMayWrite(const fs::path& file, const std::string& signature) {
   std::error_code error;
+  const fs::path folder = fs::absolute(file).parent_path();
   if (!fs::exists(file, error)) {
-    const fs::path folder = fs::absolute(file).parent_path();
     if (!fs::is_directory(folder, error))
       throw std::runtime_error(file.string() + ": cannot be written: there is no folder " + folder.string());
+    checkWritable(folder, file);
     return;
   }
   if (!fs::is_regular_file(file, error)) throw std::runtime_error(file.string() + ": is no file");
+  checkWritable(folder, file);
   std::string beginning(1024, '\0');
   std::ifstream stream(file, std::ios::binary);
   stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
@@ -96,15 +105,16 @@ void writeOwnFile(const fs::path& file, const std::string& content, const std::s
   checkMayWrite(file, signature);
   const fs::path aside = file.string() + kFilePartial + std::to_string(getpid());
   removeAbandoned(fs::absolute(file).parent_path(), file.filename().string() + kFilePartial);
+  errno = 0;
   std::ofstream stream(aside, std::ios::binary);
   stream << content;
   stream.close();
-  std::error_code error;
+  std::error_code error(stream ? 0 : errno, std::generic_category());
   if (stream) fs::rename(aside, file, error);
   if (!stream || error) {
     std::error_code ignored;
     fs::remove(aside, ignored);
-    throw std::runtime_error(file.string() + ": cannot be written");
+    throw std::runtime_error(file.string() + ": cannot be written" + (error ? ": " + error.message() : ""));
   }
 }
 
@@ -114,6 +124,7 @@ void checkMayWriteInto(const fs::path& folder, const std::vector<std::string>& n
   while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
   if (!fs::is_directory(there, error))
     throw std::runtime_error(folder.string() + ": cannot be written: " + there.string() + " is no folder");
+  checkWritable(there, folder);
   if (fs::exists(folder / kResultMarker)) return;
   for (const std::string& name : names)
     if (fs::exists(folder / name))
@@ -145,7 +156,8 @@ void writeOwnFolder(const fs::path& folder, const std::vector<std::string>& name
     }
     made.keep();
   } catch (const fs::filesystem_error& error) {
-    const fs::path& path = error.path2().empty() ? error.path1() : error.path2();
+    fs::path path = error.path2().empty() ? error.path1() : error.path2();
+    if (path.filename().string().rfind(kFolderPartial, 0) == 0) path = folder;  // nobody knows the name of that one
     throw std::runtime_error(path.string() + ": cannot be written: " + error.code().message());
   }
 }

@@ -12,10 +12,11 @@ namespace lisco_apps {
 /// Name of the file by which a folder with results of these programs is known.
 inline constexpr const char* kResultMarker = ".lisco_results";
 
-/// Looks whether a file may be written: its folder is there, and it does not exist, or these programs have written it.
+/// Looks whether a file may be written: its folder is there and may be written to, and the file does not exist, or these
+/// programs have written it.
 /// \param signature what a file of this kind has near its beginning if these programs have written it
 /// \throws std::runtime_error with one line if it exists and was written by somebody else, or is no file, or has no
-/// folder
+/// folder, or one that may not be written to
 void checkMayWrite(const std::filesystem::path& file, const std::string& signature);
 
 /// Writes a file, all or nothing: beside its place first, then moved there. Checks as checkMayWrite () does. Folders
@@ -26,7 +27,8 @@ void writeOwnFile(const std::filesystem::path& file, const std::string& content,
 
 /// Looks whether things of these names may be written into a folder: these programs have written there before, or it
 /// has nothing of these names, or can be made.
-/// \throws std::runtime_error with one line that names what would be overwritten, or what is no folder
+/// \throws std::runtime_error with one line that names what would be overwritten, what is no folder, or which one may not
+/// be written to
 void checkMayWriteInto(const std::filesystem::path& folder, const std::vector<std::string>& names);
 
 /// Writes files and folders of files into a folder, all or nothing: they are made aside and moved into place at the

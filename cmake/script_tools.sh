@@ -12,7 +12,8 @@ quietly() {
   fi
 }
 
-# build_quietly SOURCE BUILD [--target TARGET --] CMAKE-OPTION...: configures and builds all, or a target.
+# build_quietly SOURCE BUILD [--target TARGET --] CMAKE-OPTION...: configures and builds all, or a target. Says so the first time,
+# when it takes long.
 build_quietly() {
   local source=$1 build=$2 target=all
   shift 2
@@ -20,6 +21,7 @@ build_quietly() {
     target=$2
     shift 3
   fi
+  [ -f "$build/build.ninja" ] || echo "building in $build (minutes; progress: $build/build.log)"
   mkdir -p "$build"
   if command -v ccache >/dev/null; then
     set -- "$@" -DCMAKE_CXX_COMPILER_LAUNCHER=ccache

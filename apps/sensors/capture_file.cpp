@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
+#include <system_error>
 
 namespace lisco_apps {
 namespace {
@@ -117,6 +118,10 @@ void CaptureFile::Close::operator()(pcap* capture) const {
 
 CaptureFile::CaptureFile(const std::filesystem::path& file, std::optional<std::uint16_t> port)
     : file_(file), port_(port) {
+  std::error_code unknown;
+  if (std::filesystem::is_directory(file, unknown)) fail(file, "is no capture of packets: it is a folder");
+  if (std::filesystem::is_regular_file(file, unknown) && std::filesystem::file_size(file, unknown) == 0)
+    fail(file, "is no capture of packets: it is empty");
   // By a stream: libpcap takes a file named "-" for the standard input.
   std::FILE* const stream = std::fopen(file.c_str(), "rb");
   if (stream == nullptr) fail(file, std::strerror(errno));

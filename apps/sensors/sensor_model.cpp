@@ -55,7 +55,8 @@ SensorModel modelOf(const std::string& name, const std::filesystem::path& calibr
   if (name == "hdl32e") return {name, lasersAt(kHdl32e, 1.152), {kUpperBlock}, 1, 46.08, 0.002, {0x21}};
   if (name == "hdl64e") {
     if (calibration_file.empty())
-      throw std::runtime_error("the hdl64e needs its calibration file: each of these sensors has its own");
+      throw std::runtime_error(
+          "the hdl64e needs its calibration file: each of these sensors has its own; give it by --calibration");
     // Its calibration knows no delays. The last two bytes of its packets carry a status.
     return {name, readCalibration(calibration_file), {kUpperBlock, kLowerBlock}, 1, 48., 0.002, {}};
   }

@@ -37,6 +37,7 @@ LabelledClouds::LabelledClouds(fs::path folder) : folder_(std::move(folder)) {
   std::error_code error;
   if (fs::exists(folder_, error) && !fs::is_directory(folder_, error))
     throw std::runtime_error(folder_.string() + ": cannot be written: it is no folder");
+  checkMayWriteInto(folder_, {});
   try {
     fs::create_directories(folder_);
     const std::vector<fs::path> clouds = cloudsIn(folder_);

@@ -66,7 +66,17 @@ TEST_F(Faults, AFolderThatNobodyMayWriteTo) {
   if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
   fs::create_directory(folder_ / "closed");
   fs::permissions(folder_ / "closed", fs::perms::owner_read | fs::perms::owner_exec);
-  expectRefusal("scan.pcd -t 0.4 -o closed/results", {"closed", "cannot be written"});
+  expectRefusal("scan.pcd -t 0.4 -o closed/results", {"closed", "cannot be written: Permission denied"});
+  expectRefusal("scan.pcd -t 0.4 -o closed", {"closed: cannot be written: Permission denied"});
+  for (const std::string& command :
+       {LISCO_SIMULATE + std::string(" --scene 3 -o closed/other.pcd"),
+        LISCO_COMPARE + std::string(" scan.pcd -t 0.4 --check-only --rivals lisco --json closed/all.json"),
+        LISCO_COMPARE + std::string(" scan.pcd -t 0.4 --rivals lisco --plot closed/charts")}) {
+    const Outcome outcome = runLine(command);
+    EXPECT_EQ(outcome.status, 2) << command;
+    EXPECT_EQ(outcome.out, "") << command;  // said before the work, not after it
+    EXPECT_NE(outcome.err.find("cannot be written: Permission denied"), std::string::npos) << outcome.err;
+  }
   fs::permissions(folder_ / "closed", fs::perms::owner_all);
 }
 

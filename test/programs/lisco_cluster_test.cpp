@@ -125,6 +125,7 @@ TEST_F(LiscoCluster, RefusesBadFilesInOneLine) {
       "0 0 0\nPOINTS 4\n";
   write("truncated.pcd", good.substr(0, good.size() / 2));
   write("truncated_binary.pcd", header + "DATA binary\n" + floats({1, 2, 3, 4}));
+  write("truncated_header.pcd", header.substr(0, 30));
   write("garbage.pcd", "this is no cloud\n");
   write("garbage.ply", "this is no cloud\n");
   write("empty.pcd", "");
@@ -144,27 +145,32 @@ TEST_F(LiscoCluster, RefusesBadFilesInOneLine) {
   write("short.csv", "2,2,0\n1,0,0\n1,0,0\n1,0,0\n");
   write("long.csv", "1,1,0\n1,0,0\n1,0,0\n");
   write("words.csv", "1,1,0\none,0,0\n");
+  write("points.csv", "x,y,z\n1,2,3\n");
   write("scan.xyz", "1 2 3\n");
+  write("capture.pcap", "packets");
   fs::create_directory(folder_ / "hollow");
 
   const std::string options = " --tolerance 0.3 -o results";
   expectRefusal("missing.pcd" + options, {"missing.pcd", "does not exist"});
   expectRefusal("truncated.pcd" + options, {"truncated.pcd", "truncated"});
-  expectRefusal("truncated_binary.pcd" + options, {"truncated_binary.pcd", "truncated"});
+  expectRefusal("truncated_binary.pcd" + options, {"truncated_binary.pcd", "fewer points than its header says"});
+  expectRefusal("truncated_header.pcd" + options, {"truncated_header.pcd", "its header breaks off"});
   expectRefusal("garbage.pcd" + options, {"garbage.pcd", "no pcd file"});
   expectRefusal("garbage.ply" + options, {"garbage.ply", "no ply file"});
-  expectRefusal("empty.pcd" + options, {"empty.pcd"});
+  expectRefusal("empty.pcd" + options, {"empty.pcd", "is empty"});
   expectRefusal("no_z.pcd" + options, {"no_z.pcd", "no field 'z'"});
   expectRefusal("integers.pcd" + options, {"integers.pcd", "neither float nor double"});
   expectRefusal("odd.bin" + options, {"odd.bin", "17 bytes", "multiple of 16"});
-  expectRefusal("nothing.bin" + options, {"nothing.bin", "holds no points"});
+  expectRefusal("nothing.bin" + options, {"nothing.bin", "is empty"});
   expectRefusal("promises.pcd" + options, {"promises.pcd", "fewer points than its header says"});
   expectRefusal("third.csv" + options, {"third.csv", "line 1"});
   expectRefusal("header.csv" + options, {"header.csv", "line 1", "lasers,steps,0"});
+  expectRefusal("points.csv" + options, {"points.csv", "line 1", "make it a .pcd"});
   expectRefusal("short.csv" + options, {"short.csv", "promises 4 cells"});
   expectRefusal("long.csv" + options, {"long.csv", "goes on"});
   expectRefusal("words.csv" + options, {"words.csv", "line 2"});
   expectRefusal("scan.xyz" + options, {"scan.xyz", "unknown ending"});
+  expectRefusal("capture.pcap" + options, {"capture.pcap", "lisco_stream"});
   expectRefusal("hollow" + options, {"hollow", "holds no scans"});
 }
 
@@ -174,18 +180,31 @@ TEST_F(LiscoCluster, RefusesBadOptionsInOneLine) {
   expectRefusal("", {"no input"});
   expectRefusal("walls.pcd", {"--tolerance is missing"});
   for (const char* tolerance : {"0", "-0.3", "nan", "inf", "abc", "0.3m", "''"})
-    expectRefusal(std::string("walls.pcd --tolerance ") + tolerance, {"tolerance"});
+    expectRefusal(std::string("walls.pcd --tolerance ") + tolerance,
+                  {"--tolerance must be a positive number of metres, not '"});
+  expectRefusal("walls.pcd --tolerance", {"--tolerance", "see --help"});
   expectRefusal("walls.pcd --tolerance 0.3 --min-size 0", {"--min-size"});
   expectRefusal("walls.pcd --tolerance 0.3 --min-size -1", {"min-size"});
   expectRefusal("walls.pcd --tolerance 0.3 --max-size 5000000000", {"--max-size"});
   expectRefusal("walls.pcd --tolerance 0.3 --min-size 20 --max-size 10", {"--max-size is smaller"});
-  expectRefusal("walls.pcd --tolerance 0.3 --ground-z low", {"ground-z"});
+  expectRefusal("walls.pcd --tolerance 0.3 --ground-z low", {"--ground-z must be a number, not 'low'"});
   expectRefusal("walls.pcd --tolerance 0.3 --ground-z nan", {"ground-z"});
-  expectRefusal("walls.pcd --tolerance 0.3 --nonsense", {"nonsense"});
+  expectRefusal("walls.pcd --tolerance 0.3 --ground-z 1e300", {"ground-z"});
+  expectRefusal("walls.pcd --tolerance 0.3 --nonsense", {"nonsense", "see --help"});
   expectRefusal("walls.pcd --tolerance 0.3 --threads -1", {"threads"});
   expectRefusal("walls.pcd --tolerance 0.3 --threads many", {"--threads"});
   expectRefusal("walls.pcd --tolerance 0.3 --clouds", {"--clouds needs --output"});
   expectRefusal("walls.pcd --tolerance 0.3 -o file/results", {"file/results", "cannot be written"});
+}
+
+// What a beginner sees who has left the ground in, or has taken the tolerance for millimetres.
+TEST_F(LiscoCluster, AsksAboutAClusterOfMoreThanHalfOfTheReturns) {
+  write("walls.pcd", twoWalls());
+  EXPECT_EQ(run("walls.pcd --tolerance 0.3").out.find("note"), std::string::npos);
+  const Outcome outcome = run("walls.pcd --tolerance 300");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_NE(outcome.out.find("more than half of these returns: is it the ground (see --ground-z)"), std::string::npos)
+      << outcome.out;
 }
 
 TEST_F(LiscoCluster, LeavesForeignFilesAlone) {

@@ -331,7 +331,7 @@ TEST_F(DecoderTest, RefusesUnknownSensorsAndBadCalibrations) {
   EXPECT_EQ(refusalOf([] { makeSensorModel("os1"); }),
             "there is no sensor 'os1': it is one of vlp16, hdl32e, hdl64e, vls128");
   EXPECT_EQ(refusalOf([] { makeSensorModel("hdl64e"); }),
-            "the hdl64e needs its calibration file: each of these sensors has its own");
+            "the hdl64e needs its calibration file: each of these sensors has its own; give it by --calibration");
   EXPECT_EQ(refusalOf([] { makeSensorModel("vlp16", "db.xml"); }),
             "a calibration file is for the hdl64e only, not for the vlp16");
 
