@@ -60,6 +60,25 @@ TEST(Tolerance, ReachBoundsEveryNeighbour) {
   }
 }
 
+// Squares near the least float lose parts of themselves, or all: what passes the test may be further apart than eps.
+TEST(Tolerance, ReachBoundsNeighboursWhoseSquaresUnderflow) {
+  Random random(4);
+  int further = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const auto metres = static_cast<float>(random.magnitude(3e-23, 3e-22));
+    const Tolerance tolerance(metres);
+    const auto coordinate = [&] { return static_cast<float>(random.between(-1.2, 1.2)) * metres; };
+    const float dx = coordinate();
+    const float dy = coordinate();
+    const float dz = coordinate();
+    if (!(lisco::squaredDistance(dx, dy, dz) < tolerance.squared())) continue;
+    const double distance = std::hypot(static_cast<double>(dx), static_cast<double>(dy), static_cast<double>(dz));
+    ASSERT_LE(distance, tolerance.reach()) << metres;
+    further += distance > 1.00001 * static_cast<double>(metres) ? 1 : 0;
+  }
+  EXPECT_GT(further, 0);
+}
+
 TEST(Tolerance, ReachIsTightWhereFloatsAreFine) {
   for (const float metres : {1e-15F, 0.1F, 1.0F, 1e15F})
     EXPECT_LT(Tolerance(metres).reach(), 1.00001 * static_cast<double>(metres));
