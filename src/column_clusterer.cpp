@@ -25,7 +25,15 @@ void ColumnClusterer::begin(const Parameters& parameters) {
   pace_.begin();
   column_ = 0;
   is_ordered_ = false;
+  if (parameters_.threads == 1) readAlone();
   begun_ = true;
+}
+
+/// One thread reads whatever comes. It gets ready in begin (), lest the first column take longer than others.
+void ColumnClusterer::readAlone() {
+  threads_ = 1;
+  readings_.front().first_element = 0;
+  prepareReading(readings_.front());
 }
 
 void ColumnClusterer::checkColumns(std::size_t lasers) const {

@@ -134,6 +134,7 @@ class LISCO_EXPORT ColumnClusterer {
   void startReading(std::size_t columns, std::size_t lasers, CellAt&& cell_at);
   template <typename CellAt>
   void readInParallel(std::size_t lasers, CellAt&& cell_at);
+  void readAlone();
   void prepareReading(Reading& reading);
   /// What reads the columns that come one by one.
   Reading& lastReading() { return readings_[threads_ - 1]; }
@@ -193,18 +194,18 @@ void ColumnClusterer::addColumns(std::size_t columns, std::size_t lasers, CellAt
 /// Decides how many threads read, and what.
 template <typename CellAt>
 void ColumnClusterer::startReading(std::size_t columns, std::size_t lasers, CellAt&& cell_at) {
-  threads_ = 1;
-  readings_.front().first_element = 0;
+  std::size_t threads = 1;
   if (isWorthThreads(columns, lasers)) {
     shares_.prepare(columns, lasers, cell_at);
-    threads_ = shares_.shares(parameters_.threads);
-    shares_.cut(threads_, [&](std::size_t thread, std::size_t first_column, std::size_t end_column) {
-      readings_[thread].first_column = first_column;
-      readings_[thread].end_column = end_column;
-      readings_[thread].first_element = static_cast<std::uint32_t>(lasers * first_column);  // a run for each cell
-    });
+    threads = shares_.shares(parameters_.threads);
   }
-  if (threads_ == 1) prepareReading(readings_.front());
+  if (threads == 1) return readAlone();
+  threads_ = threads;
+  shares_.cut(threads, [&](std::size_t thread, std::size_t first_column, std::size_t end_column) {
+    readings_[thread].first_column = first_column;
+    readings_[thread].end_column = end_column;
+    readings_[thread].first_element = static_cast<std::uint32_t>(lasers * first_column);  // a run for each cell
+  });
 }
 
 /// Each thread reads its columns, and links them as far as it goes without the others.

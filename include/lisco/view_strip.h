@@ -24,7 +24,7 @@ struct StripData {
   static constexpr std::int64_t kNowhere = std::numeric_limits<std::int64_t>::min();
   static constexpr std::size_t kSectorsKept = 8;
   static constexpr std::int64_t kNoSector = -1;
-  static constexpr std::size_t kParts = 48;  ///< in which a sector may be linked
+  static constexpr std::size_t kParts = 80;  ///< in which a sector may be linked
 
   /// What is known of a laser.
   struct Laser {
