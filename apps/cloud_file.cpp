@@ -233,14 +233,16 @@ void checkPlyHeader(const fs::path& file, const Snapshot& content) {
   std::ifstream stream(content.path(), std::ios::binary);
   const auto file_size = static_cast<double>(fs::file_size(content.path()));
   double columns = 0, rows = 0, vertices = 0;
+  int column_lines = 0, row_lines = 0;  // both or none, once each
   bool in_vertex = false;
   std::string line;
   for (int i = 0; i < kMostHeaderLines && std::getline(stream, line); ++i) {
     const std::vector<std::string> words = wordsOf(line);
     if (words.empty()) continue;
     if (words[0] == "end_header") {
+      if (column_lines != row_lines || column_lines > 1) break;
       if (!(std::max({columns, rows, columns * rows}) <= file_size)) break;
-      if (columns * rows > 0 && vertices > columns * rows) break;
+      if (column_lines > 0 && !(vertices <= columns * rows)) break;
       return;
     }
     if (words[0] == "element") in_vertex = words.size() > 1 && words[1] == "vertex";
@@ -251,6 +253,8 @@ void checkPlyHeader(const fs::path& file, const Snapshot& content) {
     if (words[0] != "obj_info" || words.size() < 3) continue;
     if (words[1] == "num_cols") columns = countOf(words, 2);
     if (words[1] == "num_rows") rows = countOf(words, 2);
+    column_lines += words[1] == "num_cols" ? 1 : 0;
+    row_lines += words[1] == "num_rows" ? 1 : 0;
   }
   fail(file, "is damaged, truncated or no ply file");
 }

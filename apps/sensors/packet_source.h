@@ -40,6 +40,8 @@ class PacketSource {
   PacketSource() = default;
   PacketSource(const PacketSource&) = default;
   PacketSource& operator=(const PacketSource&) = default;
+  PacketSource(PacketSource&&) = default;
+  PacketSource& operator=(PacketSource&&) = default;
 
   std::uint64_t packets_ = 0, foreign_ = 0;
   std::string error_;
