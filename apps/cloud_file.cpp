@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -239,6 +240,7 @@ void checkPlyHeader(const fs::path& file, const Snapshot& content) {
   for (int i = 0; i < kMostHeaderLines && std::getline(stream, line); ++i) {
     const std::vector<std::string> words = wordsOf(line);
     if (words.empty()) continue;
+    if (std::isspace(static_cast<unsigned char>(line.front())) != 0) break;  // PCL aborts at some
     if (words[0] == "end_header") {
       if (column_lines != row_lines || column_lines > 1) break;
       if (!(std::max({columns, rows, columns * rows}) <= file_size)) break;

@@ -218,7 +218,7 @@ std::vector<Delivery> deliveriesOf(lisco::EndlessClusterer& clusterer, const End
       delivery.members.insert(delivery.members.end(), indices, indices + count);
     });
     EXPECT_EQ(delivery.members.size(), cluster.size());
-    EXPECT_LT(cluster.lastPosition() - cluster.firstPosition(), 1.0);
+    EXPECT_LE(cluster.lastPosition() - cluster.firstPosition(), 1.0);  // less, but for rounding
     std::sort(delivery.members.begin(), delivery.members.end());
     deliveries.push_back(delivery);
   });
