@@ -234,8 +234,9 @@ void checkPlyHeader(const fs::path& file, const Snapshot& content) {
   std::ifstream stream(content.path(), std::ios::binary);
   const auto file_size = static_cast<double>(fs::file_size(content.path()));
   double columns = 0, rows = 0, vertices = 0;
-  int column_lines = 0, row_lines = 0;  // both or none, once each
+  int column_lines = 0, row_lines = 0;  // both or none, once each, before any element
   bool in_vertex = false;
+  bool any_element = false;
   std::string line;
   for (int i = 0; i < kMostHeaderLines && std::getline(stream, line); ++i) {
     const std::vector<std::string> words = wordsOf(line);
@@ -248,11 +249,13 @@ void checkPlyHeader(const fs::path& file, const Snapshot& content) {
       return;
     }
     if (words[0] == "element") in_vertex = words.size() > 1 && words[1] == "vertex";
+    any_element = any_element || words[0] == "element";
     if (words[0] == "element" && in_vertex) vertices = countOf(words, 2);
     if (words[0] == "property" && in_vertex && words.size() != 3) break;
     // Each takes a byte at least.
     if (words[0] == "element" && !(countOf(words, 2) <= file_size)) break;
     if (words[0] != "obj_info" || words.size() < 3) continue;
+    if (any_element && (words[1] == "num_cols" || words[1] == "num_rows")) break;
     if (words[1] == "num_cols") columns = countOf(words, 2);
     if (words[1] == "num_rows") rows = countOf(words, 2);
     column_lines += words[1] == "num_cols" ? 1 : 0;
