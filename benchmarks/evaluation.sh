@@ -2,13 +2,41 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Repeats the paper's evaluation: simulates its five scenes, times PCL, Lisco as published, a voxel grid and this library on them and on
 # the real scans in $LISCO_TEST_DATA (default ../shared/data), and rewrites the tables and charts of doc/evaluation.md.
-# Takes about twenty minutes; --runs N (default 20, as in the paper) shortens it.
+# Takes about twenty minutes. Options are passed on to lisco_compare. Fewer --runs than the tables in the document state
+# (20, as in the paper) are refused: good figures are not replaced by worse ones.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/benchmarks/tools.sh"
+document=$root/doc/evaluation.md
+
+# runs_stated FILE: how many runs of each a report states.
+runs_stated() { sed -n 's/^\([0-9][0-9]*\) runs\{0,1\} of each in turn.*/\1/p' "$1" | head -n 1; }
+
+# refuse_fewer_runs RUNS: exits if the document's tables are made of more.
+refuse_fewer_runs() {
+  local stated
+  stated=$(runs_stated "$document")
+  if [ "$1" -lt "${stated:-20}" ]; then
+    echo "evaluation.sh: $document states ${stated:-20} runs of each; its tables are not replaced by those of $1" >&2
+    exit 2
+  fi
+}
+
+runs=20
+for ((i = 1; i <= $#; ++i)); do
+  case ${!i} in
+    --runs) j=$((i + 1)) && runs=${!j:-} ;;
+    --runs=*) runs=${!i#--runs=} ;;
+  esac
+done
+if ! [[ $runs =~ ^[1-9][0-9]*$ ]]; then
+  echo "evaluation.sh: --runs takes a number, 1 or more" >&2
+  exit 2
+fi
+refuse_fewer_runs "$runs"
+
 build_benchmarks
 find_real_scans
-document=$root/doc/evaluation.md
 images=$root/doc/images
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
@@ -36,6 +64,7 @@ report "$out/real.txt" "${compare[@]}" --tolerance 0.3,0.4,0.7 "${ground[@]}" --
 "$build/benchmarks/literal_mask" "${ground[@]}" "${rotating[@]}" >"$out/mask.csv"
 
 # Only now, with everything at hand, is the document changed.
+for text in "$out"/{scenes,growth,real}.txt; do refuse_fewer_runs "$(runs_stated "$text")"; done
 head -n 3 "$out/scenes.txt" | code_block | replace_section "$document" "machine"
 table counts "$out/scenes.csv" | replace_section "$document" "counts"
 table times "$out/scenes.csv" | replace_section "$document" "scenes"
