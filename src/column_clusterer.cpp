@@ -12,11 +12,10 @@ void ColumnClusterer::begin(const Parameters& parameters) {
   begun_ = false;
   parameters_ = parameters;
   parameters_.block_columns = std::clamp<std::size_t>(parameters.block_columns, 1, Row::kColumns);
-  if (parameters.threads == 0) parameters_.threads = allThreads();
+  parameters_.threads = std::min(parameters.threads == 0 ? allThreads() : parameters.threads, Parameters::kMaxThreads);
   tolerance_ = Tolerance(parameters.tolerance);
   threads_ = 0;
   are_linked_ = false;
-  if (readings_.size() < parameters_.threads) readings_.resize(parameters_.threads);
   subclusters_.reset(0);
   subcluster_sizes_.clear();
   staged_.clear();
@@ -32,6 +31,7 @@ void ColumnClusterer::begin(const Parameters& parameters) {
 /// One thread reads whatever comes. It gets ready in begin (), lest the first column take longer than others.
 void ColumnClusterer::readAlone() {
   threads_ = 1;
+  if (readings_.empty()) readings_.resize(1);
   readings_.front().first_element = 0;
   prepareReading(readings_.front());
 }

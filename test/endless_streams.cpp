@@ -18,21 +18,28 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
+/// Of a column, radians.
+double azimuthOf(const lisco::EndlessParameters& parameters, double position) {
+  return parameters.start_azimuth + (parameters.clockwise ? -2 : 2) * kPi * (position - std::floor(position));
+}
+
 class EndlessOracle {
  public:
   explicit EndlessOracle(const lisco::EndlessParameters& parameters) : parameters_(parameters) {}
 
   std::vector<Delivery> operator()(const std::vector<StreamColumn>& columns) {
+    // Positions are counted from the first turn: exact, and rounding is then that of a stream that begins at 0.
+    if (!columns.empty()) first_turn_ = std::floor(columns.front().position);
     for (std::size_t c = 0; c < columns.size(); ++c) {
-      const double position = columns[c].position;
+      const double position = columns[c].position - first_turn_;
       const auto eighth = static_cast<std::int64_t>(std::floor(8 * position));
       closeUpTo(position, c);
-      if (c > 0 && eighth != static_cast<std::int64_t>(std::floor(8 * columns[c - 1].position)))
+      if (c > 0 && eighth != static_cast<std::int64_t>(std::floor(8 * (columns[c - 1].position - first_turn_))))
         for (std::size_t head = 0; head < members_.size(); ++head)
           if (isOpen(head) && firstOf(head).eighth <= eighth - 8) close(head, c, true);
       for (const lisco::Return& cell : columns[c].cells)
-        if (isValid({cell.x, cell.y, cell.z})) add(cell, position, eighth);
-      closeUpTo(position, c);  // what is astray is reached by nobody
+        if (isValid({cell.x, cell.y, cell.z})) add(cell, columns[c].position, position, eighth);
+      closeUpTo(position, c);  // outliers have no neighbours
     }
     for (std::size_t head = 0; head < members_.size(); ++head)
       if (isOpen(head)) close(head, columns.size(), false);
@@ -40,30 +47,29 @@ class EndlessOracle {
     return deliveries_;
   }
 
-  std::size_t strays() const { return strays_; }
+  std::size_t outliers() const { return outliers_; }
 
  private:
   struct Member {
     lisco::Return cell;
-    double position;
+    double given_position;
     std::int64_t eighth;
-    bool astray;
+    bool is_outlier;
     double reach_end;
   };
   enum class State { kOpen, kWhole, kCut };
 
-  void add(const lisco::Return& cell, double position, std::int64_t eighth) {
+  void add(const lisco::Return& cell, double given_position, double position, std::int64_t eighth) {
     const double east = static_cast<double>(cell.x) - static_cast<double>(parameters_.origin[0]);
     const double north = static_cast<double>(cell.y) - static_cast<double>(parameters_.origin[1]);
     const double rho = std::hypot(east, north);
-    const double azimuth = parameters_.start_azimuth + (parameters_.clockwise ? -2 : 2) * kPi * position;
-    const double off = std::remainder(std::atan2(north, east) - azimuth, 2 * kPi);
-    Member own{cell, position, eighth, rho > 0 && std::fabs(off) > parameters_.stagger + 1e-4, position};
-    strays_ += own.astray ? 1 : 0;
+    const double off = std::remainder(std::atan2(north, east) - azimuthOf(parameters_, position), 2 * kPi);
+    Member own{cell, given_position, eighth, rho > 0 && std::fabs(off) > parameters_.stagger + 1e-4, position};
+    outliers_ += own.is_outlier ? 1 : 0;
     const double eps = std::fabs(static_cast<double>(parameters_.tolerance));
-    if (!own.astray) {
+    if (!own.is_outlier) {
       own.reach_end = static_cast<double>(eighth + 4) / 8;
-      if (rho > eps)
+      if (rho > eps * (1 + lisco::kNearMargin))
         own.reach_end =
             std::min(own.reach_end, position + (std::asin(eps / rho) + 2 * parameters_.stagger) / (2 * kPi));
     }
@@ -75,7 +81,7 @@ class EndlessOracle {
     continued_.push_back(false);
     for (std::size_t other = 0; other < number; ++other) {
       const Member& before = all_[other];
-      if (before.astray || own.astray || eighth - before.eighth > 3) continue;
+      if (before.is_outlier || own.is_outlier || eighth - before.eighth > 3) continue;
       if (!areNeighbours({before.cell.x, before.cell.y, before.cell.z}, {cell.x, cell.y, cell.z},
                          parameters_.tolerance))
         continue;
@@ -110,12 +116,13 @@ class EndlessOracle {
   }
   void close(std::size_t head, std::size_t column, bool cut) {
     state_[head] = cut ? State::kCut : State::kWhole;
-    Delivery delivery{{}, cut, continued_[head], firstOf(head).position, -1e300, reachEndOf(head), column};
+    Delivery delivery{{}, cut, continued_[head], firstOf(head).given_position, -1e300, reachEndOf(head), column};
     for (const std::size_t member : members_[head]) {
       delivery.members.push_back(all_[member].cell.source_index);
-      delivery.last_position = std::max(delivery.last_position, all_[member].position);
+      delivery.last_position = std::max(delivery.last_position, all_[member].given_position);
     }
     std::sort(delivery.members.begin(), delivery.members.end());
+    delivery.reach_end += first_turn_;
     deliveries_.push_back(delivery);
   }
 
@@ -126,7 +133,8 @@ class EndlessOracle {
   std::vector<State> state_;
   std::vector<bool> continued_;
   std::vector<Delivery> deliveries_;
-  std::size_t strays_ = 0;
+  std::size_t outliers_ = 0;
+  double first_turn_ = 0;
 };
 
 }  // namespace
@@ -134,7 +142,7 @@ class EndlessOracle {
 EndlessTruth endlessTruth(const EndlessStream& stream) {
   EndlessOracle oracle(stream.parameters);
   std::vector<Delivery> deliveries = oracle(stream.columns);
-  return {std::move(deliveries), oracle.strays()};
+  return {std::move(deliveries), oracle.outliers()};
 }
 
 std::ostream& operator<<(std::ostream& out, const Delivery& delivery) {
@@ -144,7 +152,8 @@ std::ostream& operator<<(std::ostream& out, const Delivery& delivery) {
   return out;
 }
 
-EndlessStream randomEndlessStream(Random& random) {
+EndlessStream randomEndlessStream(Random& random, std::optional<double> first_position,
+                                  const lisco::EndlessParameters* given) {
   EndlessStream stream;
   lisco::EndlessParameters& parameters = stream.parameters;
   parameters.tolerance = static_cast<float>(random.magnitude(0.05, 2.0));
@@ -154,13 +163,14 @@ EndlessStream randomEndlessStream(Random& random) {
   parameters.block_columns = random.oneOf(std::vector<std::size_t>{1, 2, 7, 16, 64});
   if (random.chance(0.3))
     parameters.origin = {static_cast<float>(random.between(-5, 5)), static_cast<float>(random.between(-5, 5)), 1.0F};
+  if (given != nullptr) parameters = *given;
   const std::size_t lasers = 1 + random.below(3);
   const std::size_t steps = 12 + random.below(60);
   const double turns = random.between(0.5, 4.0);
   const double room = random.chance(0.4) ? random.between(0.5, 6.0) : 1e9;  // a wall all around, or none
   const double things = random.unit();
   const double losses = random.chance(0.3) ? 0.2 : 0.0;
-  const double strays = random.chance(0.2) ? 0.05 : 0.0;
+  const double outliers = random.chance(0.2) ? 0.05 : 0.0;
   const double near = random.chance(0.3) ? random.unit() : 0.0;
   struct Thing {
     double azimuth, width, range, speed, approach;
@@ -172,12 +182,13 @@ EndlessStream randomEndlessStream(Random& random) {
   std::vector<double> offsets(lasers);
   for (double& offset : offsets) offset = random.between(-1.0, 1.0) * parameters.stagger;
   double position = random.chance(0.5) ? 0.0 : random.between(-3.0, 1000.0);
+  if (first_position) position = *first_position;
   const double end = position + turns;
   std::uint32_t number = 0;
   while (position < end) {
     StreamColumn column{position, {}};
     for (std::size_t laser = 0; laser < lasers; ++laser) {
-      double azimuth = parameters.start_azimuth + (parameters.clockwise ? -2 : 2) * kPi * position + offsets[laser];
+      double azimuth = azimuthOf(parameters, position) + offsets[laser];
       double range = room;
       for (const Thing& thing : all_things) {
         const double off = std::remainder(azimuth - thing.azimuth - thing.speed * position, 2 * kPi);
@@ -185,7 +196,7 @@ EndlessStream randomEndlessStream(Random& random) {
           range = std::min(range, std::max(0.1, thing.range + thing.approach * std::fmod(position, 4.0)));
       }
       if (random.chance(near)) range = random.between(0.0, 1.5) * static_cast<double>(parameters.tolerance);
-      if (random.chance(strays)) azimuth += random.between(0.5, 5.5);
+      if (random.chance(outliers)) azimuth += random.between(0.5, 5.5);
       range *= random.between(0.999, 1.001);
       lisco::Return cell{static_cast<float>(static_cast<double>(parameters.origin[0]) + range * std::cos(azimuth)),
                          static_cast<float>(static_cast<double>(parameters.origin[1]) + range * std::sin(azimuth)),
@@ -201,6 +212,50 @@ EndlessStream randomEndlessStream(Random& random) {
     if (random.chance(losses / 10)) position += random.magnitude(0.05, 2.0);
   }
   return stream;
+}
+
+EndlessStream latestNeighbours(Random& random, double first_position) {
+  EndlessStream stream;
+  lisco::EndlessParameters& parameters = stream.parameters;
+  parameters.tolerance = static_cast<float>(random.magnitude(0.001, 1.0));
+  parameters.clockwise = random.chance(0.5);
+  parameters.stagger = random.chance(0.5) ? random.between(0.001, 0.03) : random.between(0.03, 0.39);
+  parameters.block_columns = random.chance(0.7) ? 1 : 16;
+  const double sense = parameters.clockwise ? -1 : 1;
+  constexpr double kInside = 1e-6;  // radians, of the stagger, and of the tolerance
+  double position = first_position;
+  std::uint32_t number = 0;
+  for (int pair = 0; pair < 4; ++pair) {
+    const double rho = static_cast<double>(parameters.tolerance) * random.magnitude(1.5, 3000.0);
+    const double gap = static_cast<double>(parameters.tolerance) * (1 - kInside);
+    const double tangent = std::asin(gap / rho);  // the neighbour furthest in azimuth lies on a tangent
+    const double first = azimuthOf(parameters, position) + sense * (parameters.stagger - kInside);
+    const double second = first + sense * tangent;
+    const double second_rho = rho * std::cos(tangent);
+    const auto at = [&](double azimuth, double range) {
+      return lisco::Return{static_cast<float>(range * std::cos(azimuth)), static_cast<float>(range * std::sin(azimuth)),
+                           0.0F, number++};
+    };
+    stream.columns.push_back({position, {at(first, rho)}});
+    double latest = position + (tangent + 2 * (parameters.stagger - kInside)) / (2 * kPi);
+    while (sense * std::remainder(azimuthOf(parameters, latest) - second, 2 * kPi) > parameters.stagger - kInside)
+      latest = std::nextafter(latest, -INFINITY);
+    latest = std::max(latest, position);
+    stream.columns.push_back({latest, {}});
+    stream.columns.push_back({latest, {at(second, second_rho)}});
+    position = std::max(latest, position + 1.0);
+  }
+  return stream;
+}
+
+void scale(EndlessStream& stream, double factor) {
+  const auto scaled = [factor](float& coordinate) {
+    coordinate = static_cast<float>(static_cast<double>(coordinate) * factor);
+  };
+  for (float& coordinate : stream.parameters.origin) scaled(coordinate);
+  for (StreamColumn& column : stream.columns)
+    for (lisco::Return& cell : column.cells)
+      for (float* coordinate : {&cell.x, &cell.y, &cell.z}) scaled(*coordinate);
 }
 
 std::vector<Delivery> deliveriesOf(lisco::EndlessClusterer& clusterer, const EndlessStream& stream) {

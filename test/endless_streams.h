@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iosfwd>
+#include <optional>
 #include <vector>
 
 #include "lisco/endless_clusterer.h"
@@ -24,7 +25,16 @@ struct EndlessStream {
 };
 
 /// A sensor among walls, pillars and moving things, some of them nearer than the tolerance, for up to four turns.
-EndlessStream randomEndlessStream(Random& random);
+/// \param first_position of the stream; without it, a small one
+/// \param parameters of the stream; nullptr: random ones
+EndlessStream randomEndlessStream(Random& random, std::optional<double> first_position = std::nullopt,
+                                  const lisco::EndlessParameters* parameters = nullptr);
+
+/// Pairs of returns of which the second comes as late as a neighbour of the first can.
+EndlessStream latestNeighbours(Random& random, double first_position);
+
+/// Multiplies all coordinates.
+void scale(EndlessStream& stream, double factor);
 
 /// What is expected of a delivered cluster, or was delivered.
 struct Delivery {
@@ -40,7 +50,7 @@ std::ostream& operator<<(std::ostream& out, const Delivery& delivery);
 /// What doc/streaming.md defines, return by return.
 struct EndlessTruth {
   std::vector<Delivery> deliveries;  ///< ordered by their members
-  std::size_t strays = 0;
+  std::size_t outliers = 0;
 };
 EndlessTruth endlessTruth(const EndlessStream& stream);
 

@@ -492,7 +492,7 @@ TEST(PclEndless, PositionsByTheNumberOfColumnsOfATurn) {
     endless.update();
     endless.finish();
   }
-  EXPECT_EQ(endless.getNumberOfStrays(), 0U);
+  EXPECT_EQ(endless.getNumberOfOutliers(), 0U);
   EXPECT_GT(endless.getNumberOfReturns(), 4000U);
   ASSERT_EQ(deliveries.size() % 2, 0U);
   ASSERT_GT(deliveries.size(), 8U);
@@ -505,7 +505,7 @@ TEST(PclEndless, SettersAndGetters) {
   Endless endless;
   EXPECT_FALSE(endless.getClockwise());
   EXPECT_EQ(endless.getStartAzimuth(), 0.0);
-  EXPECT_EQ(endless.getStagger(), lisco::EndlessParameters::kMostStagger);
+  EXPECT_EQ(endless.getStagger(), lisco::EndlessParameters::kMaxStagger);
   EXPECT_EQ(endless.getColumnsPerTurn(), 0.0);
   EXPECT_EQ(endless.getBlockColumns(), 16U);
   EXPECT_EQ(endless.getSensorOrigin(), Eigen::Vector4f::Zero());

@@ -15,7 +15,7 @@ namespace {
 using pcl::PointXYZ;
 using Cloud = pcl::PointCloud<PointXYZ>;
 
-constexpr std::array<unsigned int, 6> kThreads{0, 1, 2, 3, 8, 100};
+constexpr std::array<unsigned int, 7> kThreads{0, 1, 2, 3, 8, 100, ~0U};
 
 Clusters clustersBy(LiscoClient<PointXYZ>& client, unsigned int threads, const Cloud::Ptr& cloud,
                     const pcl::IndicesPtr& indices, const Request& request) {

@@ -18,7 +18,7 @@ EndlessStream::EndlessStream(const StreamOptions& options, const Decoder& decode
   parameters.min_size = options.min_size;
   parameters.max_size = options.max_size;
   parameters.clockwise = true;  // as azimuths are counted; 0 is ahead, where x is
-  parameters.stagger = std::min(staggerOf(decoder.model()), lisco::EndlessParameters::kMostStagger);
+  parameters.stagger = std::min(staggerOf(decoder.model()), lisco::EndlessParameters::kMaxStagger);
   parameters.lasers = decoder.model().lasers.size();
   parameters.block_columns = kBlock;
   clusterer_.begin(parameters, [this](const lisco::EndlessCluster& cluster) { deliver(cluster); });

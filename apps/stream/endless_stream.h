@@ -30,7 +30,7 @@ class EndlessStream : public Stream {
   void finish() override;
 
   /// Returns that were seen under another azimuth than their column's; each is a cluster of its own.
-  std::uint64_t strays() const { return clusterer_.strayCount(); }
+  std::uint64_t strays() const { return clusterer_.outlierCount(); }
 
  private:
   /// Columns that are read together: a millisecond or less of any of these sensors. One by one, they take three times

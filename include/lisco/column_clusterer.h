@@ -34,9 +34,12 @@ struct Parameters {
   /// cloud's memory; 1 does the work of each column at once. The work of a block is spread over the columns of the next
   /// one, so that no column takes much longer than others.
   std::size_t block_columns = Row::kColumns;
-  /// How many threads share the work of the first addColumns () after begin (), which should bring a whole rotation, and of
-  /// the update () after it; 0: one for each core. Columns that come one by one, or after these, are the work of one thread.
+  /// Threads that share the work of the first addColumns () after begin (), which should bring a whole rotation, and of the
+  /// update () after it; 0: one for each core. No more are used than kMaxThreads, nor more than one for 64 columns. Columns
+  /// that come one by one, or after these, are the work of one thread.
   std::size_t threads = 1;
+
+  static constexpr std::size_t kMaxThreads = 256;
 };
 
 /// Lisco: Euclidean clustering of a rotating LiDAR's returns, column by column (Algorithms 3 and 4 of the paper).
@@ -200,6 +203,7 @@ void ColumnClusterer::startReading(std::size_t columns, std::size_t lasers, Cell
     threads = shares_.shares(parameters_.threads);
   }
   if (threads == 1) return readAlone();
+  if (readings_.size() < threads) readings_.resize(threads);
   threads_ = threads;
   shares_.cut(threads, [&](std::size_t thread, std::size_t first_column, std::size_t end_column) {
     readings_[thread].first_column = first_column;

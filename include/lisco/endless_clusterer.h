@@ -6,49 +6,55 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
-#include "lisco/column_block.h"
 #include "lisco/export.h"
-#include "lisco/pane.h"
 #include "lisco/return.h"
-#include "lisco/tolerance.h"
 
 namespace lisco {
 
 class EndlessCluster;
 
-/// How a stream without end is to be clustered. Positions are in turns of the sensor since any moment.
+/// How an endless stream is clustered. Positions are turns of the sensor, counted from any moment.
 struct EndlessParameters {
-  float tolerance = 0.0F;                  ///< eps, metres; see Tolerance for 0, negative, NaN and infinite values
+  float tolerance = 0.0F;                  ///< eps, metres; see Parameters::tolerance for 0, negative and NaN values
   std::size_t min_size = 1;                ///< as max_size
   std::size_t max_size = ~std::size_t{0};  ///< clusters of fewer or more returns are not delivered
-  std::array<float, 3> origin{};           ///< where the sensor stands, metres
-  bool clockwise = false;                  ///< how the sensor turns, seen from above
-  double start_azimuth = 0;                ///< of position 0, radians, counter-clockwise from the x axis
-  /// Radians: no return's azimuth differs by more from that of its column; at most kMostStagger. Clusters are
-  /// delivered the later, the larger it is. Returns that differ by more are *astray*: each is a cluster of its own.
-  double stagger = kMostStagger;
-  double columns_per_turn = 0;     ///< for addColumn () without a position; 0: there must be one
-  std::size_t lasers = 0;          ///< most cells of a column; 0: any number
-  std::size_t block_columns = 16;  ///< how many columns are read together, 1..64; at 1, clusters are delivered soonest
+  std::array<float, 3> origin{};           ///< position of the sensor, metres; finite
+  bool clockwise = false;                  ///< sense of rotation, seen from above
+  double start_azimuth = 0;  ///< of position 0, radians, counter-clockwise from the x axis; at most kMaxAzimuth
+  /// Largest difference between the azimuths of a return and of its column, radians, 0..kMaxStagger. Clusters are
+  /// delivered the later, the larger it is. A return beyond it is an outlier: a cluster of its own.
+  double stagger = kMaxStagger;
+  double columns_per_turn = 0;     ///< for addColumn () without a position; 0: each column has a position
+  std::size_t lasers = 0;          ///< largest number of cells of a column; 0: any number
+  std::size_t block_columns = 16;  ///< columns read together, 1..64; with 1, clusters are delivered soonest
 
-  static constexpr double kMostStagger = 0.39269908169872414;  ///< a sixteenth of a turn
+  static constexpr double kMaxStagger = 0.39269908169872414;  ///< a sixteenth of a turn
+  static constexpr double kMaxAzimuth = 1e6;                  ///< radians
+  static constexpr double kMaxPosition = 1e12;  ///< turns, either sign; beyond, a double cannot tell columns apart
 };
 
-/// Clusters of a stream that never ends: each is delivered once, as soon as no later column can reach it, whole across the
-/// borders of rotations.
+/// Clusters of a stream that never ends: each is delivered once, as soon as no later column can reach it, whole across
+/// the borders of rotations.
 ///
-/// The turn is divided into eighths, by position. Two returns are neighbours if they lie within eps of each other, in the
-/// same eighth or in eighths that are at most three apart (so always less than half a turn), and neither is astray. So
-/// no column can reach a return of eighth n, horizontally rho from the sensor, whose position is at least
+///   lisco::EndlessClusterer clusterer;
+///   clusterer.begin(parameters, [](const lisco::EndlessCluster& cluster) { ... });
+///   while (...) clusterer.addColumn(returns, lasers, turns);
+///   clusterer.finish();
+///
+/// The turn is divided into eighths, by position. Two returns are neighbours if they lie within eps of each other, in
+/// the same eighth or in eighths that are at most three apart (so always less than half a turn), and neither is an
+/// outlier. So no column can reach a return of eighth n, horizontally rho from the sensor, whose position is at least
 ///
 ///   reach end = min (position + (asin (eps / rho) + 2 stagger) / 2 pi, (n + 4) / 8)
 ///
-/// and for rho <= eps, (n + 4) / 8. When a column comes that is at or beyond the reach end of all returns of a cluster, it
-/// is delivered. A cluster that began in eighth n and is still open when the first column of eighth n + 8 or later comes is
-/// delivered then, *cut*: its returns have no neighbours from there on, and clusters that would otherwise have been joined
-/// to it are *continued*. doc/streaming.md says more.
+/// and for rho <= (1 + kNearMargin) eps, (n + 4) / 8. Rounding puts the reach end up to 0.006 radians of rotation later,
+/// never earlier. When a column comes that is at or beyond the reach end of all returns of a cluster, the cluster is
+/// delivered. A cluster that began in eighth n and is still open when the first column of eighth n + 8 or later comes is
+/// delivered then, *cut*: its returns have no neighbours from there on, and clusters that would otherwise have been
+/// joined to it are *continued*. doc/streaming.md says more.
 ///
 /// Memory is bounded by the returns of two turns; nothing is allocated once the buffers have grown. Not thread safe; any
 /// number of instances may work side by side.
@@ -57,144 +63,87 @@ class LISCO_EXPORT EndlessClusterer {
   /// Receives a cluster, which is valid during the call. Must not call the clusterer.
   using Callback = std::function<void(const EndlessCluster&)>;
 
-  /// Starts a new stream; of the last one, nothing more is delivered. After an exception that is not about the arguments (memory
-  /// was refused, or a callback threw), this is the only call that is of use.
-  /// \throws std::invalid_argument if the stagger is not within 0..kMostStagger
+  EndlessClusterer();
+  ~EndlessClusterer();
+  EndlessClusterer(const EndlessClusterer& other);
+  EndlessClusterer& operator=(const EndlessClusterer& other);
+
+  /// Starts a new stream; of the last one, nothing more is delivered. After an exception other than std::logic_error and
+  /// std::invalid_argument (refused memory, a throwing callback), every other call either throws std::logic_error or
+  /// does nothing.
+  /// \throws std::invalid_argument if the stagger is not within 0..kMaxStagger, the origin is not finite, or the start
+  ///         azimuth is not within +-kMaxAzimuth; the stream before goes on then
   void begin(const EndlessParameters& parameters, Callback callback);
 
   /// Takes the next column.
   /// \param cells cells[l] is what laser l measured; those that are no returns are skipped. Source indices are handed
   ///        back within the next turn and a half.
-  /// \param position turns, never less than the one before
+  /// \param position turns, at least that of the column before, within +-kMaxPosition. It is taken as it is given: the
+  ///        definition above holds at 1e12 turns as it does at 0
   /// \throws std::logic_error before begin (); std::invalid_argument if there are more cells than lasers, or the position
-  ///         is less than the one before or not finite
+  ///         is less than the one before or out of range
   void addColumn(const Return* cells, std::size_t lasers, double position);
-  /// The same, 1 / columns_per_turn after the one before.
-  /// \throws std::logic_error if that is not known
+  /// The same at nextPosition ().
+  /// \throws std::logic_error if columns_per_turn is not known
   void addColumn(const Return* cells, std::size_t lasers);
+
+  /// Position of the next column that is added without one: 1 / columns_per_turn after the last column, 0 for the first.
+  /// Counted from the last position given, so that rounding does not add up.
+  double nextPosition() const;
 
   /// Delivers what can be delivered with the columns added so far, without waiting for the block to be complete.
   void update();
 
-  /// The stream has ended: delivers all. More columns may follow; they have nothing to do with those before.
+  /// Ends the stream: delivers all. More columns may follow; they are not compared with those before.
   void finish();
 
-  std::uint64_t returnCount() const { return returns_; }  ///< since begin (); update () counts all
-  std::uint64_t strayCount() const { return strays_; }    ///< of these, astray
-  /// Returns in memory: of the open clusters and of delivered ones that are not yet forgotten.
+  std::uint64_t returnCount() const;   ///< since begin (); update () counts all
+  std::uint64_t outlierCount() const;  ///< of these, outliers
+  /// Returns in memory: of the open clusters, and of delivered ones until their eighth is forgotten.
   std::size_t returnsHeld() const;
 
  private:
-  friend class EndlessCluster;
-  /// A run: its pane's slot, and its number there.
-  using Element = std::uint32_t;
-  static constexpr int kNumberBits = 28;
-  static constexpr std::int64_t kTurn = 8;        ///< panes: eighths of a turn
-  static constexpr std::int64_t kComparable = 4;  ///< panes whose returns may be neighbours
-  static constexpr std::int64_t kSlots = 16;      ///< panes in memory: more than a cluster and its neighbours span
-  static constexpr Element kNone = ~Element{0};
-
-  /// What is known of a cluster, at its head; and the chain of its runs.
-  struct Set {
-    Element parent;
-    Element next_run;
-    Element last_run;
-    std::uint32_t size;
-    double reach_end;
-    double first_position, last_position;
-    std::int64_t first_pane;
-    bool delivered, cut, continued;
-  };
-  struct EndlessPane : Pane {
-    std::int64_t number = 0;
-    bool in_use = false;
-    std::vector<Set> sets;  ///< one for each run
-    std::vector<DisjointSets::Merge> merges;
-  };
-  /// A cluster that waits for its delivery; perhaps joined to another one, or grown, since.
-  struct Waiting {
-    double reach_end;
-    Element head;
-    bool operator<(const Waiting& other) const {
-      return reach_end > other.reach_end;
-    }  // the first is the top of a heap
-  };
-  class PaneJoiner;
-
-  Element elementOf(std::int64_t pane, std::uint32_t run) const {
-    return static_cast<Element>(pane & (kSlots - 1)) << kNumberBits | run;
-  }
-  EndlessPane& paneOf(Element element) { return panes_[element >> kNumberBits]; }
-  const EndlessPane& paneOf(Element element) const { return panes_[element >> kNumberBits]; }
-  static std::uint32_t runOf(Element element) { return element & ((Element{1} << kNumberBits) - 1); }
-  Set& set(Element element) { return paneOf(element).sets[runOf(element)]; }
-  EndlessPane& pane(std::int64_t number) { return panes_[static_cast<std::size_t>(number & (kSlots - 1))]; }
-
-  void startPane(std::int64_t number, double position);
-  void workOnBlock();
-  void readBlock();
-  std::uint64_t findStrays(const Row& row, const MeasuredRow& measured) const;
-  void createSets(EndlessPane& pane, const MeasuredRow& measured, std::uint64_t strays);
-  double reachEnd(double position, double rho, double known) const;
-  void replayMerges(EndlessPane& pane);
-  Element head(Element element);
-  void merge(Element a, Element b);
-  void wait(Element head);
-  void deliverUpTo(double position);
-  void deliver(Element head);
-
-  EndlessParameters parameters_;
-  Callback callback_;
-  Tolerance tolerance_;
-  FarRange range_;         ///< only its origin counts
-  float cos_stagger_ = 0;  ///< a little less, so that rounding leads nobody astray
-  double turns_of_stagger_ = 0;
-  bool begun_ = false;  ///< and left by no exception since
-  ColumnBlock block_;
-  std::array<double, Row::kColumns> positions_{};         ///< of the columns of the block
-  std::array<float, Row::kColumns> cosines_{}, sines_{};  ///< of their azimuths
-  double position_ = 0;                                   ///< of the latest column
-  bool any_column_ = false;
-  std::int64_t current_ = 0;  ///< number of the pane that is being filled
-  std::array<EndlessPane, kSlots> panes_;
-  std::vector<Waiting> waiting_;  ///< a heap: all clusters that are not delivered
-  std::vector<Element> delivered_runs_;
-  std::uint64_t returns_ = 0, strays_ = 0;
+  class Stream;
+  std::unique_ptr<Stream> stream_;
 };
+
+/// Width of the ring around eps within which a return's reach end is (n + 4) / 8, in units of eps: there the float
+/// comparison may find neighbours on the other side of the sensor.
+inline constexpr double kNearMargin = 2e-6;
 
 /// A cluster that no later column can reach.
 class EndlessCluster {
  public:
   /// Number of its returns.
-  std::size_t size() const { return set_.size; }
+  std::size_t size() const { return size_; }
   /// Position of its first column, turns.
-  double firstPosition() const { return set_.first_position; }
+  double firstPosition() const { return first_position_; }
   /// Position of its last column, turns; less than one turn after the first.
-  double lastPosition() const { return set_.last_position; }
+  double lastPosition() const { return last_position_; }
   /// Columns from this position on could not reach it.
-  double reachEnd() const { return set_.reach_end; }
+  double reachEnd() const { return reach_end_; }
   /// Whether it was delivered for having lasted a whole turn, perhaps before its end.
-  bool isCut() const { return set_.cut; }
+  bool isCut() const { return is_cut_; }
   /// Whether it goes on from a cut one.
-  bool isContinued() const { return set_.continued; }
+  bool isContinued() const { return is_continued_; }
 
   /// Calls visit(source_indices, count) for all its returns, in groups of one laser and columns side by side.
   template <typename Visit>
   void forEachRun(Visit&& visit) const {
-    for (const EndlessClusterer::Element element : clusterer_.delivered_runs_) {
-      const Runs& runs = clusterer_.paneOf(element).runs;
-      const Runs::Run& run = runs.runs[EndlessClusterer::runOf(element)];
-      visit(runs.source_index.data() + run.first_cell, static_cast<std::size_t>(run.count));
-    }
+    for (const Run& run : runs_) visit(run.source_indices, run.count);
   }
 
  private:
   friend class EndlessClusterer;
-  EndlessCluster(const EndlessClusterer& clusterer, const EndlessClusterer::Set& set)
-      : clusterer_(clusterer), set_(set) {}
+  struct Run {
+    const std::uint32_t* source_indices;
+    std::size_t count;
+  };
 
-  const EndlessClusterer& clusterer_;
-  const EndlessClusterer::Set& set_;
+  std::size_t size_ = 0;
+  double first_position_ = 0, last_position_ = 0, reach_end_ = 0;
+  bool is_cut_ = false, is_continued_ = false;
+  std::vector<Run> runs_;
 };
 
 }  // namespace lisco

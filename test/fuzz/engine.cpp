@@ -162,7 +162,7 @@ void clusterEndlessly(Input& input) {
   if (stream.columns.empty()) return;
   const EndlessTruth truth = endlessTruth(stream);
   const std::vector<Delivery> deliveries = deliveriesOf(clusterer, stream);
-  hold(clusterer.strayCount() == truth.strays, "the number of strays");
+  hold(clusterer.outlierCount() == truth.outliers, "the number of outliers");
   hold(deliveries.size() == truth.deliveries.size(), "the number of deliveries");
   for (std::size_t i = 0; i < deliveries.size(); ++i) {
     const Delivery& own = deliveries[i];

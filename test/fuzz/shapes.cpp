@@ -119,18 +119,18 @@ const std::vector<Point>& Shape::pointsIn(std::size_t first, std::size_t end) {
 EndlessStream endlessStreamFrom(Input& input) {
   EndlessStream stream;
   lisco::EndlessParameters& parameters = stream.parameters;
-  constexpr std::array<double, 4> kStarts{0, -3, 1000.5, 0.125};
+  constexpr std::array<double, 8> kStarts{0, -3, 1000.5, 0.125, 1e9, 3.4e10 + 0.125, 999999990000, -1e12};
   constexpr std::array<double, 8> kColumnsPerTurn{8, 12, 16, 20, 32, 32, 64, 128};
   constexpr std::array<double, 16> kSteps{0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 2, 3, 4, 16, 40, 200};
   // Distances from the sensor never equal the tolerance, at which what a column can reach leaps.
   parameters.tolerance = 0.125F * static_cast<float>(1 + input.below(16));
-  parameters.stagger = lisco::EndlessParameters::kMostStagger * static_cast<double>(input.byte()) / 256;
+  parameters.stagger = lisco::EndlessParameters::kMaxStagger * static_cast<double>(input.byte()) / 256;
   const unsigned flags = input.byte();
   parameters.clockwise = (flags & 1U) != 0;
   parameters.start_azimuth = (flags & 2U) != 0 ? 1.0 : 0.0;
   if ((flags & 4U) != 0) parameters.origin = {3.0F, -2.0F, 1.0F};
   parameters.block_columns = std::array<std::size_t, 4>{1, 2, 5, 16}[flags / 8 % 4];
-  double position = kStarts[flags / 32 % 4];
+  double position = kStarts[flags / 32 % 8];
   const double per_turn = input.oneOf(kColumnsPerTurn);
   std::uint32_t number = 0;
   constexpr std::size_t kMostPoints = 64;

@@ -311,9 +311,12 @@ class Endless {
       hold(cluster.reachEnd() >= cluster.lastPosition(), "a cluster that is out of reach at once");
       delivered_count_ += size;
     };
-    if (!(parameters.stagger >= 0 && parameters.stagger <= lisco::EndlessParameters::kMostStagger))
+    const bool is_origin_finite = std::all_of(parameters.origin.begin(), parameters.origin.end(),
+                                              [](float coordinate) { return std::isfinite(coordinate); });
+    if (!(parameters.stagger >= 0 && parameters.stagger <= lisco::EndlessParameters::kMaxStagger) ||
+        !is_origin_finite || !(std::fabs(parameters.start_azimuth) <= lisco::EndlessParameters::kMaxAzimuth))
       return holdThrows<std::invalid_argument>([&] { clusterer_.begin(parameters, receive); },
-                                               "a stagger that is none");
+                                               "a stagger, origin or azimuth out of range");
     clusterer_.begin(parameters, receive);
     parameters_ = parameters;
     begun_ = true;
@@ -354,7 +357,7 @@ class Endless {
   void addColumnWithoutPosition(Input& input) {
     if (!begun_ || !(parameters_.columns_per_turn > 0))
       return holdThrows<std::logic_error>([&] { clusterer_.addColumn(nullptr, 0); }, "a column without a position");
-    const double position = position_ ? *position_ + 1 / parameters_.columns_per_turn : 0;
+    const double position = clusterer_.nextPosition();
     if (std::fabs(position) > 1e12) return;
     const std::size_t lasers = input.below(kMostLasers + 1);
     makeColumn(input, lasers);

@@ -195,7 +195,7 @@ TEST_P(RealCapture, IsClusteredEndlesslyAsDefined) {
   for (const float tolerance : {0.3F, 1.0F}) {
     stream.parameters.tolerance = tolerance;
     const EndlessTruth truth = endlessTruth(stream);
-    EXPECT_EQ(truth.strays, 0U);
+    EXPECT_EQ(truth.outliers, 0U);
     const auto across_the_seam =
         std::count_if(truth.deliveries.begin(), truth.deliveries.end(), [](const auto& delivery) {
           return delivery.members.size() >= 10 &&

@@ -447,7 +447,8 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
   inline std::size_t getBlockColumns() const { return (parameters_.block_columns); }
 
   /** \brief Begin a stream. Of the last one nothing more is delivered.
-   * \return false, after a PCL_ERROR and without effect, if the stagger is not within 0..pi/8
+   * \return false, after a PCL_ERROR and without effect, if the stagger is not within 0..pi/8, the sensor origin is not finite, or
+   * the start azimuth is not within -1e6..1e6 radians
    */
   bool beginStream();
 
@@ -460,8 +461,8 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
    */
   bool addColumn(const PointT* points, std::size_t count, double position);
 
-  /** \brief The same, 1 / getColumnsPerTurn () turns after the column before. False, after a PCL_ERROR and without effect, if
-   * that is not known.
+  /** \brief The same, 1 / getColumnsPerTurn () turns after the column before, at 0 for the first one. False, after a PCL_ERROR
+   * and without effect, if the number of columns of a turn is not known.
    */
   bool addColumn(const PointT* points, std::size_t count);
 
@@ -479,10 +480,10 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
   /** \brief Number of returns since beginStream () of the columns that have been worked on. */
   inline std::uint64_t getNumberOfReturns() const { return (clusterer_.returnCount()); }
 
-  /** \brief How many of these are seen under another azimuth than their column can have. If they are many, the start azimuth, the
-   * sense of rotation, the positions or the stagger are wrong.
+  /** \brief How many of these are outliers: their azimuth differs from that of their column by more than the stagger. Many of them
+   * are the sign of a wrong start azimuth, sense of rotation, position or stagger.
    */
-  inline std::uint64_t getNumberOfStrays() const { return (clusterer_.strayCount()); }
+  inline std::uint64_t getNumberOfOutliers() const { return (clusterer_.outlierCount()); }
 
   /** \brief Number of columns in memory, of about a turn and a half at the most. */
   inline std::size_t getNumberOfColumnsHeld() const { return (store_.size()); }
@@ -496,7 +497,8 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
   using Base::most_rows_;
   using Base::store_;
 
-  bool addColumnAt(const PointT* points, std::size_t count, double position, const char* caller);
+  /** \brief Adds a column at the position given, or at the engine's next one (nullptr). */
+  bool addColumnAt(const PointT* points, std::size_t count, const double* given_position);
   void deliver(const lisco::EndlessCluster& delivered);
 
   lisco::EndlessParameters parameters_;

@@ -214,9 +214,8 @@ bool pcl::LiscoEndlessExtraction<PointT>::beginStream() {
   parameters.max_size = max_pts_per_cluster_;
   try {
     clusterer_.begin(parameters, [this](const lisco::EndlessCluster& delivered) { deliver(delivered); });
-  } catch (const std::invalid_argument&) {
-    PCL_ERROR("[pcl::LiscoEndlessExtraction::beginStream] A stagger of %g is not within 0 and pi/8.\n",
-              parameters.stagger);
+  } catch (const std::invalid_argument& error) {
+    PCL_ERROR("[pcl::LiscoEndlessExtraction::beginStream] %s.\n", error.what());
     return (false);
   }
   columns_per_turn_ = parameters.columns_per_turn;
@@ -227,11 +226,12 @@ bool pcl::LiscoEndlessExtraction<PointT>::beginStream() {
 }
 
 template <typename PointT>
-bool pcl::LiscoEndlessExtraction<PointT>::addColumnAt(const PointT* points, std::size_t count, double position,
-                                                      const char* caller) {
+bool pcl::LiscoEndlessExtraction<PointT>::addColumnAt(const PointT* points, std::size_t count,
+                                                      const double* given_position) {
+  const char* const caller = "pcl::LiscoEndlessExtraction::addColumn";
   if (!this->accepts(points, count, store_.size() + 1, caller)) return (false);
-  constexpr double kLargest = 1e12;  // as the engine has it
-  if (!(std::fabs(position) <= kLargest)) {
+  const double position = given_position ? *given_position : clusterer_.nextPosition();
+  if (!(std::fabs(position) <= lisco::EndlessParameters::kMaxPosition)) {
     PCL_ERROR("[%s] A position of %g turns.\n", caller, position);
     return (false);
   }
@@ -242,7 +242,11 @@ bool pcl::LiscoEndlessExtraction<PointT>::addColumnAt(const PointT* points, std:
   }
   most_rows_ = std::max(most_rows_, count);
   const std::uint32_t first = store_.add(points, count, position);
-  clusterer_.addColumn(this->namedColumn(points, count, first), count, position);
+  const lisco::Return* const cells = this->namedColumn(points, count, first);
+  if (given_position)
+    clusterer_.addColumn(cells, count, position);
+  else
+    clusterer_.addColumn(cells, count);
   constexpr double kKept = 1.5;  // turns, within which the engine names a cell again
   while (store_.positionOf(store_.firstColumn()) < position - kKept) store_.dropFirst();
   return (true);
@@ -250,18 +254,18 @@ bool pcl::LiscoEndlessExtraction<PointT>::addColumnAt(const PointT* points, std:
 
 template <typename PointT>
 bool pcl::LiscoEndlessExtraction<PointT>::addColumn(const PointT* points, std::size_t count, double position) {
-  return (addColumnAt(points, count, position, "pcl::LiscoEndlessExtraction::addColumn"));
+  return (addColumnAt(points, count, &position));
 }
 
 template <typename PointT>
 bool pcl::LiscoEndlessExtraction<PointT>::addColumn(const PointT* points, std::size_t count) {
-  const char* const caller = "pcl::LiscoEndlessExtraction::addColumn";
   if (begun_ && !(columns_per_turn_ > 0)) {
-    PCL_ERROR("[%s] A column without a position, and the number of columns of a turn is not known.\n", caller);
+    PCL_ERROR(
+        "[pcl::LiscoEndlessExtraction::addColumn] A column without a position, and the number of columns of a turn is "
+        "not known.\n");
     return (false);
   }
-  const double position = store_.size() > 0 ? store_.positionOf(store_.endColumn() - 1) + 1 / columns_per_turn_ : 0.0;
-  return (addColumnAt(points, count, position, caller));
+  return (addColumnAt(points, count, nullptr));
 }
 
 template <typename PointT>

@@ -1,0 +1,476 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "lisco/endless_clusterer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "core/endless_sets.h"
+#include "core/stream_position.h"
+#include "lisco/column_block.h"
+#include "lisco/pane.h"
+#include "lisco/tolerance.h"
+
+namespace lisco {
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr std::int64_t kComparable = 4;  // panes whose returns may be neighbours
+
+// Horizontal distances, metres, between which squares neither underflow nor overflow a float.
+constexpr float kMinFloatRho = 1e-18F;
+constexpr float kMaxFloatRho = 1e18F;
+
+void check(const EndlessParameters& parameters) {
+  if (!(parameters.stagger >= 0 && parameters.stagger <= EndlessParameters::kMaxStagger))
+    throw std::invalid_argument("lisco::EndlessClusterer: the stagger must be within 0 and a sixteenth of a turn");
+  if (!std::all_of(parameters.origin.begin(), parameters.origin.end(), [](float c) { return std::isfinite(c); }))
+    throw std::invalid_argument("lisco::EndlessClusterer: the origin must be finite");
+  if (!(std::fabs(parameters.start_azimuth) <= EndlessParameters::kMaxAzimuth))
+    throw std::invalid_argument("lisco::EndlessClusterer: the start azimuth must be within -1e6 and 1e6 radians");
+}
+
+}  // namespace
+
+/// The state of a stream that has begun.
+class EndlessClusterer::Stream {
+ public:
+  void begin(const EndlessParameters& parameters, Callback callback);
+  void addColumn(const Return* cells, std::size_t lasers, double position);
+  void addNextColumn(const Return* cells, std::size_t lasers);
+  double nextPosition() const;
+  void update();
+  void finish();
+
+  bool isUsable() const { return usable_; }
+  std::uint64_t returnCount() const { return returns_; }
+  std::uint64_t outlierCount() const { return outliers_; }
+  std::size_t returnsHeld() const;
+
+ private:
+  using Element = EndlessSets::Element;
+  using Set = EndlessSets::Set;
+  struct EndlessPane : Pane {
+    std::int64_t number = 0;
+    bool in_use = false;
+    std::vector<DisjointSets::Merge> merges;
+  };
+  /// A cluster that waits for its delivery; it may have grown or joined another one since.
+  struct Waiting {
+    Ticks reach_end;
+    Element root;
+    bool operator<(const Waiting& other) const { return reach_end > other.reach_end; }  // a heap with the first on top
+  };
+  class PaneJoiner;
+  /// False until the call that it lives in has come to its end.
+  class UsableAfter;
+
+  EndlessPane& pane(std::int64_t number) { return panes_[EndlessSets::slotOf(number)]; }
+  void startPane(std::int64_t number, Ticks now);
+  void processBlock();
+  void readBlock();
+  std::uint64_t findOutliers(const Row& row, MeasuredRow& measured, double* rho) const;
+  void createSets(const MeasuredRow& measured, const double* rho, std::uint64_t outliers);
+  Ticks reachEnd(Ticks column, double rho, Ticks known) const;
+  void replayMerges(EndlessPane& pane);
+  void wait(Element root);
+  void deliverUpTo(Ticks now);
+  void deliver(Element root);
+
+  EndlessParameters parameters_;
+  Callback callback_;
+  Tolerance tolerance_;
+  FarRange range_;               ///< only its origin is used
+  float cos_stagger_ = 0;        ///< rounded down so that no return is wrongly an outlier
+  double turns_of_stagger_ = 0;  ///< of both returns of a pair, rounded up
+  double near_rho_ = 0;          ///< up to here a neighbour may lie at any azimuth, metres
+  bool usable_ = false;          ///< begun, and left by no exception since
+
+  ColumnBlock block_;
+  std::array<double, Row::kColumns> positions_{};         ///< of the columns of the block
+  std::array<float, Row::kColumns> cosines_{}, sines_{};  ///< of their azimuths
+  double position_ = 0;                                   ///< of the latest column
+  double given_position_ = 0;                             ///< the last one that was given, or 0
+  double columns_since_given_ = 0;
+  bool any_column_ = false;
+
+  std::int64_t current_ = 0;  ///< number of the pane that is being filled
+  std::array<EndlessPane, static_cast<std::size_t>(EndlessSets::kSlots)> panes_;
+  EndlessSets sets_;
+  std::vector<Waiting> waiting_;  ///< a heap: all open clusters
+  std::vector<Element> chain_;    ///< runs of the cluster that is being delivered
+  EndlessCluster delivered_;
+  std::uint64_t returns_ = 0, outliers_ = 0;
+};
+
+class EndlessClusterer::Stream::UsableAfter {
+ public:
+  explicit UsableAfter(Stream& stream) : stream_(stream) { stream_.usable_ = false; }
+  void done() { stream_.usable_ = true; }
+
+ private:
+  Stream& stream_;
+};
+
+// --- Receiving columns ----------------------------------------------------------------------------------------------
+
+void EndlessClusterer::Stream::begin(const EndlessParameters& parameters, Callback callback) {
+  check(parameters);
+  if (!usable_) *this = Stream();
+  UsableAfter call(*this);
+  parameters_ = parameters;
+  parameters_.block_columns = std::clamp<std::size_t>(parameters.block_columns, 1, Row::kColumns);
+  callback_ = std::move(callback);
+  tolerance_ = Tolerance(parameters.tolerance);
+  range_.origin = parameters.origin;
+  constexpr double kCosineRounding = 1e-6;
+  const double cosine = std::cos(parameters.stagger) - kCosineRounding;
+  cos_stagger_ = static_cast<float>(cosine);
+  turns_of_stagger_ = 2 * (std::acos(cosine - kCosineRounding) / (2 * kPi));
+  constexpr double kUnderflow = 1e-22;  // metres, as in Tolerance::reach ()
+  near_rho_ = std::sqrt(static_cast<double>(tolerance_.squared())) * (1 + kNearMargin) + kUnderflow;
+  block_.clear();
+  any_column_ = false;
+  for (EndlessPane& pane : panes_) pane.in_use = false;
+  waiting_.clear();
+  returns_ = outliers_ = 0;
+  call.done();
+}
+
+double EndlessClusterer::Stream::nextPosition() const {
+  return any_column_ ? given_position_ + (columns_since_given_ + 1) / parameters_.columns_per_turn : 0.0;
+}
+
+void EndlessClusterer::Stream::addNextColumn(const Return* cells, std::size_t lasers) {
+  if (!(parameters_.columns_per_turn > 0))
+    throw std::logic_error("lisco::EndlessClusterer: a column without a position, and columns_per_turn is not known");
+  const double position = nextPosition();
+  const double given = any_column_ ? given_position_ : 0.0;
+  const double columns = any_column_ ? columns_since_given_ + 1 : 0.0;
+  addColumn(cells, lasers, position);
+  given_position_ = given;
+  columns_since_given_ = columns;
+}
+
+void EndlessClusterer::Stream::addColumn(const Return* cells, std::size_t lasers, double position) {
+  if (parameters_.lasers != 0 && lasers > parameters_.lasers)
+    throw std::invalid_argument("lisco::EndlessClusterer: a column of more cells than lasers were declared");
+  if (!(std::fabs(position) <= EndlessParameters::kMaxPosition) || (any_column_ && position < position_))
+    throw std::invalid_argument("lisco::EndlessClusterer: a position out of range or less than the one before");
+  UsableAfter call(*this);
+  const Ticks now = ticksOf(position);
+  if (!any_column_ || paneOf(now) != current_) startPane(paneOf(now), now);
+  any_column_ = true;
+  position_ = given_position_ = position;
+  columns_since_given_ = 0;
+
+  const double turns = position - std::floor(position);
+  const double azimuth = parameters_.start_azimuth + (parameters_.clockwise ? -2 : 2) * kPi * turns;
+  positions_[block_.columns()] = position;
+  cosines_[block_.columns()] = static_cast<float>(std::cos(azimuth));
+  sines_[block_.columns()] = static_cast<float>(std::sin(azimuth));
+  block_.add(0, 1, lasers, [cells](std::size_t laser, std::size_t) { return cells[laser]; });
+  if (block_.columns() == parameters_.block_columns) processBlock();
+  call.done();
+}
+
+void EndlessClusterer::Stream::update() {
+  UsableAfter call(*this);
+  processBlock();
+  call.done();
+}
+
+void EndlessClusterer::Stream::finish() {
+  if (!any_column_) return;
+  UsableAfter call(*this);
+  processBlock();
+  deliverUpTo(std::numeric_limits<Ticks>::max());
+  for (EndlessPane& pane : panes_) pane.in_use = false;
+  any_column_ = false;
+  call.done();
+}
+
+std::size_t EndlessClusterer::Stream::returnsHeld() const {
+  std::size_t count = 0;
+  for (const EndlessPane& pane : panes_) count += pane.in_use ? pane.runs.returns : 0;
+  return count;
+}
+
+void EndlessClusterer::Stream::processBlock() {
+  if (block_.columns() == 0) return;
+  readBlock();
+  deliverUpTo(ticksOf(position_));
+}
+
+/// Delivers what the first column of a new pane cannot reach, and cuts what is a turn old.
+void EndlessClusterer::Stream::startPane(std::int64_t number, Ticks now) {
+  processBlock();
+  deliverUpTo(now);
+  const auto isYoung = [&](const Waiting& waiting) { return sets_[waiting.root].first_pane > number - kPanesPerTurn; };
+  const auto old = std::partition(waiting_.begin(), waiting_.end(), isYoung);
+  std::sort(old, waiting_.end(), [](const Waiting& a, const Waiting& b) { return b < a; });
+  for (auto waiting = old; waiting != waiting_.end(); ++waiting) {
+    if (!sets_.isRoot(waiting->root)) continue;
+    sets_[waiting->root].cut = true;
+    deliver(waiting->root);
+  }
+  waiting_.erase(old, waiting_.end());
+  std::make_heap(waiting_.begin(), waiting_.end());
+
+  current_ = number;
+  sets_.startPane(number);
+  EndlessPane& pane = this->pane(number);
+  pane.clear(tolerance_);
+  pane.merges.clear();
+  pane.number = number;
+  pane.in_use = true;
+}
+
+// --- Linking a block of columns -------------------------------------------------------------------------------------
+
+/// Joins clusters of the current pane with those of an older one.
+class EndlessClusterer::Stream::PaneJoiner : public Voxels::Joiner {
+ public:
+  PaneJoiner(Stream& stream, std::int64_t older) : stream_(stream), older_(older) {
+    // All returns of the older pane lie on one side of the ray at the azimuth of its end plus the stagger.
+    const EndlessParameters& parameters = stream.parameters_;
+    const auto panes = static_cast<double>(EndlessSets::slotOf(older + 1));  // two turns of panes
+    const double direction = parameters.clockwise ? -1 : 1;
+    const double azimuth =
+        parameters.start_azimuth +
+        direction * (2 * kPi * panes / static_cast<double>(kPanesPerTurn) + kPi * stream.turns_of_stagger_);
+    across_ = {-direction * std::sin(azimuth), direction * std::cos(azimuth)};
+  }
+
+  /// False if the box lies beyond that ray, further from it than the tolerance.
+  bool reaches(const Box& own) const override {
+    double least = 0;
+    double largest = 0;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const double origin = static_cast<double>(stream_.range_.origin[axis]);
+      const double lo = static_cast<double>(own.lo[axis]) - origin;
+      const double hi = static_cast<double>(own.hi[axis]) - origin;
+      least += std::min(across_[axis] * lo, across_[axis] * hi);
+      largest = std::max({largest, std::fabs(lo), std::fabs(hi)});
+    }
+    constexpr double kRounding = 1e-5;
+    return !(least > stream_.tolerance_.reach() * (1 + kRounding) + largest * kRounding);
+  }
+
+  bool areApart(std::uint32_t own, std::uint32_t others) override {
+    const Element a = rootOfOwn(own);
+    const Element b = rootOfOther(others);
+    return a != b && !(stream_.sets_[b].delivered && stream_.sets_[a].continued);
+  }
+
+  /// A cluster that was delivered, cut, is continued by all that reach it, and joins none of these.
+  void join(std::uint32_t own, std::uint32_t others) override {
+    const Element a = rootOfOwn(own);
+    const Element b = rootOfOther(others);
+    if (stream_.sets_[b].delivered)
+      stream_.sets_[a].continued = true;
+    else
+      stream_.sets_.merge(a, b);
+  }
+
+ private:
+  Element rootOfOwn(std::uint32_t run) { return stream_.sets_.find(EndlessSets::elementOf(stream_.current_, run)); }
+  Element rootOfOther(std::uint32_t run) { return stream_.sets_.find(EndlessSets::elementOf(older_, run)); }
+
+  Stream& stream_;
+  std::int64_t older_;
+  std::array<double, 2> across_{};  ///< unit vector from the ray towards later columns
+};
+
+/// Reads the columns of the block and compares them with all that may be neighbours.
+void EndlessClusterer::Stream::readBlock() {
+  EndlessPane& pane = this->pane(current_);
+  const std::size_t before = pane.runs.returns;
+  const std::uint32_t first_run = sets_.runCount(current_);
+  pane.subclusters.logTo(&pane.merges);
+  pane.read(block_, 0, tolerance_, range_, [&](const Row& row, MeasuredRow& measured) {
+    std::array<double, Row::kColumns> rho;
+    const std::uint64_t outliers = findOutliers(row, measured, rho.data());
+    measured.starts |= outliers | (outliers << 1 & measured.returns);
+    outliers_ += static_cast<std::uint64_t>(__builtin_popcountll(outliers));
+    createSets(measured, rho.data(), outliers);
+    return measured.returns & ~outliers;
+  });
+  returns_ += pane.runs.returns - before;
+  pane.voxels.link(pane.subclusters);
+  replayMerges(pane);
+  for (std::int64_t older = current_ - kComparable + 1; older < current_; ++older)
+    if (this->pane(older).in_use && this->pane(older).number == older) {
+      PaneJoiner joiner(*this, older);
+      pane.voxels.linkTo(this->pane(older).voxels, Voxels::Part::kNew, joiner);
+    }
+  pane.voxels.settle();
+  pane.subclusters.logTo(nullptr);
+  for (std::uint32_t run = first_run; run < sets_.runCount(current_); ++run) {
+    const Element element = EndlessSets::elementOf(current_, run);
+    if (sets_.isRoot(element)) wait(element);
+  }
+}
+
+/// Finds the returns whose azimuth differs from that of their column by more than the stagger.
+/// \param rho receives the horizontal distances, metres: in double, since squares may overflow or underflow a float
+std::uint64_t EndlessClusterer::Stream::findOutliers(const Row& row, MeasuredRow& measured, double* rho) const {
+  std::uint64_t outliers = 0;
+  for (std::uint64_t left = measured.returns; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::size_t>(__builtin_ctzll(left));
+    const float x = row.x[Row::kMargin + i];
+    const float y = row.y[Row::kMargin + i];
+    bool is_inlier;
+    if (measured.rho[i] > kMinFloatRho && measured.rho[i] < kMaxFloatRho) {
+      rho[i] = static_cast<double>(measured.rho[i]);
+      is_inlier =
+          (x - range_.origin[0]) * cosines_[i] + (y - range_.origin[1]) * sines_[i] >= cos_stagger_ * measured.rho[i];
+    } else {
+      const double east = static_cast<double>(x) - static_cast<double>(range_.origin[0]);
+      const double north = static_cast<double>(y) - static_cast<double>(range_.origin[1]);
+      rho[i] = std::hypot(east, north);
+      is_inlier = east * static_cast<double>(cosines_[i]) + north * static_cast<double>(sines_[i]) >=
+                  static_cast<double>(cos_stagger_) * rho[i];
+    }
+    if (!is_inlier) outliers |= left & -left;
+  }
+  return outliers;
+}
+
+/// Makes a cluster of each run of a row.
+void EndlessClusterer::Stream::createSets(const MeasuredRow& measured, const double* rho, std::uint64_t outliers) {
+  Set* set = nullptr;
+  for (std::uint64_t left = measured.returns; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::size_t>(__builtin_ctzll(left));
+    if ((measured.starts >> i & 1) != 0) set = &sets_.create(current_, positions_[i]);
+    const Ticks column = ticksOf(positions_[i]);
+    ++set->size;
+    set->last_position = positions_[i];
+    set->reach_end = (outliers >> i & 1) != 0 ? column : reachEnd(column, rho[i], set->reach_end);
+  }
+}
+
+/// The position from which on no column can reach a return, nor what was reached up to `known`.
+/// \param rho horizontal distance, metres
+Ticks EndlessClusterer::Stream::reachEnd(Ticks column, double rho, Ticks known) const {
+  const Ticks latest = (current_ + kComparable) * kTicksPerPane;
+  if (!(rho > near_rho_)) return latest;
+  constexpr double kRhoRounding = 1 + 1e-6;
+  constexpr double kRadiansToTicks = static_cast<double>(kTicksPerTurn) / (2 * kPi);
+  const double sine = std::min(tolerance_.reach() * kRhoRounding / rho, 1.0);
+  const double stagger = turns_of_stagger_ * static_cast<double>(kTicksPerTurn);
+  const auto end = [&](double asine) {
+    // The column's position was rounded down by less than a tick.
+    return std::min(column + 1 + static_cast<Ticks>(std::ceil(stagger + asine * kRadiansToTicks)), latest);
+  };
+  // asin (t) <= t + (pi / 2 - 1) t^3 for t in 0..1
+  if (end(sine + (kPi / 2 - 1) * sine * sine * sine) <= known) return known;
+  return std::max(known, end(std::asin(sine)));
+}
+
+/// Joins the clusters of the runs that the pane has joined.
+void EndlessClusterer::Stream::replayMerges(EndlessPane& pane) {
+  for (const DisjointSets::Merge& joined : pane.merges)
+    sets_.merge(EndlessSets::elementOf(current_, joined.head), EndlessSets::elementOf(current_, joined.former_head));
+  pane.merges.clear();
+}
+
+// --- Delivery -------------------------------------------------------------------------------------------------------
+
+/// Delivers all clusters that a column at a position, and those after it, cannot reach.
+void EndlessClusterer::Stream::deliverUpTo(Ticks now) {
+  while (!waiting_.empty() && waiting_.front().reach_end <= now) {
+    std::pop_heap(waiting_.begin(), waiting_.end());
+    const Waiting first = waiting_.back();
+    waiting_.pop_back();
+    if (!sets_.isRoot(first.root)) continue;  // joined to another one, which waits itself
+    if (sets_[first.root].reach_end > first.reach_end)
+      wait(first.root);
+    else
+      deliver(first.root);
+  }
+}
+
+void EndlessClusterer::Stream::wait(Element root) {
+  waiting_.push_back({sets_[root].reach_end, root});
+  std::push_heap(waiting_.begin(), waiting_.end());
+}
+
+void EndlessClusterer::Stream::deliver(Element root) {
+  Set& set = sets_[root];
+  set.delivered = true;
+  if (set.size < parameters_.min_size || set.size > parameters_.max_size) return;
+  chain_.clear();
+  for (Element run = root; run != EndlessSets::kNone; run = sets_[run].next_run) chain_.push_back(run);
+  const auto paneNumber = [this](Element run) { return panes_[EndlessSets::slotOfElement(run)].number; };
+  std::sort(chain_.begin(), chain_.end(), [&](Element a, Element b) {
+    return paneNumber(a) != paneNumber(b) ? paneNumber(a) < paneNumber(b) : a < b;
+  });
+  delivered_.runs_.clear();
+  for (const Element element : chain_) {
+    const Runs& runs = panes_[EndlessSets::slotOfElement(element)].runs;
+    const Runs::Run& run = runs.runs[EndlessSets::runOf(element)];
+    delivered_.runs_.push_back({runs.source_index.data() + run.first_cell, run.count});
+  }
+  delivered_.size_ = set.size;
+  delivered_.first_position_ = set.first_position;
+  delivered_.last_position_ = set.last_position;
+  delivered_.reach_end_ = std::max(positionOf(set.reach_end), set.last_position);  // an outlier's is its own position
+  delivered_.is_cut_ = set.cut;
+  delivered_.is_continued_ = set.continued;
+  callback_(delivered_);
+}
+
+// --- The public face ------------------------------------------------------------------------------------------------
+
+EndlessClusterer::EndlessClusterer() : stream_(std::make_unique<Stream>()) {}
+EndlessClusterer::~EndlessClusterer() = default;
+EndlessClusterer::EndlessClusterer(const EndlessClusterer& other) : stream_(std::make_unique<Stream>(*other.stream_)) {}
+EndlessClusterer& EndlessClusterer::operator=(const EndlessClusterer& other) {
+  *stream_ = *other.stream_;
+  return *this;
+}
+
+void EndlessClusterer::begin(const EndlessParameters& parameters, Callback callback) {
+  stream_->begin(parameters, std::move(callback));
+}
+
+void EndlessClusterer::addColumn(const Return* cells, std::size_t lasers, double position) {
+  if (!stream_->isUsable())
+    throw std::logic_error("lisco::EndlessClusterer: a column before begin (), or after an exception");
+  stream_->addColumn(cells, lasers, position);
+}
+
+void EndlessClusterer::addColumn(const Return* cells, std::size_t lasers) {
+  if (!stream_->isUsable())
+    throw std::logic_error("lisco::EndlessClusterer: a column before begin (), or after an exception");
+  stream_->addNextColumn(cells, lasers);
+}
+
+double EndlessClusterer::nextPosition() const {
+  return stream_->nextPosition();
+}
+
+void EndlessClusterer::update() {
+  if (stream_->isUsable()) stream_->update();
+}
+
+void EndlessClusterer::finish() {
+  if (stream_->isUsable()) stream_->finish();
+}
+
+std::uint64_t EndlessClusterer::returnCount() const {
+  return stream_->returnCount();
+}
+std::uint64_t EndlessClusterer::outlierCount() const {
+  return stream_->outlierCount();
+}
+std::size_t EndlessClusterer::returnsHeld() const {
+  return stream_->returnsHeld();
+}
+
+}  // namespace lisco
