@@ -176,8 +176,9 @@ std::vector<std::string> disagreements(const std::vector<InputResult>& inputs, c
     for (const CaseResult& result : input.cases)
       for (const RivalResult& entry : result.rivals)
         if (settings.mustAgree(*entry.rival) && (!entry.failure.empty() || !entry.difference.identical))
-          lines.push_back(formatted("%s at %g m: the clusters of %s are not PCL's", input.file.c_str(),
-                                    result.tolerance, entry.rival->title.c_str()));
+          lines.push_back(formatted("%s at %g m: the clusters of %s are not PCL's%s", input.file.c_str(),
+                                    result.tolerance, entry.rival->title.c_str(),
+                                    entry.difference.missed_by_reference ? ": PCL's tree missed a pair" : ""));
   return lines;
 }
 

@@ -20,6 +20,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <pcl/common/io.h>
 #include <pcl/segmentation/extract_clusters.h>
 
 #include "compare/comparison.h"
@@ -248,6 +249,21 @@ TEST(Difference, NamesTheNearestOfWhatIsJoined) {
   expectSaid(difference, {"first: point 1 (5.4, 0, 0) row 0 column 1: by PCL in cluster 2 (4 points)"});
   expectPairDecides(reversed, rival, difference.details);
   EXPECT_NEAR(pairNamedIn(difference.details)->d2, 10.24F, 1e-5F);
+}
+
+// The rival is right, and PCL is not: doc/contract.md.
+TEST(Difference, NamesThePairThatPclsTreeMisses) {
+  auto cloud = std::make_shared<RivalCloud>();
+  pcl::copyPointCloud(*cloudWithAMissedPair(), *cloud);
+  const Problem problem = problemOf(cloud, kMissingTolerance, 1);
+  const std::vector<Rival> rivals = allRivals();
+  const auto lisco =
+      std::find_if(rivals.begin(), rivals.end(), [](const Rival& rival) { return rival.key == "lisco"; });
+  ASSERT_NE(lisco, rivals.end());
+  const Difference difference = differenceFrom(problem, *lisco);
+  EXPECT_FALSE(difference.identical);
+  EXPECT_TRUE(difference.missed_by_reference);
+  expectSaid(difference, {"point 0 (0.102016, 0.10739, 0.184661)", "neighbours; PCL's tree missed this pair\n"});
 }
 
 TEST(Difference, NoticesNoiseThatJoins) {
@@ -876,7 +892,7 @@ struct Example {
       result.rivals[1].times = timesOf({2, 4});
       result.rivals[1].times->cold = {4, 6};
       result.rivals[2].clusters = 8;
-      result.rivals[2].difference = {false, false, 1, 12, "a \"quoted\"\nsecond line\n"};
+      result.rivals[2].difference = {false, false, 1, 12, false, "a \"quoted\"\nsecond line\n"};
     }
     input.cases[1].objects = ObjectScore{9, 5, 2, 1, 3};
     input.cases[1].rivals[2].failure = "needs an organized cloud";

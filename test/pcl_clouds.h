@@ -62,6 +62,24 @@ typename pcl::PointCloud<PointT>::Ptr displaced(const pcl::PointCloud<PointT>& c
   return moved;
 }
 
+/// The cloud of doc/contract.md at whose tolerance, kMissingTolerance, the search of PCL's kd-tree misses a pair of
+/// neighbours: 23 points, of which 0 and 1 are the pair.
+constexpr double kMissingTolerance = 0.450000107;
+inline pcl::PointCloud<pcl::PointXYZ>::Ptr cloudWithAMissedPair() {
+  auto cloud = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  const pcl::PointXYZ p(0.102015592F, 0.107390307F, 0.184661239F);
+  cloud->push_back(p);
+  cloud->push_back({0.368932515F, 0.374665797F, 0.429241002F});
+  constexpr float kY = 6.24102783F;
+  constexpr float kZ = 8.30695152F;
+  for (int i = 0; i < 16; ++i) cloud->push_back({p.x - 0.25F * static_cast<float>(i), kY, kZ});
+  for (const float x : {4.73547411F, -4.26452589F}) cloud->push_back({x, kY, kZ});
+  cloud->push_back({-4.26452589F, -5.75897217F, -7.69304895F});
+  cloud->push_back({0.23547405F, 0.107390307F, kZ});
+  cloud->push_back({0.23547405F, -5.75897217F, kZ});
+  return cloud;
+}
+
 /// All indices of a cloud of this size, shuffled.
 inline pcl::IndicesPtr shuffledIndices(Random& random, std::size_t size) {
   auto indices = std::make_shared<pcl::Indices>(size);

@@ -43,6 +43,57 @@ TEST_P(PclIdentity, OfRandomScans) {
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, PclIdentity, testing::Values(1, 1001, 2001, 3001));
 
+// FLANN adds up the bound by which it prunes a branch with rounding: here it is above r2 while d2 is below.
+TEST(PclMissesPairs, ByTheRoundingOfItsTree) {
+  const Cloud::Ptr cloud = cloudWithAMissedPair();
+  const Request request{kMissingTolerance};
+  Clusters by_pcl;
+  Clusters by_lisco;
+  PclClient<PointXYZ>().extract(cloud, nullptr, request, by_pcl);
+  LiscoClient<PointXYZ>().extract(cloud, nullptr, request, by_lisco);
+  EXPECT_EQ(by_pcl.size(), 8U);
+  EXPECT_EQ(by_lisco.size(), 7U);
+  EXPECT_TRUE(areSame(clustersByDefinition(*cloud, *returnsOf(*cloud), request), by_lisco));
+  EXPECT_TRUE(isRefinement(by_pcl, by_lisco, cloud->size()));
+  EXPECT_FALSE(isRefinement(by_lisco, by_pcl, cloud->size()));
+  EXPECT_TRUE(areNeighbours({(*cloud)[0].x, (*cloud)[0].y, (*cloud)[0].z},
+                            {(*cloud)[1].x, (*cloud)[1].y, (*cloud)[1].z}, static_cast<float>(kMissingTolerance)));
+  expectSameAsPcl<PointXYZ>(cloud, nullptr, request);
+}
+
+// Squared distances to a branch overflow in FLANN, too: Lisco keeps to the definition.
+TEST(PclMissesPairs, WhereItsBoundOverflows) {
+  const auto cloud = std::make_shared<Cloud>();
+  for (int i = 0; i < 40; ++i)
+    cloud->push_back(
+        {static_cast<float>(i % 5) * 4e18F, static_cast<float>(i / 5 % 4) * 4e18F, static_cast<float>(i / 20) * 1e19F});
+  (*cloud)[0].x = 1.0F;
+  for (const double tolerance : {5e18, 1.3e19, 1.7e19, 1.85e19, 1e20}) {
+    SCOPED_TRACE(tolerance);
+    expectSameAsPcl<PointXYZ>(cloud, nullptr, {tolerance});
+  }
+}
+
+// Without a pair that PCL misses, its vector is the definition's: indices in any order and repeated, sizes, headers.
+TEST(PclMissesPairs, ElseTheDefinitionIsItsVector) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const Scan scan = randomScan(random);
+    const Cloud::Ptr cloud = cloudOf(scan);
+    const pcl::IndicesPtr indices = shuffledIndices(random, cloud->size());
+    indices->insert(indices->end(), indices->begin(), indices->begin() + static_cast<long>(indices->size() / 2));
+    const pcl::IndicesPtr returns = returnsOf(*cloud, indices);
+    if (returns->empty()) continue;
+    const Request request{static_cast<double>(criticalTolerance(random, scan)),
+                          static_cast<pcl::uindex_t>(1 + random.below(3)),
+                          static_cast<pcl::uindex_t>(3 + random.below(20))};
+    Clusters by_pcl;
+    PclClient<PointXYZ>().extract(cloud, returns, request, by_pcl);
+    EXPECT_TRUE(areSame(clustersByDefinition(*cloud, *returns, request), by_pcl));
+  }
+}
+
 TEST(Pcl, WholeScanAtManyTolerances) {
   const Cloud::Ptr cloud = scanOfBoxes();
   for (const double tolerance : {0.05, 0.1, 0.3, 0.7, 1.0, 5.0, 100.0})

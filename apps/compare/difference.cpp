@@ -63,10 +63,41 @@ class Naming {
 
 /// Two points whose relation makes the difference.
 struct DecidingPair {
+  enum class Kind {
+    kKeptApart,  ///< neighbours that the rival keeps apart
+    kJoined,     ///< not connected, and the rival joins them
+    kMissed      ///< neighbours that the rival joins, and that the search of PCL's tree misses
+  };
   pcl::index_t a, b;
   float d2;
-  bool kept_apart;  ///< neighbours that the rival keeps apart; otherwise strangers that it joins
+  Kind kind;
 };
+
+/// A pair of neighbours by the definition, one of `inside` and one of `joined`: the tree over `joined` is searched a
+/// little beyond the tolerance, so that its own rounding misses none.
+std::optional<DecidingPair> missedPair(const Problem& problem, pcl::search::KdTree<RivalPoint>& tree_of_joined,
+                                       const pcl::Indices& inside, const pcl::Indices& joined) {
+  constexpr double kBeyond = 1 + 1e-4;
+  constexpr double kMaxRadius = 1e18;  // metres; beyond, squares overflow in the tree
+  const RivalCloud& cloud = *problem.cloud;
+  const lisco::Tolerance tolerance(static_cast<float>(problem.tolerance));
+  const double radius = tolerance.reach() * kBeyond;
+  pcl::Indices near;
+  std::vector<float> squared;
+  for (const auto index : inside) {
+    const RivalPoint& p = cloud[place(index)];
+    if (radius < kMaxRadius)
+      tree_of_joined.radiusSearch(p, radius, near, squared);
+    else
+      near = joined;
+    for (const auto other : near) {
+      const RivalPoint& q = cloud[place(other)];
+      const float d2 = lisco::squaredDistance(p.x - q.x, p.y - q.y, p.z - q.z);
+      if (d2 < tolerance.squared()) return DecidingPair{index, other, d2, DecidingPair::Kind::kMissed};
+    }
+  }
+  return std::nullopt;
+}
 
 /// Looks for the pair in the reference's component of `point`. The labels are those of clusters of any size; what the
 /// rival puts in none is with nobody.
@@ -91,21 +122,35 @@ std::optional<DecidingPair> decidingPair(const Problem& problem, pcl::index_t po
   for (const auto index : *inside) {
     tree.radiusSearch((*problem.cloud)[place(index)], radius, near, squared);
     for (std::size_t i = 0; i < near.size(); ++i)
-      if (near[i] != index && !joined_with(near[i], index)) return DecidingPair{index, near[i], squared[i], true};
+      if (near[i] != index && !joined_with(near[i], index))
+        return DecidingPair{index, near[i], squared[i], DecidingPair::Kind::kKeptApart};
   }
   if (joined->empty()) return std::nullopt;
-  std::optional<DecidingPair> nearest;
   tree.setInputCloud(problem.cloud, joined);
+  std::optional<DecidingPair> nearest = missedPair(problem, tree, *inside, *joined);
+  if (nearest) return nearest;
   for (const auto index : *inside)
     if (joined_with(index, point) && tree.nearestKSearch((*problem.cloud)[place(index)], 1, near, squared) == 1 &&
         (!nearest || squared[0] < nearest->d2))
-      nearest = DecidingPair{index, near[0], squared[0], false};
+      nearest = DecidingPair{index, near[0], squared[0], DecidingPair::Kind::kJoined};
   return nearest;
 }
 
 std::string inWords(std::uint32_t label, const Clusters& clusters) {
   if (label == 0) return "noise";
   return formatted("cluster %u (%zu points)", label, clusters[label - 1].indices.size());
+}
+
+std::string inWords(DecidingPair::Kind kind) {
+  switch (kind) {
+    case DecidingPair::Kind::kKeptApart:
+      return "neighbours, which the rival keeps apart";
+    case DecidingPair::Kind::kJoined:
+      return "not connected, which the rival joins";
+    case DecidingPair::Kind::kMissed:
+      return "neighbours; PCL's tree missed this pair";
+  }
+  return "";
 }
 
 std::string whereIs(const Problem& problem, pcl::index_t index) {
@@ -197,10 +242,10 @@ Difference differenceOf(const Problem& problem, const Rival& reference, const Cl
       decidingPair(any_size, *first, labelsOf(expected_components, points), labelsOf(found_components, points));
   if (pair) {
     const double r2 = static_cast<double>(lisco::Tolerance(static_cast<float>(problem.tolerance)).squared());
-    difference.details +=
-        "the pair that decides: " + whereIs(problem, pair->a) + " and " + whereIs(problem, pair->b) +
-        formatted(", d2 = %.9g, r2 = %.9g: ", static_cast<double>(pair->d2), r2) +
-        (pair->kept_apart ? "neighbours, which the rival keeps apart" : "not connected, which the rival joins") + "\n";
+    difference.details += "the pair that decides: " + whereIs(problem, pair->a) + " and " + whereIs(problem, pair->b) +
+                          formatted(", d2 = %.9g, r2 = %.9g: ", static_cast<double>(pair->d2), r2) +
+                          inWords(pair->kind) + "\n";
+    difference.missed_by_reference = pair->kind == DecidingPair::Kind::kMissed;
   }
   return difference;
 }

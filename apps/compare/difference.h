@@ -17,16 +17,17 @@ struct Difference {
   bool same_sets = true;        ///< the clusters are equal as sets of points; only order or headers differ
   std::size_t clusters = 0;     ///< clusters of the reference that the rival does not have
   std::size_t mislabelled = 0;  ///< points that bear another label under the best naming (see differenceOf)
-  std::string details;          ///< lines that say where, for people; empty if identical
+  bool missed_by_reference = false;  ///< the deciding pair are neighbours that the search of PCL's tree misses
+  std::string details;               ///< lines that say where, for people; empty if identical
 };
 
 /// Compares a rival's clusters with the reference's.
 ///
 /// Clusters of the two are paired one to one, those that share most points first, and noise with noise; a point is
 /// mislabelled if its clusters are not paired. The details name the first such point with its coordinates, its
-/// neighbours within the tolerance, and the pair that decides: neighbours that the rival keeps apart, or the nearest
-/// two points that it joins although they are not connected. For these both are run once more with clusters of any
-/// size.
+/// neighbours within the tolerance, and the pair that decides: neighbours that the rival keeps apart, neighbours that it
+/// joins and PCL's tree misses by rounding (doc/contract.md), or the nearest two points that it joins although they are
+/// not connected. For these both are run once more with clusters of any size.
 Difference differenceOf(const Problem& problem, const Rival& reference, const Clusters& expected, const Rival& rival,
                         const Clusters& found);
 

@@ -76,6 +76,7 @@ nlohmann::ordered_json jsonOf(const CaseResult& result, const RivalResult& entry
     json["difference"] = {{"same_sets", entry.difference.same_sets},
                           {"clusters", entry.difference.clusters},
                           {"mislabelled", entry.difference.mislabelled},
+                          {"missed_by_pcl", entry.difference.missed_by_reference},
                           {"details", entry.difference.details}};
   if (!entry.times) return json;
   json["runs"] = entry.times->runs.size();

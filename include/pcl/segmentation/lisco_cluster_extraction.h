@@ -76,7 +76,8 @@ class LISCO_EXPORT LiscoCloudClusterer {
  *
  * extract () gives, byte for byte, the vector that EuclideanClusterExtraction with
  * pcl::search::KdTree<PointT> (false) gives: the same clusters, in the same order, with the same indices and
- * headers. What it skips, PCL cannot use: points with a NaN or infinite coordinate, and points that are
+ * headers. Only where the rounding of PCL's tree misses a pair of neighbours (planted cases, tolerances over 1e19) are
+ * PCL's clusters parts of these, the connected components of d2 < r2 in float: doc/contract.md. What it skips, PCL cannot use: points with a NaN or infinite coordinate, and points that are
  * exactly (0, 0, 0), which many drivers write for "no return". They are skipped whatever the cloud's is_dense
  * says, and appear in no cluster.
  *

@@ -122,7 +122,7 @@ class LiscoColumnStream {
  * \endcode
  *
  * endRotation () gives, byte for byte, the vector that LiscoClusterExtraction::extract (), and so EuclideanClusterExtraction
- * with pcl::search::KdTree<PointT> (false), gives for the organized cloud of these columns. In that cloud a point has the index
+ * with pcl::search::KdTree<PointT> (false), gives for the organized cloud of these columns (the exception is that of extract ()). In that cloud a point has the index
  * row * width + column; its width is the number of columns, its height the most rows of any column.
  *
  * The rows of a column are its lasers, always in the same order; a laser without a return is NaN or (0, 0, 0), columns
