@@ -27,7 +27,7 @@
 #include "compare/report.h"
 #include "lisco/column_clusterer.h"
 #include "lisco/endless_clusterer.h"
-#include "lisco/scan_survey.h"
+#include "lisco/sensor_hints.h"
 #include "lisco/window_clusterer.h"
 #include "options.h"
 #include "sensors/capture_file.h"
@@ -232,10 +232,14 @@ Clusters collect(Clusterer& clusterer, const Problem& problem, IndexOf&& index_o
   return clusters;
 }
 
-/// What is surveyed of a rotation, for the next one.
-lisco::Parameters surveyed(const Rotation& rotation) {
-  return lisco::surveyScan(rotation.columns.size(), rotation.lasers, {0, 0, 0},
-                           [&](std::size_t laser, std::size_t column) { return rotation.columns[column][laser]; });
+/// Parameters for the next rotation.
+lisco::Parameters parametersAfter(const Rotation& rotation) {
+  const auto cell_at = [&](std::size_t laser, std::size_t column) { return rotation.columns[column][laser]; };
+  lisco::Parameters parameters;
+  parameters.sensor =
+      lisco::estimateSensor(rotation.columns.size(), rotation.lasers, {0, 0, 0}, lisco::CellSource(cell_at));
+  parameters.expected_returns = rotation.columns.size() * rotation.lasers;
+  return parameters;
 }
 
 class ColumnsTable {
@@ -300,7 +304,7 @@ class ColumnsTable {
   /// Feeds a rotation, checks the clusters, and appends microseconds of each column and milliseconds of the end.
   static bool feed(const Rotation& rotation, lisco::ColumnClusterer& clusterer, std::vector<double>* columns,
                    std::vector<double>* ends, const Case& one) {
-    lisco::Parameters parameters = surveyed(rotation);
+    lisco::Parameters parameters = parametersAfter(rotation);
     parameters.tolerance = static_cast<float>(rotation.problem.tolerance);
     for (std::size_t i = 0; i < rotation.columns.size(); ++i) {
       const Timer::time_point begin = Timer::now();
@@ -324,13 +328,13 @@ class ColumnsTable {
   static bool feedEndlessly(const Case& one, unsigned runs, std::vector<double>& columns,
                             std::vector<double>& deliveries) {
     const Rotation& first = one.rotations.front();
-    const lisco::Parameters survey = surveyed(first);
+    const lisco::SensorHints sensor = parametersAfter(first).sensor;
     lisco::EndlessParameters parameters;
     parameters.tolerance = static_cast<float>(first.problem.tolerance);
     parameters.min_size = first.problem.min_size;
-    parameters.clockwise = survey.view.clockwise;
+    parameters.clockwise = sensor.clockwise;
     const double per_turn =
-        survey.view.steps_per_turn > 0 ? survey.view.steps_per_turn : static_cast<double>(first.columns.size());
+        sensor.steps_per_turn > 0 ? sensor.steps_per_turn : static_cast<double>(first.columns.size());
     parameters.start_azimuth = startAzimuthOf(first, parameters.clockwise, per_turn);
     std::vector<double> came;  // when the columns of each position did, microseconds
     double now = 0;            // the time when the column at hand is taken

@@ -27,8 +27,7 @@
 #include "compare/comparison.h"
 #include "compare/report.h"
 #include "lisco/column_clusterer.h"
-#include "lisco/parallel.h"
-#include "lisco/scan_survey.h"
+#include "lisco/sensor_hints.h"
 #include "lisco/simd.h"
 #include "options.h"
 #include "output_file.h"
@@ -42,8 +41,8 @@ using namespace lisco_apps;
 
 constexpr const char* kSignature = "input,rows,columns,returns,ground_z,tolerance,min_size,clusters,stage,level";
 
-enum Stage : std::size_t { kSurvey, kRead, kUpdate, kOutput, kFree, kStages };
-constexpr std::array<const char*, kStages> kStageNames{"survey", "read", "update", "output", "free"};
+enum Stage : std::size_t { kSensor, kRead, kUpdate, kOutput, kFree, kStages };
+constexpr std::array<const char*, kStages> kStageNames{"sensor", "read", "update", "output", "free"};
 
 /// pcl::LiscoClusterExtraction::extract () of a whole cloud by the engine's own calls, each of them timed.
 class StagedExtraction {
@@ -60,8 +59,10 @@ class StagedExtraction {
     };
 
     latest_ = Clock::now();
-    lisco::Parameters parameters = lisco::surveyScan(columns, lasers, sensor, cell_at);
-    finish(kSurvey);
+    lisco::Parameters parameters;
+    parameters.sensor = lisco::estimateSensor(columns, lasers, sensor, lisco::CellSource(cell_at));
+    parameters.expected_returns = columns * lasers;
+    finish(kSensor);
     parameters.tolerance = static_cast<float>(problem.tolerance);
     clusterer_.begin(parameters);
     clusterer_.addColumns(columns, lasers, cell_at);
@@ -140,7 +141,7 @@ bool parse(int argc, char** argv, Options& options) {
   po::options_description shown(
       "Usage: engine_stages SCAN-OR-FOLDER... [options]\n\n"
       "Where the time of pcl::LiscoClusterExtraction goes. One thread, best vector instructions, milliseconds:\n"
-      "  survey   looking at about a hundred cells: where the sensor stands, and its steps\n"
+      "  sensor   estimating the sensor's position and steps from about a hundred cells\n"
       "  read     making room, reading all columns, and linking what all lasers have passed\n"
       "  update   linking the rest: last columns, seam, near returns; numbering the subclusters\n"
       "  output   writing and sorting PCL's clusters\n"
@@ -428,7 +429,7 @@ int run(const Options& options) {
 
   std::vector<unsigned> threads{1};
   if (options.threads) threads.push_back(2);
-  const auto all = static_cast<unsigned>(lisco::allThreads());
+  const auto all = static_cast<unsigned>(std::thread::hardware_concurrency());
   if (options.threads && all > 2) threads.push_back(all);
   std::unique_ptr<Table> table;
   if (options.threads)

@@ -86,8 +86,8 @@ TEST(Allocations, NoneForARotationLikeTheLast) {
   lisco::Parameters parameters;
   parameters.tolerance = 0.5F;
   for (const int steps_per_turn : {0, static_cast<int>(kSteps)}) {
-    parameters.view.steps_per_turn = steps_per_turn;
-    parameters.view.elevation_step = 0.03F;
+    parameters.sensor.steps_per_turn = steps_per_turn;
+    parameters.sensor.elevation_step = 0.03F;
     std::size_t returns = 0;
     EXPECT_EQ(allocationsOf(4,
                             [&] {
@@ -112,8 +112,8 @@ TEST(Allocations, NoneByThreadsOnceTheirSharesHaveSettled) {
   lisco::ColumnClusterer clusterer;
   lisco::Parameters parameters;
   parameters.tolerance = 0.5F;
-  parameters.view.steps_per_turn = kSteps;
-  parameters.view.elevation_step = 0.03F;
+  parameters.sensor.steps_per_turn = kSteps;
+  parameters.sensor.elevation_step = 0.03F;
   for (const std::size_t threads : {2, 3}) {
     parameters.threads = threads;
     EXPECT_EQ(allocationsOf(8,
@@ -203,8 +203,8 @@ TEST(Allocations, WhenOneIsRefusedTheClustererStaysUsable) {
           parameters.tolerance = 0.5F;
           parameters.expected_returns = 10;
           parameters.threads = threads;
-          parameters.view.steps_per_turn = steps_per_turn;
-          parameters.view.elevation_step = 0.03F;
+          parameters.sensor.steps_per_turn = steps_per_turn;
+          parameters.sensor.elevation_step = 0.03F;
           clusterer->begin(parameters);
           if (threads > 1)
             clusterer->addColumns(columns.size(), kLasers,

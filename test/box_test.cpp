@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 // What a box decides about its points, it decides exactly, without a margin.
-#include "lisco/box.h"
+#include "core/neighbour.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "lisco/disjoint_sets.h"
+#include "core/disjoint_sets.h"
 
 #include <gtest/gtest.h>
 
@@ -16,17 +16,17 @@
 namespace lisco_test {
 namespace {
 
-TEST(DisjointSets, ANewSetIsItsOwnHead) {
+TEST(DisjointSets, ANewSetIsItsOwnRoot) {
   lisco::DisjointSets sets;
   sets.reset(2);
-  EXPECT_GE(sets.room(), 2U);
+  EXPECT_GE(sets.capacity(), 2U);
   sets.create(0);
   sets.create(1);
-  EXPECT_EQ(sets.head(0), 0U);
-  EXPECT_EQ(sets.head(1), 1U);
+  EXPECT_EQ(sets.find(0), 0U);
+  EXPECT_EQ(sets.find(1), 1U);
 }
 
-TEST(DisjointSets, TheSmallestElementIsTheHead) {
+TEST(DisjointSets, TheSmallestElementIsTheRoot) {
   lisco::DisjointSets sets;
   sets.reset(5);
   for (std::uint32_t element = 0; element < 5; ++element) sets.create(element);
@@ -35,8 +35,8 @@ TEST(DisjointSets, TheSmallestElementIsTheHead) {
   EXPECT_EQ(sets.merge(3, 3), 2U);
   EXPECT_EQ(sets.merge(1, 3), 1U);
   EXPECT_EQ(sets.merge(4, 2), 1U);
-  EXPECT_EQ(sets.head(0), 0U);
-  for (std::uint32_t element = 1; element < 5; ++element) EXPECT_EQ(sets.head(element), 1U);
+  EXPECT_EQ(sets.find(0), 0U);
+  for (std::uint32_t element = 1; element < 5; ++element) EXPECT_EQ(sets.find(element), 1U);
 }
 
 // Elements need not be created in the order of their numbers, nor all of them.
@@ -47,7 +47,7 @@ TEST(DisjointSets, ElementsInAnyOrder) {
   sets.create(500);
   sets.merge(999, 500);
   sets.create(7);
-  EXPECT_EQ(sets.head(999), 500U);
+  EXPECT_EQ(sets.find(999), 500U);
   EXPECT_EQ(sets.merge(7, 999), 7U);
 }
 
@@ -59,13 +59,13 @@ TEST(DisjointSets, GrowKeepsTheSets) {
   sets.merge(0, 1);
   for (std::uint32_t element = 2; element < 5000; ++element) {
     sets.grow(element + 1);
-    ASSERT_GE(sets.room(), element + 1U);
+    ASSERT_GE(sets.capacity(), element + 1U);
     sets.create(element);
-    ASSERT_EQ(sets.head(element), element);
+    ASSERT_EQ(sets.find(element), element);
     if (element % 3 == 0) sets.merge(element, element - 1);
   }
-  EXPECT_EQ(sets.head(1), 0U);
-  EXPECT_EQ(sets.head(300), 299U);
+  EXPECT_EQ(sets.find(1), 0U);
+  EXPECT_EQ(sets.find(300), 299U);
 }
 
 TEST(DisjointSets, ResetForgetsEverything) {
@@ -77,27 +77,27 @@ TEST(DisjointSets, ResetForgetsEverything) {
   sets.reset(2);
   sets.create(0);
   sets.create(1);
-  EXPECT_EQ(sets.head(1), 1U);
+  EXPECT_EQ(sets.find(1), 1U);
 }
 
 // Against a table of every element's set.
 TEST(DisjointSets, AsATableSaysAfterManyMerges) {
   Random random(1);
   lisco::DisjointSets sets;
-  std::vector<std::uint32_t> head_of(400);
-  std::iota(head_of.begin(), head_of.end(), 0U);
-  sets.reset(head_of.size());
-  for (const std::uint32_t element : head_of) sets.create(element);
+  std::vector<std::uint32_t> root_of(400);
+  std::iota(root_of.begin(), root_of.end(), 0U);
+  sets.reset(root_of.size());
+  for (const std::uint32_t element : root_of) sets.create(element);
   for (int step = 0; step < 1000; ++step) {
-    const auto a = static_cast<std::uint32_t>(random.below(head_of.size()));
-    const auto b = static_cast<std::uint32_t>(random.below(head_of.size()));
-    ASSERT_EQ(sets.head(a), head_of[a]);
-    ASSERT_EQ(sets.head(b), head_of[b]);
+    const auto a = static_cast<std::uint32_t>(random.below(root_of.size()));
+    const auto b = static_cast<std::uint32_t>(random.below(root_of.size()));
+    ASSERT_EQ(sets.find(a), root_of[a]);
+    ASSERT_EQ(sets.find(b), root_of[b]);
     if (random.chance(0.6)) continue;
-    const std::uint32_t head = std::min(head_of[a], head_of[b]);
-    const std::uint32_t other = std::max(head_of[a], head_of[b]);
+    const std::uint32_t head = std::min(root_of[a], root_of[b]);
+    const std::uint32_t other = std::max(root_of[a], root_of[b]);
     ASSERT_EQ(sets.merge(a, b), head);
-    std::replace(head_of.begin(), head_of.end(), other, head);
+    std::replace(root_of.begin(), root_of.end(), other, head);
   }
 }
 

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "lisco/simd.h"
-#include "lisco/view_strip.h"
 #include "verifier.h"
 
 namespace lisco_test {
@@ -32,14 +31,14 @@ const std::vector<Setting>& allSettings() {
     add("no view, blocks of 3", 3);
     add("no view, each column at once", 1);
     add("no view, no room", 64)->expected_returns = 0;
-    add("no view, sensor elsewhere", 16)->view.origin = {3.0F, -20.0F, 1.5F};
+    add("no view, sensor elsewhere", 16)->sensor.origin = {3.0F, -20.0F, 1.5F};
     add("no view, two threads", 64, 2);
     const auto strip = [&add](const std::string& name, int steps, float elevation_step, bool clockwise,
                               std::size_t block, std::size_t threads = 1) {
       lisco::Parameters* const parameters = add(name, block, threads);
-      parameters->view.steps_per_turn = steps;
-      parameters->view.elevation_step = elevation_step;
-      parameters->view.clockwise = clockwise;
+      parameters->sensor.steps_per_turn = steps;
+      parameters->sensor.elevation_step = elevation_step;
+      parameters->sensor.clockwise = clockwise;
       return parameters;
     };
     strip("strip of few places", 512, 0.5F, false, 64);
@@ -48,7 +47,7 @@ const std::vector<Setting>& allSettings() {
     strip("strip in blocks of 3", 512, 0.3F, true, 3);
     strip("strip of many places", 2000, 0.02F, true, 64);
     strip("strip of very many places", 16384, 0.01F, false, 5);
-    strip("strip, sensor elsewhere", 720, 0.1F, false, 64)->view.origin = {-3.0F, 2.0F, -1.0F};
+    strip("strip, sensor elsewhere", 720, 0.1F, false, 64)->sensor.origin = {-3.0F, 2.0F, -1.0F};
     strip("strip, three threads", 512, 0.3F, false, 64, 3);
     strip("strip, all threads", 512, 0.3F, false, 16, 0);
     return all;
@@ -77,26 +76,12 @@ const std::vector<std::string>& levels() {
   return all;
 }
 
-lisco::ViewHints hintsFor(int steps, float elevation_step, bool clockwise) {
-  lisco::ViewHints hints;
+lisco::SensorHints hintsFor(int steps, float elevation_step, bool clockwise) {
+  lisco::SensorHints hints;
   hints.steps_per_turn = steps;
   hints.elevation_step = elevation_step;
   hints.clockwise = clockwise;
   return hints;
-}
-
-double nearEndOf(const lisco::ViewHints& hints) {
-  static std::map<int, lisco::ViewStrip> strips;  // to prepare one with other steps takes long
-  lisco::ViewStrip& strip = strips[hints.steps_per_turn];
-  strip.prepare(lisco::Tolerance(1.0F), hints);
-  return static_cast<double>(strip.farRange().near_end);
-}
-
-float elevationStepFor(lisco::ViewHints hints, double near_end) {
-  // Beyond what the steps allow, it goes with the square root of the density.
-  hints.elevation_step = 1e-6F;
-  const double ratio = nearEndOf(hints) / near_end;
-  return static_cast<float>(1e-6 * ratio * ratio);
 }
 
 void feed(lisco::ColumnClusterer& clusterer, Random& random, const Scan& scan) {

@@ -29,13 +29,7 @@ const std::vector<Setting>& settingsForEachLevel();
 /// So many, or more for a longer hunt: LISCO_TEST_EFFORT=n in the environment tries n times as many.
 std::uint64_t timesEffort(std::uint64_t count);
 
-lisco::ViewHints hintsFor(int steps, float elevation_step, bool clockwise = false);
-
-/// From where on returns are far, in units of the tolerance; infinite if the hints are of no use.
-double nearEndOf(const lisco::ViewHints& hints);
-
-/// What makes returns far from so many tolerances on, or as near to that as the steps allow.
-float elevationStepFor(lisco::ViewHints hints, double near_end);
+lisco::SensorHints hintsFor(int steps, float elevation_step, bool clockwise = false);
 
 /// Adds the scan's columns in portions, with a look at the subclusters now and then.
 void feed(lisco::ColumnClusterer& clusterer, Random& random, const Scan& scan);

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "core/parallel.h"
 #include "engine.h"
-#include "lisco/parallel.h"
 #include "random.h"
 #include "scans.h"
 
@@ -51,9 +51,9 @@ lisco::Parameters parametersFor(Random& random, const Scan& scan, std::size_t th
   parameters.tolerance = static_cast<float>(random.magnitude(0.05, 0.7));
   parameters.threads = threads;
   if (random.chance(0.7)) {
-    parameters.view.steps_per_turn = static_cast<int>(std::clamp<std::size_t>(scan.columns, 512, 16384));
-    parameters.view.elevation_step = static_cast<float>(random.magnitude(0.005, 0.3));
-    parameters.view.clockwise = random.chance(0.5);
+    parameters.sensor.steps_per_turn = static_cast<int>(std::clamp<std::size_t>(scan.columns, 512, 16384));
+    parameters.sensor.elevation_step = static_cast<float>(random.magnitude(0.005, 0.3));
+    parameters.sensor.clockwise = random.chance(0.5);
   }
   return parameters;
 }
@@ -187,16 +187,16 @@ TEST(Threads, ManyLooseReturns) {
         }
     lisco::Parameters parameters;
     parameters.tolerance = 0.1F;
-    parameters.view.steps_per_turn = 1000;
-    parameters.view.elevation_step = 0.1F;
+    parameters.sensor.steps_per_turn = 1000;
+    parameters.sensor.elevation_step = 0.1F;
     const bool look_between = random.chance(0.7);
     std::vector<Clustering> clusterings;
     for (lisco::ColumnClusterer* clusterer : {&alone, &together}) {
       parameters.threads = clusterer == &alone ? 1 : random.oneOf(kThreads);
       if (clusterer == &alone)
-        parameters.view.steps_per_turn = 0;
+        parameters.sensor.steps_per_turn = 0;
       else
-        parameters.view.steps_per_turn = 1000;
+        parameters.sensor.steps_per_turn = 1000;
       clusterer->begin(parameters);
       clusterer->addColumns(scan.columns, kLasers,
                             [&](std::size_t laser, std::size_t column) { return scan.at(laser, column); });

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine.h"
+#include "far_hints.h"
 #include "oracle.h"
 #include "random.h"
 #include "scans.h"
@@ -25,7 +26,7 @@ constexpr double kPi = 3.14159265358979323846;
 /// A scan of pairs, its tolerance and what is known of its view.
 struct PairScan {
   Scan scan{0, 0};
-  lisco::ViewHints hints;
+  lisco::SensorHints hints;
   float tolerance = 1.0F;
 };
 
@@ -68,7 +69,7 @@ class Sensor {
   double slope(std::size_t laser) const { return slope_[laser]; }
 
   /// The place where the tolerance reaches over so many places, or nearly.
-  static Point at(const lisco::ViewHints& hints, double start, double turned, double ahead, double left, double up) {
+  static Point at(const lisco::SensorHints& hints, double start, double turned, double ahead, double left, double up) {
     const double azimuth = start + (hints.clockwise ? -turned : turned);
     const double aside = hints.clockwise ? -left : left;
     return {static_cast<float>(ahead * std::cos(azimuth) - aside * std::sin(azimuth)) + hints.origin[0],
@@ -90,7 +91,7 @@ class Sensor {
  private:
   Random& random_;
   Scan& scan_;
-  lisco::ViewHints& hints_;
+  lisco::SensorHints& hints_;
   int steps_ = 0;
   double start_ = 0;
   double jitter_ = 0;
@@ -104,7 +105,7 @@ PairScan randomPairs(Random& random) {
   const std::array<double, 6> scales{1.0, 1.0, 1.0, 0.3, 1e-15, 1e11};
   const double tolerance = random.oneOf(scales);
   pairs.tolerance = static_cast<float>(tolerance);
-  const double near_end = tolerance * std::min(1e4, nearEndOf(pairs.hints));
+  const double near_end = tolerance * std::min(1e4, minRangeOf(pairs.hints));
   if (random.chance(0.3))
     for (float& axis : pairs.hints.origin) axis = static_cast<float>(near_end * random.between(-2.0, 2.0));
   const auto almost = [&random] {
@@ -199,7 +200,7 @@ TEST_P(WindowScans, EqualTheOracle) {
     const SimdLevel level(random.oneOf(levels()));
     lisco::Parameters parameters;
     parameters.tolerance = pairs.tolerance;
-    parameters.view = pairs.hints;
+    parameters.sensor = pairs.hints;
     const std::array<std::size_t, 6> blocks{64, 64, 1, 3, 16, 1 + random.below(64)};
     parameters.block_columns = random.oneOf(blocks);
     parameters.threads = random.chance(0.4) ? random.below(5) : 1;

@@ -11,7 +11,7 @@
 
 #include <pcl/search/kdtree.h>
 
-#include "lisco/tolerance.h"
+#include "core/neighbour.h"
 #include "text.h"
 
 namespace lisco_apps {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "lisco/return.h"
-#include "lisco/tolerance.h"
+#include "core/neighbour.h"
 
 namespace lisco_reference {
 

@@ -37,8 +37,8 @@ const std::vector<std::uint32_t>& VoxelGrid::cluster(const std::vector<lisco::Re
   gatherCells(returns);
   linkCells();
   for (std::size_t c = 0; c + 1 < cells_.size(); ++c) {
-    const std::uint32_t head = components_.head(static_cast<std::uint32_t>(c));
-    for (std::size_t i = cells_[c].first; i < cells_[c + 1].first; ++i) component_of_[items_[i].number] = head;
+    const std::uint32_t root = components_.find(static_cast<std::uint32_t>(c));
+    for (std::size_t i = cells_[c].first; i < cells_[c + 1].first; ++i) component_of_[items_[i].number] = root;
   }
   return component_of_;
 }
@@ -141,10 +141,10 @@ void VoxelGrid::linkCells() {
 }
 
 void VoxelGrid::link(std::size_t a, std::size_t b) {
-  const std::uint32_t head_a = components_.head(static_cast<std::uint32_t>(a));
-  const std::uint32_t head_b = components_.head(static_cast<std::uint32_t>(b));
-  if (head_a != head_b && touch(cells_[a], cells_[a + 1].first, cells_[b], cells_[b + 1].first))
-    components_.merge(head_a, head_b);
+  const std::uint32_t root_a = components_.find(static_cast<std::uint32_t>(a));
+  const std::uint32_t root_b = components_.find(static_cast<std::uint32_t>(b));
+  if (root_a != root_b && touch(cells_[a], cells_[a + 1].first, cells_[b], cells_[b + 1].first))
+    components_.merge(root_a, root_b);
 }
 
 bool VoxelGrid::touch(const Cell& a, std::size_t a_end, const Cell& b, std::size_t b_end) const {

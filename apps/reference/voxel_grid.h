@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "lisco/box.h"
-#include "lisco/disjoint_sets.h"
+#include "core/neighbour.h"
+#include "core/disjoint_sets.h"
 #include "lisco/return.h"
-#include "lisco/tolerance.h"
+#include "core/neighbour.h"
 
 namespace lisco_reference {
 

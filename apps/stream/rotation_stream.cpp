@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "lisco/scan_survey.h"
+#include "lisco/sensor_hints.h"
 #include "view_of.h"
 
 namespace lisco_apps {
@@ -36,15 +36,16 @@ void RotationStream::finish() {
 /// What the next rotation is expected to look like, which decides the speed only.
 lisco::Parameters RotationStream::parameters() const {
   lisco::Parameters parameters;
-  parameters.view = viewOf(decoder_);
+  parameters.sensor = viewOf(decoder_);
   if (turn_.columns() > 0) {
     // The last rotation tells more: how far returns lie, and how the sensor really turns.
     const auto cell_at = [this](std::size_t laser, std::size_t column) {
       const Cell& cell = turn_.cells[column * turn_.lasers + laser];
       return cell.z >= options_.ground_z ? lisco::Return{cell.x, cell.y, cell.z, 0} : lisco::kNoReturn;
     };
-    const lisco::Parameters surveyed = lisco::surveyScan(turn_.columns(), turn_.lasers, {}, cell_at);
-    if (surveyed.view.steps_per_turn > 0) parameters.view = surveyed.view;
+    const lisco::SensorHints estimated =
+        lisco::estimateSensor(turn_.columns(), turn_.lasers, {}, lisco::CellSource(cell_at));
+    if (estimated.steps_per_turn > 0) parameters.sensor = estimated;
   }
   parameters.tolerance = options_.tolerance;
   parameters.lasers = decoder_.model().lasers.size();

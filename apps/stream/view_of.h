@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "lisco/view_hints.h"
+#include "lisco/sensor_hints.h"
 #include "sensors/decoder.h"
 
 namespace lisco_apps {
@@ -15,8 +15,8 @@ namespace lisco_apps {
 inline constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
 
 /// What is known of a rotation before it comes.
-inline lisco::ViewHints viewOf(const Decoder& decoder) {
-  lisco::ViewHints view;
+inline lisco::SensorHints viewOf(const Decoder& decoder) {
+  lisco::SensorHints view;
   view.clockwise = true;
   view.steps_per_turn = static_cast<int>(std::lround(std::min(decoder.columnsPerTurn(), 36000.)));
   const std::vector<Laser>& lasers = decoder.model().lasers;

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 
 namespace lisco {
 
@@ -20,12 +22,86 @@ struct Return {
 /// A cell without a return (the paper's d = 0).
 inline constexpr Return kNoReturn{0.0F, 0.0F, 0.0F, 0U};
 
-/// Whether a cell holds a return: all coordinates finite, and not exactly (0, 0, 0), which is the paper's d =
-/// 0 and many drivers' way of saying that nothing came back.
+/// Whether a cell holds a return: all coordinates finite, and not exactly (0, 0, 0), which is the paper's d = 0 and what
+/// many drivers write where nothing came back.
 inline bool isReturn(float x, float y, float z) {
   constexpr float kMax = std::numeric_limits<float>::max();
   const bool finite = std::fabs(x) <= kMax && std::fabs(y) <= kMax && std::fabs(z) <= kMax;
   return finite && !(x == 0.0F && y == 0.0F && z == 0.0F);
 }
+
+/// Cells of lasers and columns, read by compiled code through one function call per laser and block of columns. Refers to
+/// the callable that it is made of.
+class CellSource {
+ public:
+  /// Coordinates (metres) and source indices of consecutive cells of one laser.
+  struct Destination {
+    float* x;
+    float* y;
+    float* z;
+    std::uint32_t* source_index;
+  };
+
+  /// \param cell_at callable as Return (std::size_t laser, std::size_t column), by several threads at once where the
+  ///        reader says so
+  template <typename CellAt>
+  explicit CellSource(CellAt& cell_at)
+      : context_(std::addressof(cell_at)),
+        read_([](const void* context, std::size_t laser, std::size_t first, std::size_t count, const Destination& to) {
+          CellAt& at = *static_cast<CellAt*>(const_cast<void*>(context));
+          for (std::size_t i = 0; i < count; ++i) {
+            const Return cell = at(laser, first + i);
+            to.x[i] = cell.x;
+            to.y[i] = cell.y;
+            to.z[i] = cell.z;
+            to.source_index[i] = cell.source_index;
+          }
+        }) {}
+
+  /// Reads `count` cells of a laser from column `first` on.
+  void read(std::size_t laser, std::size_t first, std::size_t count, const Destination& to) const {
+    read_(context_, laser, first, count, to);
+  }
+
+  Return at(std::size_t laser, std::size_t column) const {
+    Return cell;
+    read(laser, column, 1, {&cell.x, &cell.y, &cell.z, &cell.source_index});
+    return cell;
+  }
+
+ private:
+  const void* context_;
+  void (*read_)(const void* context, std::size_t laser, std::size_t first, std::size_t count, const Destination& to);
+};
+
+/// Returns of one subcluster, one laser and consecutive columns.
+struct Run {
+  std::uint32_t first_cell;  ///< where its source indices begin
+  std::uint32_t count;       ///< number of returns
+  std::uint32_t subcluster;  ///< 0..subclusterCount ()-1
+};
+
+/// Receives runs laser by laser: one function call per laser and block of columns. Refers to the callable that it is made
+/// of.
+class RunVisitor {
+ public:
+  /// \param visit callable as void (const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster)
+  template <typename Visit>
+  explicit RunVisitor(Visit& visit)
+      : context_(std::addressof(visit)),
+        visit_([](const void* context, const Run* runs, std::size_t count, const std::uint32_t* source_indices) {
+          Visit& visit_run = *static_cast<Visit*>(const_cast<void*>(context));
+          for (const Run* run = runs; run != runs + count; ++run)
+            visit_run(source_indices + run->first_cell, std::size_t{run->count}, run->subcluster);
+        }) {}
+
+  void operator()(const Run* runs, std::size_t count, const std::uint32_t* source_indices) const {
+    visit_(context_, runs, count, source_indices);
+  }
+
+ private:
+  const void* context_;
+  void (*visit_)(const void* context, const Run* runs, std::size_t count, const std::uint32_t* source_indices);
+};
 
 }  // namespace lisco

@@ -4,23 +4,19 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <memory>
 
-#include "lisco/column_block.h"
-#include "lisco/disjoint_sets.h"
 #include "lisco/export.h"
-#include "lisco/pane.h"
 #include "lisco/return.h"
-#include "lisco/tolerance.h"
 
 namespace lisco {
 
-/// How sliding windows are to be clustered.
+/// How sliding windows are clustered.
 struct WindowParameters {
-  float tolerance = 0.0F;          ///< eps, metres; see Tolerance for 0, negative, NaN and infinite values
-  std::size_t window_columns = 0;  ///< W: how many columns a window holds; a multiple of the hop
-  std::size_t hop_columns = 0;     ///< H: after how many columns the next window ends
-  std::size_t lasers = 0;          ///< most cells of a column; 0: any number
+  float tolerance = 0.0F;          ///< eps, metres; see Parameters::tolerance for 0, negative, NaN and infinite values
+  std::size_t window_columns = 0;  ///< W: number of columns of a window; a multiple of the hop
+  std::size_t hop_columns = 0;     ///< H: a window ends after every H columns
+  std::size_t lasers = 0;          ///< largest number of cells of a column; 0: any number
 };
 
 /// The clusters of the last W columns, every H columns, without clustering from scratch: each equals what
@@ -32,16 +28,21 @@ struct WindowParameters {
 ///     if (clusterer.addColumn(returns, lasers)) clusterer.forEachRun(...);
 ///
 /// H columns are a *pane*, which is clustered once, by itself. A new pane is compared with the older ones of its window,
-/// and what was found is remembered as edges between the subclusters of panes. A window's subclusters then need only
-/// these edges, no geometry. An edge is of no use once its older pane has left the window; so older panes are asked
-/// last, and an edge between what newer ones join already is forgotten (a maximum spanning forest by age).
+/// and pairs found are kept as edges between the subclusters of panes. A window's subclusters then need only these edges,
+/// no geometry. An edge expires with its older pane, so edges to younger panes are preferred and those between
+/// subclusters that younger edges join are dropped (a maximum spanning forest by age).
 ///
 /// Nothing is allocated once the buffers have grown to the largest window seen. Not thread safe; any number of instances
 /// may work side by side.
 class LISCO_EXPORT WindowClusterer {
  public:
-  /// Starts a new stream and forgets the last one. After an exception that is not about the arguments, this is the only
-  /// call that is of use.
+  WindowClusterer();
+  ~WindowClusterer();
+  WindowClusterer(const WindowClusterer& other);
+  WindowClusterer& operator=(const WindowClusterer& other);
+
+  /// Starts a new stream and forgets the last one. After an exception other than std::logic_error and
+  /// std::invalid_argument, every other call either throws std::logic_error or does nothing.
   /// \throws std::invalid_argument if the window is no multiple, 1 or more, of the hop
   void begin(const WindowParameters& parameters);
 
@@ -51,66 +52,28 @@ class LISCO_EXPORT WindowClusterer {
   /// \throws std::logic_error before begin (), std::invalid_argument if there are more cells than lasers
   bool addColumn(const Return* cells, std::size_t lasers);
 
-  /// Number of columns of the last window.
-  std::size_t columnCount() const { return columns_; }
-  /// Number of returns of the last window.
-  std::size_t returnCount() const { return returns_; }
+  std::size_t columnCount() const;  ///< of the last window
+  std::size_t returnCount() const;  ///< of the last window
 
   /// Number of subclusters of the last window.
-  std::size_t subclusterCount() const { return sizes_.size(); }
+  std::size_t subclusterCount() const;
   /// Number of returns in a subcluster of the last window.
   /// \param subcluster 0..subclusterCount()-1
-  std::uint32_t sizeOf(std::uint32_t subcluster) const { return sizes_[subcluster]; }
+  std::uint32_t sizeOf(std::uint32_t subcluster) const;
 
   /// Calls visit(source_indices, count, subcluster) for all returns of the last window, in groups of the same subcluster,
-  /// of one laser and of columns side by side: laser by laser, and the returns of each in the order of their columns. To
-  /// be called before the next window ends.
+  /// of one laser and of consecutive columns: laser by laser, and the returns of each in the order of their columns.
+  /// Valid until the next window ends.
   template <typename Visit>
-  void forEachRun(Visit&& visit);
+  void forEachRun(Visit&& visit) {
+    visitRuns(RunVisitor(visit));
+  }
 
  private:
-  /// What two panes have in common: a subcluster of one and one of the other are one.
-  struct Edge {
-    std::uint32_t older_subcluster, newer_subcluster;
-    std::uint64_t newer_pane;  ///< its number
-  };
-  struct WindowPane : Pane {
-    std::uint32_t first_element = 0;   ///< of its subclusters in the window's forest
-    std::vector<std::uint32_t> sizes;  ///< of its subclusters
-    std::vector<Edge> edges;           ///< to newer panes
-  };
-  class PaneJoiner;
+  void visitRuns(const RunVisitor& visit);
 
-  WindowPane& pane(std::uint64_t number) { return panes_[number % panes_.size()]; }
-  void finishPane();
-  void numberSubclusters(WindowPane& pane);
-  void join(WindowPane& older);
-
-  WindowParameters parameters_;
-  bool begun_ = false;  ///< and left by no exception since
-  Tolerance tolerance_;
-  ColumnBlock block_;
-  std::vector<WindowPane> panes_;  ///< a ring
-  std::uint64_t newest_ = 0;       ///< number of the pane that is being filled
-  std::uint64_t oldest_ = 0;
-  std::size_t pane_columns_ = 0;  ///< read into it
-  DisjointSets window_;           ///< of the panes' subclusters
-  std::vector<std::uint32_t> subcluster_of_element_;
-  std::vector<std::uint32_t> sizes_;
-  std::size_t columns_ = 0;
-  std::size_t returns_ = 0;
-  LaserOrder order_;
+  class Window;
+  std::unique_ptr<Window> window_;
 };
-
-template <typename Visit>
-void WindowClusterer::forEachRun(Visit&& visit) {
-  if (!begun_ || columns_ == 0) return;
-  const auto runs_of = [this](std::size_t part) -> const Runs& { return pane(oldest_ + part).runs; };
-  order_.sort(newest_ - oldest_, runs_of);
-  order_.forEachRun(runs_of, [&](std::size_t part, const Runs& runs, const Runs::Run& run) {
-    visit(runs.source_index.data() + run.first_cell, static_cast<std::size_t>(run.count),
-          subcluster_of_element_[pane(oldest_ + part).first_element + run.subcluster]);
-  });
-}
 
 }  // namespace lisco

@@ -8,11 +8,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/column_block.h"
 #include "core/endless_sets.h"
+#include "core/neighbour.h"
+#include "core/partition.h"
 #include "core/stream_position.h"
-#include "lisco/column_block.h"
-#include "lisco/pane.h"
-#include "lisco/tolerance.h"
 
 namespace lisco {
 
@@ -54,10 +54,11 @@ class EndlessClusterer::Stream {
  private:
   using Element = EndlessSets::Element;
   using Set = EndlessSets::Set;
-  struct EndlessPane : Pane {
+  struct Pane : Partition {
     std::int64_t number = 0;
     bool in_use = false;
-    std::vector<DisjointSets::Merge> merges;
+    DisjointSets subclusters;                 ///< of its runs
+    std::vector<DisjointSets::Merge> merges;  ///< of these, to be repeated among clusters
   };
   /// A cluster that waits for its delivery; it may have grown or joined another one since.
   struct Waiting {
@@ -65,18 +66,18 @@ class EndlessClusterer::Stream {
     Element root;
     bool operator<(const Waiting& other) const { return reach_end > other.reach_end; }  // a heap with the first on top
   };
-  class PaneJoiner;
+  class PaneLinker;
   /// False until the call that it lives in has come to its end.
   class UsableAfter;
 
-  EndlessPane& pane(std::int64_t number) { return panes_[EndlessSets::slotOf(number)]; }
+  Pane& pane(std::int64_t number) { return panes_[EndlessSets::slotOf(number)]; }
   void startPane(std::int64_t number, Ticks now);
   void processBlock();
   void readBlock();
-  std::uint64_t findOutliers(const Row& row, MeasuredRow& measured, double* rho) const;
-  void createSets(const MeasuredRow& measured, const double* rho, std::uint64_t outliers);
+  ColumnBits findOutliers(const RingBlock& block, RingBlockInfo& info, double* rho) const;
+  void createSets(const RingBlockInfo& info, const double* rho, ColumnBits outliers);
   Ticks reachEnd(Ticks column, double rho, Ticks known) const;
-  void replayMerges(EndlessPane& pane);
+  void replayMerges(Pane& pane);
   void wait(Element root);
   void deliverUpTo(Ticks now);
   void deliver(Element root);
@@ -84,22 +85,22 @@ class EndlessClusterer::Stream {
   EndlessParameters parameters_;
   Callback callback_;
   Tolerance tolerance_;
-  FarRange range_;               ///< only its origin is used
+  SensorHints sensor_;           ///< its origin; without steps, all returns are near
   float cos_stagger_ = 0;        ///< rounded down so that no return is wrongly an outlier
   double turns_of_stagger_ = 0;  ///< of both returns of a pair, rounded up
   double near_rho_ = 0;          ///< up to here a neighbour may lie at any azimuth, metres
   bool usable_ = false;          ///< begun, and left by no exception since
 
   ColumnBlock block_;
-  std::array<double, Row::kColumns> positions_{};         ///< of the columns of the block
-  std::array<float, Row::kColumns> cosines_{}, sines_{};  ///< of their azimuths
-  double position_ = 0;                                   ///< of the latest column
-  double given_position_ = 0;                             ///< the last one that was given, or 0
+  std::array<double, RingBlock::kColumns> positions_{};         ///< of the columns of the block
+  std::array<float, RingBlock::kColumns> cosines_{}, sines_{};  ///< of their azimuths
+  double position_ = 0;                                         ///< of the latest column
+  double given_position_ = 0;                                   ///< the last one that was given, or 0
   double columns_since_given_ = 0;
   bool any_column_ = false;
 
   std::int64_t current_ = 0;  ///< number of the pane that is being filled
-  std::array<EndlessPane, static_cast<std::size_t>(EndlessSets::kSlots)> panes_;
+  std::array<Pane, static_cast<std::size_t>(EndlessSets::kSlots)> panes_;
   EndlessSets sets_;
   std::vector<Waiting> waiting_;  ///< a heap: all open clusters
   std::vector<Element> chain_;    ///< runs of the cluster that is being delivered
@@ -123,10 +124,10 @@ void EndlessClusterer::Stream::begin(const EndlessParameters& parameters, Callba
   if (!usable_) *this = Stream();
   UsableAfter call(*this);
   parameters_ = parameters;
-  parameters_.block_columns = std::clamp<std::size_t>(parameters.block_columns, 1, Row::kColumns);
+  parameters_.block_columns = std::clamp<std::size_t>(parameters.block_columns, 1, RingBlock::kColumns);
   callback_ = std::move(callback);
   tolerance_ = Tolerance(parameters.tolerance);
-  range_.origin = parameters.origin;
+  sensor_.origin = parameters.origin;
   constexpr double kCosineRounding = 1e-6;
   const double cosine = std::cos(parameters.stagger) - kCosineRounding;
   cos_stagger_ = static_cast<float>(cosine);
@@ -135,7 +136,7 @@ void EndlessClusterer::Stream::begin(const EndlessParameters& parameters, Callba
   near_rho_ = std::sqrt(static_cast<double>(tolerance_.squared())) * (1 + kNearMargin) + kUnderflow;
   block_.clear();
   any_column_ = false;
-  for (EndlessPane& pane : panes_) pane.in_use = false;
+  for (Pane& pane : panes_) pane.in_use = false;
   waiting_.clear();
   returns_ = outliers_ = 0;
   call.done();
@@ -173,7 +174,7 @@ void EndlessClusterer::Stream::addColumn(const Return* cells, std::size_t lasers
   positions_[block_.columns()] = position;
   cosines_[block_.columns()] = static_cast<float>(std::cos(azimuth));
   sines_[block_.columns()] = static_cast<float>(std::sin(azimuth));
-  block_.add(0, 1, lasers, [cells](std::size_t laser, std::size_t) { return cells[laser]; });
+  block_.add(cells, lasers);
   if (block_.columns() == parameters_.block_columns) processBlock();
   call.done();
 }
@@ -189,14 +190,14 @@ void EndlessClusterer::Stream::finish() {
   UsableAfter call(*this);
   processBlock();
   deliverUpTo(std::numeric_limits<Ticks>::max());
-  for (EndlessPane& pane : panes_) pane.in_use = false;
+  for (Pane& pane : panes_) pane.in_use = false;
   any_column_ = false;
   call.done();
 }
 
 std::size_t EndlessClusterer::Stream::returnsHeld() const {
   std::size_t count = 0;
-  for (const EndlessPane& pane : panes_) count += pane.in_use ? pane.runs.returns : 0;
+  for (const Pane& pane : panes_) count += pane.in_use ? pane.runs.returns : 0;
   return count;
 }
 
@@ -223,8 +224,8 @@ void EndlessClusterer::Stream::startPane(std::int64_t number, Ticks now) {
 
   current_ = number;
   sets_.startPane(number);
-  EndlessPane& pane = this->pane(number);
-  pane.clear(tolerance_);
+  Pane& pane = this->pane(number);
+  pane.prepare(tolerance_, sensor_, 0);
   pane.merges.clear();
   pane.number = number;
   pane.in_use = true;
@@ -233,9 +234,9 @@ void EndlessClusterer::Stream::startPane(std::int64_t number, Ticks now) {
 // --- Linking a block of columns -------------------------------------------------------------------------------------
 
 /// Joins clusters of the current pane with those of an older one.
-class EndlessClusterer::Stream::PaneJoiner : public Voxels::Joiner {
+class EndlessClusterer::Stream::PaneLinker : public PairVisitor {
  public:
-  PaneJoiner(Stream& stream, std::int64_t older) : stream_(stream), older_(older) {
+  PaneLinker(Stream& stream, std::int64_t older) : stream_(stream), older_(older) {
     // All returns of the older pane lie on one side of the ray at the azimuth of its end plus the stagger.
     const EndlessParameters& parameters = stream.parameters_;
     const auto panes = static_cast<double>(EndlessSets::slotOf(older + 1));  // two turns of panes
@@ -251,7 +252,7 @@ class EndlessClusterer::Stream::PaneJoiner : public Voxels::Joiner {
     double least = 0;
     double largest = 0;
     for (std::size_t axis = 0; axis < 2; ++axis) {
-      const double origin = static_cast<double>(stream_.range_.origin[axis]);
+      const double origin = static_cast<double>(stream_.sensor_.origin[axis]);
       const double lo = static_cast<double>(own.lo[axis]) - origin;
       const double hi = static_cast<double>(own.hi[axis]) - origin;
       least += std::min(across_[axis] * lo, across_[axis] * hi);
@@ -261,7 +262,7 @@ class EndlessClusterer::Stream::PaneJoiner : public Voxels::Joiner {
     return !(least > stream_.tolerance_.reach() * (1 + kRounding) + largest * kRounding);
   }
 
-  bool areApart(std::uint32_t own, std::uint32_t others) override {
+  bool inDifferentSets(std::uint32_t own, std::uint32_t others) override {
     const Element a = rootOfOwn(own);
     const Element b = rootOfOther(others);
     return a != b && !(stream_.sets_[b].delivered && stream_.sets_[a].continued);
@@ -288,27 +289,30 @@ class EndlessClusterer::Stream::PaneJoiner : public Voxels::Joiner {
 
 /// Reads the columns of the block and compares them with all that may be neighbours.
 void EndlessClusterer::Stream::readBlock() {
-  EndlessPane& pane = this->pane(current_);
+  Pane& pane = this->pane(current_);
   const std::size_t before = pane.runs.returns;
   const std::uint32_t first_run = sets_.runCount(current_);
   pane.subclusters.logTo(&pane.merges);
-  pane.read(block_, 0, tolerance_, range_, [&](const Row& row, MeasuredRow& measured) {
-    std::array<double, Row::kColumns> rho;
-    const std::uint64_t outliers = findOutliers(row, measured, rho.data());
-    measured.starts |= outliers | (outliers << 1 & measured.returns);
-    outliers_ += static_cast<std::uint64_t>(__builtin_popcountll(outliers));
-    createSets(measured, rho.data(), outliers);
-    return measured.returns & ~outliers;
-  });
+  for (std::size_t laser = 0; laser < block_.lasers(); ++laser)
+    pane.readRing(block_.ring(laser), laser, 0, block_.columns(), pane.subclusters,
+                  [&](const RingBlock& block, RingBlockInfo& info) {
+                    std::array<double, RingBlock::kColumns> rho;
+                    const ColumnBits outliers = findOutliers(block, info, rho.data());
+                    info.starts |= outliers | (outliers << 1 & info.returns);
+                    outliers_ += static_cast<std::uint64_t>(__builtin_popcountll(outliers));
+                    createSets(info, rho.data(), outliers);
+                    return info.returns & ~outliers;
+                  });
+  block_.clear();
   returns_ += pane.runs.returns - before;
-  pane.voxels.link(pane.subclusters);
+  pane.linkWithin(pane.subclusters);
   replayMerges(pane);
   for (std::int64_t older = current_ - kComparable + 1; older < current_; ++older)
     if (this->pane(older).in_use && this->pane(older).number == older) {
-      PaneJoiner joiner(*this, older);
-      pane.voxels.linkTo(this->pane(older).voxels, Voxels::Part::kNew, joiner);
+      PaneLinker linker(*this, older);
+      pane.linkPanes(this->pane(older), VoxelLinker::Part::kNew, linker);
     }
-  pane.voxels.settle();
+  pane.markLinked();
   pane.subclusters.logTo(nullptr);
   for (std::uint32_t run = first_run; run < sets_.runCount(current_); ++run) {
     const Element element = EndlessSets::elementOf(current_, run);
@@ -318,40 +322,38 @@ void EndlessClusterer::Stream::readBlock() {
 
 /// Finds the returns whose azimuth differs from that of their column by more than the stagger.
 /// \param rho receives the horizontal distances, metres: in double, since squares may overflow or underflow a float
-std::uint64_t EndlessClusterer::Stream::findOutliers(const Row& row, MeasuredRow& measured, double* rho) const {
-  std::uint64_t outliers = 0;
-  for (std::uint64_t left = measured.returns; left != 0; left &= left - 1) {
-    const auto i = static_cast<std::size_t>(__builtin_ctzll(left));
-    const float x = row.x[Row::kMargin + i];
-    const float y = row.y[Row::kMargin + i];
+ColumnBits EndlessClusterer::Stream::findOutliers(const RingBlock& block, RingBlockInfo& info, double* rho) const {
+  ColumnBits outliers = 0;
+  forEachBit(info.returns, [&](std::size_t i) {
+    const float x = block.x[RingBlock::kMargin + i];
+    const float y = block.y[RingBlock::kMargin + i];
     bool is_inlier;
-    if (measured.rho[i] > kMinFloatRho && measured.rho[i] < kMaxFloatRho) {
-      rho[i] = static_cast<double>(measured.rho[i]);
+    if (info.rho[i] > kMinFloatRho && info.rho[i] < kMaxFloatRho) {
+      rho[i] = static_cast<double>(info.rho[i]);
       is_inlier =
-          (x - range_.origin[0]) * cosines_[i] + (y - range_.origin[1]) * sines_[i] >= cos_stagger_ * measured.rho[i];
+          (x - sensor_.origin[0]) * cosines_[i] + (y - sensor_.origin[1]) * sines_[i] >= cos_stagger_ * info.rho[i];
     } else {
-      const double east = static_cast<double>(x) - static_cast<double>(range_.origin[0]);
-      const double north = static_cast<double>(y) - static_cast<double>(range_.origin[1]);
+      const double east = static_cast<double>(x) - static_cast<double>(sensor_.origin[0]);
+      const double north = static_cast<double>(y) - static_cast<double>(sensor_.origin[1]);
       rho[i] = std::hypot(east, north);
       is_inlier = east * static_cast<double>(cosines_[i]) + north * static_cast<double>(sines_[i]) >=
                   static_cast<double>(cos_stagger_) * rho[i];
     }
-    if (!is_inlier) outliers |= left & -left;
-  }
+    if (!is_inlier) outliers |= ColumnBits{1} << i;
+  });
   return outliers;
 }
 
 /// Makes a cluster of each run of a row.
-void EndlessClusterer::Stream::createSets(const MeasuredRow& measured, const double* rho, std::uint64_t outliers) {
+void EndlessClusterer::Stream::createSets(const RingBlockInfo& info, const double* rho, ColumnBits outliers) {
   Set* set = nullptr;
-  for (std::uint64_t left = measured.returns; left != 0; left &= left - 1) {
-    const auto i = static_cast<std::size_t>(__builtin_ctzll(left));
-    if ((measured.starts >> i & 1) != 0) set = &sets_.create(current_, positions_[i]);
+  forEachBit(info.returns, [&](std::size_t i) {
+    if ((info.starts >> i & 1) != 0) set = &sets_.create(current_, positions_[i]);
     const Ticks column = ticksOf(positions_[i]);
     ++set->size;
     set->last_position = positions_[i];
     set->reach_end = (outliers >> i & 1) != 0 ? column : reachEnd(column, rho[i], set->reach_end);
-  }
+  });
 }
 
 /// The position from which on no column can reach a return, nor what was reached up to `known`.
@@ -373,9 +375,9 @@ Ticks EndlessClusterer::Stream::reachEnd(Ticks column, double rho, Ticks known) 
 }
 
 /// Joins the clusters of the runs that the pane has joined.
-void EndlessClusterer::Stream::replayMerges(EndlessPane& pane) {
+void EndlessClusterer::Stream::replayMerges(Pane& pane) {
   for (const DisjointSets::Merge& joined : pane.merges)
-    sets_.merge(EndlessSets::elementOf(current_, joined.head), EndlessSets::elementOf(current_, joined.former_head));
+    sets_.merge(EndlessSets::elementOf(current_, joined.root), EndlessSets::elementOf(current_, joined.former_root));
   pane.merges.clear();
 }
 
@@ -413,7 +415,7 @@ void EndlessClusterer::Stream::deliver(Element root) {
   delivered_.runs_.clear();
   for (const Element element : chain_) {
     const Runs& runs = panes_[EndlessSets::slotOfElement(element)].runs;
-    const Runs::Run& run = runs.runs[EndlessSets::runOf(element)];
+    const Run& run = runs.runs[EndlessSets::runOf(element)];
     delivered_.runs_.push_back({runs.source_index.data() + run.first_cell, run.count});
   }
   delivered_.size_ = set.size;

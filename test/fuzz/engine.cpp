@@ -87,33 +87,33 @@ void clusterScan(Input& input, float unit) {
   lisco::Parameters parameters;
   parameters.expected_returns = 100;
   const unsigned steps = input.byte();
-  parameters.view.steps_per_turn = kSteps[steps % 8];
-  parameters.view.elevation_step = input.oneOf(kElevationSteps);
+  parameters.sensor.steps_per_turn = kSteps[steps % 8];
+  parameters.sensor.elevation_step = input.oneOf(kElevationSteps);
   const unsigned flags = input.byte();
-  parameters.view.clockwise = (flags & 1U) != 0;
+  parameters.sensor.clockwise = (flags & 1U) != 0;
   const bool turns_as_told = (flags & 2U) != 0 || (flags & 4U) != 0;
-  if ((flags & 24U) == 24) parameters.view.origin = {3.0F * unit, -20.0F * unit, 1.5F * unit};
-  if ((flags & 32U) != 0) parameters.view.roughness = 2 * unit;
+  if ((flags & 24U) == 24) parameters.sensor.origin = {3.0F * unit, -20.0F * unit, 1.5F * unit};
+  if ((flags & 32U) != 0) parameters.sensor.roughness = 2 * unit;
   parameters.threads = 1 + flags / 64 % 3;
   parameters.block_columns = input.oneOf(kBlocks);
   const std::size_t lasers = 1 + input.below(Shape::kMostLasers);
   // Few columns where each costs much.
   const std::size_t most_columns = parameters.block_columns < 16         ? 96
-                                   : parameters.view.steps_per_turn == 0 ? 160
+                                   : parameters.sensor.steps_per_turn == 0 ? 160
                                                                          : Shape::kMostColumns;
   parameters.tolerance = toleranceFrom(input, unit);
   useLevel(input);
   const unsigned portions = input.byte();
-  lisco::ViewHints shape_hints = parameters.view;
+  lisco::SensorHints shape_hints = parameters.sensor;
   if (!turns_as_told) shape_hints.clockwise = !shape_hints.clockwise;
-  shape.read(input, unit, lasers, most_columns, parameters.view.steps_per_turn == 600 ? 600 : 512, shape_hints);
+  shape.read(input, unit, lasers, most_columns, parameters.sensor.steps_per_turn == 600 ? 600 : 512, shape_hints);
   std::size_t columns = shape.columns();
   // So many cells that threads share them.
   if (parameters.threads > 1 && lasers == Shape::kMostLasers && parameters.block_columns == 64) columns = 1040;
 
-  const std::size_t which = steps / 8 % 4 == 3 ? steps / 32 % 4 : parameters.view.steps_per_turn == 0 ? 0 : 1;
+  const std::size_t which = steps / 8 % 4 == 3 ? steps / 32 % 4 : parameters.sensor.steps_per_turn == 0 ? 0 : 1;
   lisco::ColumnClusterer& clusterer =
-      parameters.view.steps_per_turn == 2048 ? clusterers[3] : clusterers[which < 3 ? which : 2];
+      parameters.sensor.steps_per_turn == 2048 ? clusterers[3] : clusterers[which < 3 ? which : 2];
   clusterer.begin(parameters);
   constexpr std::array<std::size_t, 8> kPortions{10000, 10000, 64, 65, 17, 7, 1, 200};
   const std::size_t portion = kPortions[portions % 8];

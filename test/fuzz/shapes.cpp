@@ -47,7 +47,7 @@ float toleranceFrom(Input& input, float unit) {
 }
 
 void Shape::read(Input& input, float unit, std::size_t lasers, std::size_t most_columns, std::size_t steps,
-                 const lisco::ViewHints& hints) {
+                 const lisco::SensorHints& hints) {
   constexpr std::array<int, 32> kColumnSteps{0,  0,  0,  0,  1,  1,  1,  1,  1,  2,  2,  3,   4,   5,   8,  13,
                                              14, 15, 16, 17, 31, 32, 33, 47, 48, 63, 64, 128, 255, 509, -1, -2};
   constexpr std::array<double, 12> kOffsets{0, 0, 0, 0, 0.25, -0.5, 0.74, -0.76, 1, -3, 17, 256};

@@ -12,7 +12,7 @@
 #include "endless_streams.h"
 #include "input.h"
 #include "lisco/return.h"
-#include "lisco/view_hints.h"
+#include "lisco/sensor_hints.h"
 #include "oracle.h"
 
 namespace lisco_test {
@@ -28,7 +28,7 @@ class Shape {
   /// \param most_columns up to kMostColumns
   /// \param steps of a turn
   void read(Input& input, float unit, std::size_t lasers, std::size_t most_columns, std::size_t steps,
-            const lisco::ViewHints& hints);
+            const lisco::SensorHints& hints);
 
   std::size_t lasers() const { return lasers_; }
   std::size_t columns() const { return columns_; }

@@ -132,12 +132,12 @@ class Rotations {
     lisco::Parameters parameters;
     parameters.tolerance = toleranceFrom(input, 0.5F);
     const unsigned flags = input.byte();
-    parameters.view.steps_per_turn = kSteps[flags % 8];
-    parameters.view.clockwise = (flags & 8U) != 0;
-    parameters.view.elevation_step = (flags & 16U) != 0 ? input.rawFloat() : 0.3F;
-    if ((flags & 32U) != 0) parameters.view.roughness = input.rawFloat();
-    if ((flags & 64U) != 0) parameters.view.far_distance = input.rawFloat();
-    if ((flags & 128U) != 0) parameters.view.origin = {input.rawFloat(), coordinateFrom(input), coordinateFrom(input)};
+    parameters.sensor.steps_per_turn = kSteps[flags % 8];
+    parameters.sensor.clockwise = (flags & 8U) != 0;
+    parameters.sensor.elevation_step = (flags & 16U) != 0 ? input.rawFloat() : 0.3F;
+    if ((flags & 32U) != 0) parameters.sensor.roughness = input.rawFloat();
+    if ((flags & 64U) != 0) parameters.sensor.far_distance = input.rawFloat();
+    if ((flags & 128U) != 0) parameters.sensor.origin = {input.rawFloat(), coordinateFrom(input), coordinateFrom(input)};
     parameters.block_columns = input.byte();
     const unsigned more = input.byte();
     parameters.threads = more % 4;

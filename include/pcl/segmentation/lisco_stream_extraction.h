@@ -21,7 +21,7 @@
 #include "lisco/column_clusterer.h"
 #include "lisco/endless_clusterer.h"
 #include "lisco/export.h"
-#include "lisco/view_hints.h"
+#include "lisco/sensor_hints.h"
 #include "lisco/window_clusterer.h"
 
 namespace pcl {
@@ -235,7 +235,7 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
   std::array<float, 3> sensor_origin_{};
   std::size_t block_columns_ = 64;
   lisco::ColumnClusterer clusterer_;
-  lisco::ViewHints hints_;  ///< from the last rotation that was ended
+  lisco::SensorHints hints_;  ///< from the last rotation that was ended
   bool has_ended_ = false;  ///< the rotation in the store
   bool is_up_to_date_ = false;
 };

@@ -9,7 +9,7 @@
 #include <pcl/segmentation/extract_clusters.h>  // comparePointClusters
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 
-#include "lisco/scan_survey.h"
+#include "lisco/sensor_hints.h"
 
 template <typename PointT>
 bool pcl::detail::LiscoCloudClusterer::cluster(const PointCloud<PointT>& cloud, const Indices* indices, float tolerance,
@@ -27,8 +27,10 @@ bool pcl::detail::LiscoCloudClusterer::cluster(const PointCloud<PointT>& cloud, 
     return (lisco::Return{points[point].x, points[point].y, points[point].z, static_cast<std::uint32_t>(point)});
   };
   const auto cluster = [&](const auto& cell_at) {
-    lisco::Parameters parameters = lisco::surveyScan(columns, lasers, sensor, cell_at);
+    lisco::Parameters parameters;
     parameters.tolerance = tolerance;
+    parameters.sensor = lisco::estimateSensor(columns, lasers, sensor, lisco::CellSource(cell_at));
+    parameters.expected_returns = columns * lasers;
     parameters.threads = threads;
     clusterer_.begin(parameters);
     clusterer_.addColumns(columns, lasers, cell_at);

@@ -11,7 +11,7 @@
 #include <pcl/segmentation/lisco_cluster_extraction.h>  // fitsIndexType
 #include <pcl/segmentation/lisco_stream_extraction.h>
 
-#include "lisco/scan_survey.h"
+#include "lisco/sensor_hints.h"
 
 // --- All streams ----------------------------------------------------------------------------------------------------
 
@@ -69,11 +69,12 @@ void pcl::detail::LiscoColumnStream<PointT>::appendClusters(Clusterer& clusterer
 template <typename PointT>
 void pcl::LiscoStreamExtraction<PointT>::learn() {
   const std::size_t columns = store_.size();
-  hints_ = lisco::surveyScan(columns, most_rows_, sensor_origin_, [this](std::size_t laser, std::size_t column) {
-             if (laser >= store_.rowsOf(column)) return (lisco::kNoReturn);
-             const PointT& point = store_.at(laser, column);
-             return (lisco::Return{point.x, point.y, point.z, 0});
-           }).view;
+  const auto cell_at = [this](std::size_t laser, std::size_t column) {
+    if (laser >= store_.rowsOf(column)) return (lisco::kNoReturn);
+    const PointT& point = store_.at(laser, column);
+    return (lisco::Return{point.x, point.y, point.z, 0});
+  };
+  hints_ = lisco::estimateSensor(columns, most_rows_, sensor_origin_, lisco::CellSource(cell_at));
 }
 
 template <typename PointT>
@@ -81,7 +82,7 @@ void pcl::LiscoStreamExtraction<PointT>::beginRotation() {
   if (has_ended_) learn();
   lisco::Parameters parameters;
   parameters.tolerance = static_cast<float>(cluster_tolerance_);
-  parameters.view = hints_;
+  parameters.sensor = hints_;
   parameters.block_columns = block_columns_;
   clusterer_.begin(parameters);
   store_.clear();

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "lisco/export.h"
+#include "lisco/return.h"
+
+namespace lisco {
+
+/// What may be known of the sensor before a rotation. Decides the speed, never the result.
+struct SensorHints {
+  std::array<float, 3> origin{0.0F, 0.0F, 0.0F};  ///< position of the sensor, metres
+  float elevation_step = 0.0087F;                 ///< typical angle between adjacent lasers, radians
+  int steps_per_turn = 0;                         ///< columns of a whole turn; 0: unknown, or no rotating sensor
+  bool clockwise = false;                         ///< sense of rotation, seen from above
+  float far_distance = 1e30F;                     ///< horizontal distance that few returns exceed, metres
+  /// Typical difference between the ranges of one laser's returns in adjacent columns, metres; infinite if most have none
+  /// in the next column.
+  float roughness = 0.0F;
+};
+
+/// Estimates the sensor of an organized cloud (lasers > 1) from about a hundred of its cells, or of a rotation before.
+/// Allocates nothing. Without a clear answer, steps_per_turn is 0.
+/// \param declared_origin position that the cloud states for its sensor, metres; used if the cloud does not lie around
+///        (0, 0, 0)
+LISCO_EXPORT SensorHints estimateSensor(std::size_t columns, std::size_t lasers,
+                                        const std::array<float, 3>& declared_origin, const CellSource& cells);
+
+}  // namespace lisco

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace lisco {
+
+/// Sets of a ring block's 64 columns, bit i for column i.
+using ColumnBits = std::uint64_t;
+
+/// Calls visit(i) for each bit that is set, ascending.
+template <typename Visit>
+void forEachBit(ColumnBits bits, Visit&& visit) {
+  for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(__builtin_ctzll(bits)));
+}
+
+/// Bits first, first + 1, ... ; none from 64 on.
+inline ColumnBits bitsFrom(std::size_t first) {
+  return first < 64 ? ~ColumnBits{0} << first : 0;
+}
+
+/// Calls visit(begin, end) for each chain of consecutive members; a chain ends before the next start as well.
+/// \param starts the members that begin a chain: the first of each group of consecutive ones, and more
+template <typename Visit>
+void forEachChain(ColumnBits starts, ColumnBits members, Visit&& visit) {
+  const ColumnBits ends = ~members | starts;
+  forEachBit(starts, [&](std::size_t begin) {
+    const ColumnBits after = ends & bitsFrom(begin + 1);
+    visit(begin, after != 0 ? static_cast<std::size_t>(__builtin_ctzll(after)) : std::size_t{64});
+  });
+}
+
+}  // namespace lisco

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "core/column_block.h"
+#include "core/partition.h"
+
+namespace lisco {
+
+/// The work that each column should do so that all do about the same, though parts of a scene differ several times in
+/// cost. Work comes in parts; the cost of a part is unknown until it is done and taken for the average of those before.
+class WorkBudget {
+ public:
+  /// Starts a rotation. The cost of parts in those before counts less and less.
+  void begin() {
+    parts_ = 1 + parts_ / 2;
+    work_ = kFirstGuess + work_ / 2;
+    per_column_ = credit_ = 0;
+  }
+  /// Sets the number of parts left from now on.
+  void plan(std::size_t parts) {
+    per_column_ = static_cast<double>(parts) * (work_ / parts_) / kSpreadOver;
+    credit_ = std::min(credit_, 0.0);
+  }
+  void addColumns(std::size_t columns) { credit_ += per_column_ * static_cast<double>(columns); }
+  /// Whether one more part should be done now.
+  bool isBehind() const { return credit_ > 0; }
+  /// Records the work of a part, in any unit.
+  void spend(std::size_t work) {
+    credit_ -= static_cast<double>(work);
+    work_ += static_cast<double>(work);
+    ++parts_;
+  }
+
+ private:
+  /// Columns over which the work that is left is spread: more make it more even and leave more for the end
+  /// (benchmarks/suite.sh latency).
+  static constexpr double kSpreadOver = 192;
+  static constexpr double kFirstGuess = 64;  ///< work of a part
+  double parts_ = 0;
+  double work_ = 0;  ///< of those parts
+  double per_column_ = 0;
+  double credit_ = 0;
+};
+
+/// Columns that come one by one, read into a partition: gathers them into blocks, reads a block while the next one is
+/// gathered, and links it in small parts while those after it come.
+class BlockScheduler {
+ public:
+  void begin(std::size_t block_columns);
+
+  /// Number of columns until the block is complete.
+  std::size_t columnsLeft() const { return block_columns_ - staged_.columns(); }
+  bool isEmpty() const { return staged_.columns() == 0; }
+
+  /// Takes at most columnsLeft () columns, and does the work that is due.
+  void add(const CellSource& cells, std::size_t first, std::size_t count, std::size_t lasers, Partition& partition,
+           DisjointSets& subclusters);
+
+  /// Reads the block that is pending.
+  void finishPending(Partition& partition, DisjointSets& subclusters) {
+    readPending(block_columns_, partition, subclusters);
+  }
+  /// Reads all columns taken.
+  void finish(Partition& partition, DisjointSets& subclusters);
+
+  /// Counts columns that were read without the scheduler.
+  void skipColumns(std::size_t columns) { columns_read_ += static_cast<std::uint32_t>(columns); }
+  /// Number of columns read or skipped.
+  std::uint32_t columnsRead() const { return columns_read_; }
+
+ private:
+  void readPending(std::size_t columns, Partition& partition, DisjointSets& subclusters);
+
+  std::size_t block_columns_ = RingBlock::kColumns;
+  ColumnBlock staged_;             ///< an incomplete block
+  ColumnBlock pending_;            ///< a complete block, read while the next one is staged
+  std::size_t pending_laser_ = 0;  ///< the next to be read
+  std::size_t columns_since_block_ = 0;
+  std::uint32_t columns_read_ = 0;
+  WorkBudget budget_;  ///< of linking
+};
+
+}  // namespace lisco

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "lisco/column_clusterer.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <vector>
+
+#include "core/block_scheduler.h"
+#include "core/disjoint_sets.h"
+#include "core/load_balancer.h"
+#include "core/parallel.h"
+#include "core/partition.h"
+#include "core/runs.h"
+
+namespace lisco {
+
+/// One rotation: Algorithm 3 of the paper, with a partition of the columns for each thread. All partitions share one
+/// forest of subclusters.
+class ColumnClusterer::Rotation {
+ public:
+  /// subclusters = {}
+  void begin(const Parameters& parameters);
+  /// Event "reception of step s", for several steps.
+  void receive(std::size_t columns, std::size_t lasers, const CellSource& cells);
+  /// Event "all steps processed".
+  void update();
+
+  bool isUsable() const { return usable_; }
+  std::size_t subclusterCount() const { return sizes_.size(); }
+  std::uint32_t sizeOf(std::uint32_t subcluster) const { return sizes_[subcluster]; }
+  std::size_t returnCount() const;
+  std::uint32_t subclusterAt(std::size_t laser, std::size_t column);
+  void visitRuns(const RunVisitor& visit);
+
+ private:
+  void divide(std::size_t columns, std::size_t lasers, const CellSource& cells);
+  void receiveInParallel(std::size_t lasers, const CellSource& cells);
+  void receiveInSequence(std::size_t columns, std::size_t lasers, const CellSource& cells);
+  void linkPartitions();
+  void numberSubclusters();
+  void sortRuns();
+  void usePartitions(std::size_t count);
+  /// The partition that columns are added to one by one.
+  Partition& lastPartition() { return partitions_[partition_count_ - 1]; }
+  const Runs& runsOf(std::size_t partition) const { return partitions_[partition].runs; }
+
+  /// A thread's columns: [first, end).
+  struct Part {
+    std::size_t first, end;
+  };
+
+  Parameters parameters_;
+  Tolerance tolerance_;
+  bool usable_ = false;       ///< begun, and left by no exception since
+  DisjointSets subclusters_;  ///< of runs
+  std::vector<Partition> partitions_;
+  std::size_t partition_count_ = 0;  ///< in use; 0: not divided yet
+  std::vector<Part> parts_;
+  bool are_linked_ = false;  ///< all partitions but the last, with each other
+  LoadBalancer balancer_;
+  BlockScheduler scheduler_;
+  std::vector<std::uint32_t> sizes_;  ///< of subclusters
+  LaserOrder order_;
+  bool is_sorted_ = false;  ///< order_, since the last update ()
+};
+
+// --- Algorithm 3 ----------------------------------------------------------------------------------------------------
+
+void ColumnClusterer::Rotation::begin(const Parameters& parameters) {
+  if (!usable_) *this = Rotation();
+  usable_ = false;
+  parameters_ = parameters;
+  parameters_.block_columns = std::clamp<std::size_t>(parameters.block_columns, 1, RingBlock::kColumns);
+  parameters_.threads = std::min(parameters.threads == 0 ? allThreads() : parameters.threads, Parameters::kMaxThreads);
+  tolerance_ = Tolerance(parameters.tolerance);
+  partition_count_ = 0;
+  are_linked_ = is_sorted_ = false;
+  subclusters_.reset(0);
+  sizes_.clear();
+  scheduler_.begin(parameters_.block_columns);
+  // Single-threaded path, prepared here so that the first column costs no more than the rest.
+  if (parameters_.threads == 1) usePartitions(1);
+  usable_ = true;
+}
+
+void ColumnClusterer::Rotation::receive(std::size_t columns, std::size_t lasers, const CellSource& cells) {
+  if (parameters_.lasers != 0 && lasers > parameters_.lasers)
+    throw std::invalid_argument("lisco::ColumnClusterer: a column of more cells than lasers were declared");
+  if (columns == 0) return;
+  usable_ = false;
+  const bool is_first = partition_count_ == 0;
+  if (is_first) divide(columns, lasers, cells);
+  if (is_first && partition_count_ > 1)
+    receiveInParallel(lasers, cells);
+  else
+    receiveInSequence(columns, lasers, cells);
+  usable_ = true;
+}
+
+void ColumnClusterer::Rotation::update() {
+  usable_ = is_sorted_ = false;
+  if (partition_count_ > 0) {
+    scheduler_.finish(lastPartition(), subclusters_);
+    linkPartitions();
+  }
+  numberSubclusters();
+  usable_ = true;
+}
+
+// --- Its steps ------------------------------------------------------------------------------------------------------
+
+/// Divides the columns among threads, if there are enough of them.
+void ColumnClusterer::Rotation::divide(std::size_t columns, std::size_t lasers, const CellSource& cells) {
+  constexpr std::size_t kWorthThreads = 8192;  // cells
+  std::size_t count = 1;
+  if (parameters_.threads > 1 && columns * lasers >= kWorthThreads) {
+    balancer_.prepare(columns, lasers, cells);
+    count = balancer_.partCount(parameters_.threads);
+  }
+  parts_.assign(count, {0, columns});
+  if (count > 1)
+    balancer_.divide(count, [&](std::size_t part, std::size_t first, std::size_t end) { parts_[part] = {first, end}; });
+  usePartitions(count);
+  for (std::size_t i = 0; i < count; ++i)
+    partitions_[i].first_element = static_cast<std::uint32_t>(lasers * parts_[i].first);  // at most a run for each cell
+}
+
+/// Each thread reads its part of the columns, and links it as far as it goes without the others.
+void ColumnClusterer::Rotation::receiveInParallel(std::size_t lasers, const CellSource& cells) {
+  constexpr std::size_t kWorkOfCell = 2;  // in the segment linker's units
+  constexpr std::size_t kBlock = RingBlock::kColumns;
+  const std::size_t columns = parts_.back().end;
+  subclusters_.reset(lasers * columns + kBlock);
+  inParallel(partition_count_, [&](std::size_t i) {
+    Partition& partition = partitions_[i];
+    partition.prepare(tolerance_, parameters_.sensor, parts_[i].end - parts_[i].first);
+    partition.addLasers(lasers);
+    for (std::size_t first = parts_[i].first; first < parts_[i].end; first += kBlock) {
+      const std::size_t count = std::min(parts_[i].end - first, kBlock);
+      const std::size_t before = partition.workDone();
+      partition.readColumns(cells, first, count, lasers, static_cast<std::uint32_t>(first), subclusters_);
+      balancer_.record(first, count, count * lasers * kWorkOfCell + partition.workDone() - before);
+    }
+  });
+  scheduler_.skipColumns(columns);
+}
+
+/// Whole blocks of columns are read at once; single columns are gathered into blocks, whose work is spread.
+void ColumnClusterer::Rotation::receiveInSequence(std::size_t columns, std::size_t lasers, const CellSource& cells) {
+  constexpr std::size_t kWorthReadingAtOnce = 16;  // columns
+  Partition& partition = lastPartition();
+  partition.addLasers(lasers);
+  for (std::size_t first = 0; first < columns;) {
+    const std::size_t count = std::min(columns - first, scheduler_.columnsLeft());
+    const bool is_block = count == parameters_.block_columns || count >= kWorthReadingAtOnce;
+    if (scheduler_.isEmpty() && is_block) {
+      scheduler_.finishPending(partition, subclusters_);
+      partition.readColumns(cells, first, count, lasers, scheduler_.columnsRead(), subclusters_);
+      scheduler_.skipColumns(count);
+    } else {
+      scheduler_.add(cells, first, count, lasers, partition, subclusters_);
+    }
+    first += count;
+  }
+}
+
+/// Links each partition within, by a thread of its own, then with those before it and across the seam.
+void ColumnClusterer::Rotation::linkPartitions() {
+  // Partitions share subclusters once they are linked with each other; only the last one receives more columns then.
+  const std::size_t first = are_linked_ ? partition_count_ - 1 : 0;
+  are_linked_ = true;
+  inParallel(partition_count_ - first, [&](std::size_t i) { partitions_[first + i].linkWithin(subclusters_); });
+  bool is_any_full = false;
+  for (std::size_t i = first; i < partition_count_; ++i) {
+    for (std::size_t earlier = 0; earlier < i; ++earlier) partitions_[i].linkTo(partitions_[earlier], subclusters_);
+    partitions_[i].linkSeam(subclusters_);
+    is_any_full = is_any_full || partitions_[i].isImageFull();
+  }
+  for (std::size_t i = 0; i < partition_count_; ++i) {
+    partitions_[i].markLinked();
+    if (is_any_full) partitions_[i].stopPlacing();
+  }
+}
+
+/// Numbers the subclusters by their first runs. A root is the first element of its set.
+void ColumnClusterer::Rotation::numberSubclusters() {
+  sizes_.clear();
+  for (std::size_t i = 0; i < partition_count_; ++i) {
+    Partition& partition = partitions_[i];
+    std::uint32_t element = partition.first_element;
+    for (Run& run : partition.runs.runs) {
+      const std::uint32_t root = subclusters_.find(element);
+      if (root == element) {
+        run.subcluster = static_cast<std::uint32_t>(sizes_.size());
+        sizes_.push_back(0);
+      } else {
+        std::size_t owner = i;
+        while (root < partitions_[owner].first_element) --owner;
+        run.subcluster = runsOf(owner).runs[root - partitions_[owner].first_element].subcluster;
+      }
+      sizes_[run.subcluster] += run.count;
+      ++element;
+    }
+  }
+}
+
+void ColumnClusterer::Rotation::usePartitions(std::size_t count) {
+  if (partitions_.size() < count) partitions_.resize(count);
+  partition_count_ = count;
+  for (std::size_t i = 0; i < count; ++i)
+    partitions_[i].runs.source_index.reserve(parameters_.expected_returns / count);
+  if (count > 1) return;  // prepared by their threads
+  partitions_.front().first_element = 0;
+  partitions_.front().prepare(tolerance_, parameters_.sensor, ~std::size_t{0});
+}
+
+// --- Results --------------------------------------------------------------------------------------------------------
+
+std::size_t ColumnClusterer::Rotation::returnCount() const {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < partition_count_; ++i) count += runsOf(i).returns;
+  return count;
+}
+
+void ColumnClusterer::Rotation::sortRuns() {
+  if (is_sorted_) return;
+  order_.sort(partition_count_, [this](std::size_t i) -> const Runs& { return runsOf(i); });
+  is_sorted_ = true;
+}
+
+void ColumnClusterer::Rotation::visitRuns(const RunVisitor& visit) {
+  sortRuns();
+  order_.forEachBlock([this](std::size_t i) -> const Runs& { return runsOf(i); },
+                      [&](std::size_t, const Runs& runs, const Runs::Block& block) {
+                        visit(runs.runs.data() + block.first_run, block.count, runs.source_index.data());
+                      });
+}
+
+std::uint32_t ColumnClusterer::Rotation::subclusterAt(std::size_t laser, std::size_t column) {
+  sortRuns();
+  const auto begin = order_.entries().begin() + static_cast<std::ptrdiff_t>(order_.beginOf(laser));
+  const auto end = order_.entries().begin() + static_cast<std::ptrdiff_t>(order_.endOf(laser));
+  const auto blockOf = [this](const LaserOrder::Entry& entry) -> const Runs::Block& {
+    return runsOf(entry.partition).blocks[entry.block];
+  };
+  const auto after = std::upper_bound(begin, end, column, [&](std::size_t wanted, const LaserOrder::Entry& entry) {
+    return wanted < blockOf(entry).first_column;
+  });
+  if (after == begin) return kNone;
+  const LaserOrder::Entry& entry = *(after - 1);
+  const std::size_t offset = column - blockOf(entry).first_column;
+  if (offset >= RingBlock::kColumns) return kNone;
+  const Runs& runs = runsOf(entry.partition);
+  const std::uint32_t run = runs.runAt(blockOf(entry), static_cast<std::uint32_t>(offset));
+  return run == Runs::kNone ? kNone : runs.runs[run].subcluster;
+}
+
+// --- The public face ------------------------------------------------------------------------------------------------
+
+ColumnClusterer::ColumnClusterer() : rotation_(std::make_unique<Rotation>()) {}
+ColumnClusterer::~ColumnClusterer() = default;
+ColumnClusterer::ColumnClusterer(const ColumnClusterer& other)
+    : rotation_(std::make_unique<Rotation>(*other.rotation_)) {}
+ColumnClusterer& ColumnClusterer::operator=(const ColumnClusterer& other) {
+  *rotation_ = *other.rotation_;
+  return *this;
+}
+
+void ColumnClusterer::begin(const Parameters& parameters) {
+  rotation_->begin(parameters);
+}
+
+void ColumnClusterer::receive(std::size_t columns, std::size_t lasers, const CellSource& cells) {
+  if (!rotation_->isUsable())
+    throw std::logic_error("lisco::ColumnClusterer: a column before begin (), or after an exception");
+  rotation_->receive(columns, lasers, cells);
+}
+
+void ColumnClusterer::update() {
+  if (rotation_->isUsable()) rotation_->update();
+}
+
+std::size_t ColumnClusterer::subclusterCount() const {
+  return rotation_->subclusterCount();
+}
+std::uint32_t ColumnClusterer::sizeOf(std::uint32_t subcluster) const {
+  return rotation_->sizeOf(subcluster);
+}
+std::size_t ColumnClusterer::returnCount() const {
+  return rotation_->returnCount();
+}
+
+std::uint32_t ColumnClusterer::subclusterAt(std::size_t laser, std::size_t column) {
+  return rotation_->isUsable() ? rotation_->subclusterAt(laser, column) : kNone;
+}
+
+void ColumnClusterer::visitRuns(const RunVisitor& visit) {
+  if (rotation_->isUsable()) rotation_->visitRuns(visit);
+}
+
+}  // namespace lisco

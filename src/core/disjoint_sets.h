@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace lisco {
+
+/// The paper's subclusters and their heads (section IV: createH, getH, merge) as a disjoint-set forest (Galler and
+/// Fischer 1964). The root of a set is its element with the lowest number, whatever the order of the merges; paths are
+/// halved on the way (van Leeuwen and van der Weide 1977).
+class DisjointSets {
+ public:
+  /// Forgets all elements and reserves capacity for some. Keeps its memory.
+  void reset(std::size_t capacity) {
+    if (parents_.size() < capacity) parents_.resize(capacity);
+  }
+  std::size_t capacity() const { return parents_.size(); }
+
+  /// createH: a new set of one element below capacity ().
+  void create(std::uint32_t element) { parents_[element] = element; }
+  /// Grows beyond the capacity of reset ().
+  void grow(std::size_t capacity) {
+    if (parents_.size() < capacity) parents_.resize(capacity + capacity / 2);
+  }
+
+  /// getH: the root of the set that holds the element.
+  std::uint32_t find(std::uint32_t element) {
+    std::uint32_t parent = parents_[element];
+    while (parent != element) {
+      const std::uint32_t grandparent = parents_[parent];
+      parents_[element] = grandparent;
+      element = parent;
+      parent = grandparent;
+    }
+    return element;
+  }
+
+  /// merge: joins the sets of two elements. \return the root of the joined set
+  std::uint32_t merge(std::uint32_t a, std::uint32_t b) {
+    a = find(a);
+    b = find(b);
+    if (a == b) return a;
+    if (a > b) std::swap(a, b);
+    parents_[b] = a;
+    if (log_ != nullptr) log_->push_back({a, b});
+    return a;
+  }
+
+  /// Two roots, of which the first is now the root of both sets.
+  struct Merge {
+    std::uint32_t root, former_root;
+  };
+  /// Makes merge () append what it joins to a log; nullptr: none.
+  void logTo(std::vector<Merge>* log) { log_ = log; }
+
+ private:
+  std::vector<std::uint32_t> parents_;
+  std::vector<Merge>* log_ = nullptr;
+};
+
+}  // namespace lisco

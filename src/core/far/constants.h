@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace lisco {
+
+// Constants of the range image and the segment linker. "measured" means by benchmarks/suite.sh stages.
+
+inline constexpr double kPi = 3.14159265358979323846;
+
+// --- Bounds: exactness depends on them (doc/algorithm.md) -----------------------------------------------------------
+
+/// Bins between that of a return and that of its azimuth, at most; half a bin is the least possible.
+inline constexpr float kDeviation = 0.75F;
+/// Radians, added to elevation bounds; more than 100 times their rounding.
+inline constexpr float kAngleRounding = 1e-4F;
+/// Metres; beyond, returns go to the voxels: their squares may overflow.
+inline constexpr float kMaxRange = 1e15F;
+
+// --- Limits of the range image --------------------------------------------------------------------------------------
+
+/// Bins that a mask reaches over; nearer returns are not far.
+inline constexpr int kMaxReach = 48;
+/// All bins are less than two turns, so that there is one seam.
+inline constexpr std::size_t kMinSteps = 512;
+inline constexpr std::size_t kMaxSteps = 16384;
+/// Unplaced returns, and one more for each kPlacedPerUnplaced placed ones, from which on no more are placed: each is
+/// searched in all bins of its mask at every update. Fewer: images are given up too early; more: searches dominate.
+inline constexpr std::size_t kFewUnplaced = 4096;
+inline constexpr std::size_t kPlacedPerUnplaced = 32;
+/// Added to a laser's elevation bounds when they grow, relative: they settle after a few columns.
+inline constexpr float kWidening = 1e-3F;
+
+// --- What is far: measured ------------------------------------------------------------------------------------------
+
+/// Returns are far where about this many of a flat surface's lie in a square of the tolerance's size. More: masks grow;
+/// fewer: voxels hold few returns each. Rough: the returns of a laser do not form runs, so segments are short.
+inline constexpr double kReturnsPerSquare = 400.0;
+inline constexpr double kRoughReturnsPerSquare = 60.0;
+inline constexpr double kMinRangeInTolerances = 2.5;
+
+// --- Cost of linking: measured --------------------------------------------------------------------------------------
+
+/// Of looking for a segment's neighbours in a sector, in comparisons of registers of bins.
+inline constexpr std::uint32_t kSegmentCost = 2;
+/// Units of work where it is done in parts, about 5 ns each.
+inline constexpr std::uint32_t kWorkOfSameBins = 12;  ///< of a laser
+inline constexpr std::uint32_t kWorkOfCutting = 20;   ///< of a laser
+inline constexpr std::uint32_t kWorkOfBins = 2;       ///< of comparing a register of bins
+inline constexpr std::uint32_t kWorkOfSegment = 10;
+inline constexpr std::uint32_t kWorkOfPair = 6;  ///< of segments that are compared
+/// Segments that exceed their laser's nearest one by this factor get a mask of their own.
+inline constexpr float kWorthNarrowing = 1.25F;
+/// Returns of a segment from which on its bounds are computed in vectors.
+inline constexpr std::uint32_t kWorthVectors = 6;
+
+/// An upper bound on asin (ratio), 0 <= ratio < 1.
+inline float asinBound(float ratio) {
+  return (ratio + 0.5708F * ratio * ratio * ratio) * 1.00001F;
+}
+
+}  // namespace lisco

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+// Puts returns into azimuth bins: several at once where they continue a laser's sequence of bins.
+#include <algorithm>
+#include <cmath>
+
+#include "core/far/constants.h"
+#include "core/far/range_image.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/far/placement.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
+
+#include "core/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lisco {
+namespace HWY_NAMESPACE {
+
+/// Lanes whose azimuth is that of their bin, within kDeviation.
+/// \param bin of the first lane
+HWY_INLINE FloatMask areInBins(const RangeImage& image, std::int64_t bin, FloatVector u, FloatVector v,
+                               FloatVector rho) {
+  const auto index = static_cast<std::size_t>(bin + static_cast<std::int64_t>(RangeImage::kMargin));
+  const FloatVector cosine = hn::LoadU(kFloats, &image.cosine[index]);
+  const FloatVector sine = hn::LoadU(kFloats, &image.sine[index]);
+  const FloatVector across = hn::Abs(hn::Sub(hn::Mul(u, sine), hn::Mul(v, cosine)));
+  const FloatVector along = hn::Add(hn::Mul(u, cosine), hn::Mul(v, sine));
+  const FloatVector deviation = hn::Set(kFloats, std::sin(kDeviation * image.radians_per_bin));
+  return hn::And(hn::Le(across, hn::Mul(rho, deviation)), hn::Gt(along, hn::Zero(kFloats)));
+}
+
+/// Places one ring block.
+class Placement {
+ public:
+  Placement(RangeImage& image, const RingBlock& block, const RingBlockInfo& info, std::size_t laser,
+            std::uint32_t first_column)
+      : image_(image),
+        block_(block),
+        info_(info),
+        laser_number_(laser),
+        laser_(image.lasers[laser]),
+        first_column_(first_column) {}
+
+  /// \return the returns that are unplaced
+  ColumnBits run() {
+    turnToStart();
+    // The bin of the block's first cell if the laser's returns go on as before.
+    first_bin_ =
+        laser_.next_bin == RangeImage::kNoBin
+            ? static_cast<std::int64_t>(RangeImage::kMargin) + first_column_ - std::int64_t{image_.first_column}
+            : laser_.next_bin + first_column_ - std::int64_t{laser_.next_column};
+    ColumnBits left = info_.far;
+    while (left != 0) {
+      const ColumnBits together = left & before(firstOffBin(left));
+      if (together != 0) placeTogether(together);
+      left &= ~together;
+      if (left == 0) break;
+      const auto i = static_cast<std::size_t>(__builtin_ctzll(left));
+      if (!realignTo(i)) left &= left - 1;
+    }
+    return unplaced_;
+  }
+
+ private:
+  /// All bits before the one that is set; all of them if none is.
+  static ColumnBits before(ColumnBits bit) { return bit != 0 ? bit - 1 : ~ColumnBits{0}; }
+
+  std::int64_t bins() const { return static_cast<std::int64_t>(image_.bins); }
+
+  /// Horizontal vectors as seen from bin 0.
+  void turnToStart() {
+    const FloatVector cosine = hn::Set(kFloats, image_.start_cosine);
+    const FloatVector sine = hn::Set(kFloats, image_.start_sine);
+    const FloatVector direction = hn::Set(kFloats, image_.direction);
+    for (std::size_t k = 0; k < RingBlock::kColumns; k += kLanes) {
+      if (bitsAt(info_.far, k) == 0) continue;
+      const FloatVector east =
+          hn::Sub(hn::LoadU(kFloats, block_.x + RingBlock::kMargin + k), hn::Set(kFloats, image_.range.origin[0]));
+      const FloatVector north =
+          hn::Sub(hn::LoadU(kFloats, block_.y + RingBlock::kMargin + k), hn::Set(kFloats, image_.range.origin[1]));
+      hn::StoreU(hn::Add(hn::Mul(east, cosine), hn::Mul(north, sine)), kFloats, u_ + k);
+      hn::StoreU(hn::Mul(direction, hn::Sub(hn::Mul(north, cosine), hn::Mul(east, sine))), kFloats, v_ + k);
+    }
+  }
+
+  /// The bit of the first of some returns whose azimuth is not that of its expected bin; 0 if there is none.
+  ColumnBits firstOffBin(ColumnBits left) const {
+    // Bins in the margins hold no returns, but have a cosine and a sine.
+    constexpr auto kInMargin = static_cast<std::int64_t>(RangeImage::kMargin) - 1;
+    if (first_bin_ < -kInMargin || first_bin_ > bins() - 1 + kInMargin) return left & -left;
+    const auto next = static_cast<std::size_t>(__builtin_ctzll(left));
+    for (std::size_t k = next / kLanes * kLanes; k < RingBlock::kColumns; k += kLanes) {
+      const std::uint64_t here = bitsAt(left, k);
+      if (here == 0) continue;
+      const FloatMask in_bins = areInBins(image_, first_bin_ + static_cast<std::int64_t>(k), hn::LoadU(kFloats, u_ + k),
+                                          hn::LoadU(kFloats, v_ + k), hn::LoadU(kFloats, info_.rho + k));
+      const ColumnBits off = (here & ~std::uint64_t{bitsOf(in_bins)}) << k;
+      if (off != 0) return off & -off;
+    }
+    return 0;
+  }
+
+  /// Stores returns in their expected bins, where these are within the image and free.
+  void placeTogether(ColumnBits together) {
+    ColumnBits inside = together;
+    if (first_bin_ < 0) inside &= bitsFrom(static_cast<std::size_t>(-first_bin_));
+    if (first_bin_ + static_cast<std::int64_t>(RingBlock::kColumns) > bins())
+      inside &= ~bitsFrom(static_cast<std::size_t>(std::max<std::int64_t>(0, bins() - first_bin_)));
+    const ColumnBits placed = inside != 0 ? store(inside) : 0;
+    unplaced_ |= together & ~placed;
+    if (inside != 0) {
+      const auto last = static_cast<std::int64_t>(63 - __builtin_clzll(inside));
+      image_.placed += static_cast<std::size_t>(__builtin_popcountll(placed));
+      image_.begin = std::min(image_.begin, static_cast<std::size_t>(first_bin_ + __builtin_ctzll(inside)));
+      image_.end = std::max(image_.end, static_cast<std::size_t>(first_bin_ + last + 1));
+      noteLate(placed);
+    }
+    const auto last = static_cast<std::int64_t>(63 - __builtin_clzll(together));
+    laser_.next_bin = first_bin_ + last + 1;
+    laser_.next_column = first_column_ + static_cast<std::uint32_t>(last) + 1;
+  }
+
+  /// \return the returns that are stored; the bins of the others are taken
+  ColumnBits store(ColumnBits which) {
+    ColumnBits stored = 0;
+    const std::size_t cell = image_.at(laser_number_, first_bin_);
+    for (std::size_t k = 0; k < RingBlock::kColumns; k += kLanes) {
+      const std::uint64_t here = bitsAt(which, k);
+      if (here == 0) continue;
+      const std::uint64_t free = bitsOf(hn::IsNaN(hn::LoadU(kFloats, &image_.x[cell + k]))) & here;
+      stored |= free << k;
+      const FloatMask mask = lanesOf(free);
+      hn::BlendedStore(hn::LoadU(kFloats, block_.x + RingBlock::kMargin + k), mask, kFloats, &image_.x[cell + k]);
+      hn::BlendedStore(hn::LoadU(kFloats, block_.y + RingBlock::kMargin + k), mask, kFloats, &image_.y[cell + k]);
+      hn::BlendedStore(hn::LoadU(kFloats, block_.z + RingBlock::kMargin + k), mask, kFloats, &image_.z[cell + k]);
+      hn::BlendedStore(hn::LoadU(kWords, info_.run + k), hn::RebindMask(kWords, mask), kWords,
+                       &image_.element[cell + k]);
+    }
+    return stored;
+  }
+
+  /// Notes the returns placed in bins that are linked already.
+  void noteLate(ColumnBits placed) {
+    const std::int64_t in_linked = static_cast<std::int64_t>(image_.scheduled) - first_bin_;
+    if (in_linked <= 0) return;
+    forEachBit(placed & ~bitsFrom(static_cast<std::size_t>(in_linked)), [&](std::size_t i) {
+      image_.late.push_back({block_.x[RingBlock::kMargin + i], block_.y[RingBlock::kMargin + i],
+                             block_.z[RingBlock::kMargin + i], info_.run[i]});
+    });
+  }
+
+  /// Sets the expected bins from the azimuth of a return. \return false if that return is outside the image: unplaced
+  bool realignTo(std::size_t i) {
+    const std::int64_t measured = image_.binOf({u_[i], v_[i]});
+    const std::int64_t expected = first_bin_ + static_cast<std::int64_t>(i);
+    const auto turn = static_cast<std::int64_t>(image_.steps);
+    const std::int64_t bin =
+        measured + turn * std::llround(static_cast<double>(expected - measured) / static_cast<double>(turn));
+    first_bin_ = bin - static_cast<std::int64_t>(i);
+    if (bin >= 0 && bin < bins()) return true;
+    unplaced_ |= ColumnBits{1} << i;
+    laser_.next_bin = bin + 1;
+    laser_.next_column = first_column_ + static_cast<std::uint32_t>(i) + 1;
+    return false;
+  }
+
+  RangeImage& image_;
+  const RingBlock& block_;
+  const RingBlockInfo& info_;
+  std::size_t laser_number_;
+  RangeImage::Laser& laser_;
+  std::uint32_t first_column_;
+  std::int64_t first_bin_ = 0;
+  ColumnBits unplaced_ = 0;
+  float u_[RingBlock::kColumns];
+  float v_[RingBlock::kColumns];
+};
+
+ColumnBits placeBlock(RangeImage& image, const RingBlock& block, const RingBlockInfo& info, std::size_t laser,
+                      std::uint32_t first_column) {
+  return Placement(image, block, info, laser, first_column).run();
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lisco
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lisco {
+
+HWY_EXPORT(placeBlock);
+
+ColumnBits placeReturns(RangeImage& image, const RingBlock& block, const RingBlockInfo& info, std::size_t laser,
+                        std::uint32_t first_column) {
+  return HWY_DYNAMIC_DISPATCH(placeBlock)(image, block, info, laser, first_column);
+}
+
+}  // namespace lisco
+#endif

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "core/far/range_image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/far/constants.h"
+
+namespace lisco {
+
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// The horizontal distance from which on returns are far, metres; infinite if the hints are of no help.
+double minRangeFor(const Tolerance& tolerance, const SensorHints& hints, double steps) {
+  const double step = 2 * kPi / steps;
+  const bool is_rough = static_cast<double>(hints.roughness) > tolerance.reach();
+  const double spacing = std::sqrt((is_rough ? kRoughReturnsPerSquare : kReturnsPerSquare) * step *
+                                   static_cast<double>(hints.elevation_step));
+  // As near as that, unless a mask would reach over more than kMaxReach bins.
+  const double min_range =
+      tolerance.reach() * std::max({1 / spacing, kMinRangeInTolerances, 1 / std::sin((kMaxReach - 3) * step)});
+  const bool is_origin_valid = std::all_of(hints.origin.begin(), hints.origin.end(),
+                                           [](float coordinate) { return std::fabs(coordinate) <= kMaxRange; });
+  const bool is_useful = is_origin_valid && steps >= kMinSteps && steps <= kMaxSteps && tolerance.joinsAnything() &&
+                         spacing > 1e-5 && spacing < 10 && min_range > 1e-18 && min_range < 1e15 &&
+                         min_range < static_cast<double>(hints.far_distance);
+  return is_useful ? min_range : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hints, std::size_t columns) {
+  tolerance = new_tolerance;
+  started = false;
+  linked = scheduled = 0;
+  unplaced.clear();
+  late.clear();
+  placed = end = 0;
+  full = elevations_changed = false;
+
+  const auto new_steps = static_cast<std::size_t>(std::clamp(hints.steps_per_turn, 1, 1 << 30));
+  const double min_range = minRangeFor(tolerance, hints, static_cast<double>(new_steps));
+  range = FarRange();
+  range.origin = hints.origin;
+  range.min_range = range.interior_min = kInfinity;
+  if (std::isinf(min_range)) {
+    steps = 0;
+    return;
+  }
+  reach = static_cast<float>(tolerance.reach()) * 1.00001F;
+  range.min_range = static_cast<float>(min_range);
+  range.max_range = kMaxRange;
+  // Distances are rounded, and so are these sums.
+  range.interior_min = range.min_range * 1.00001F + reach;
+  range.interior_max = kMaxRange * 0.9999F - reach;
+  direction = hints.clockwise ? -1.0F : 1.0F;
+  const std::size_t new_bins = (std::min(columns, new_steps) + kSector - 1) / kSector * kSector + 4 * kMargin;
+  if (new_steps != steps || new_bins > bins) {
+    const double step = 2 * kPi / static_cast<double>(new_steps);
+    steps = new_steps;
+    radians_per_bin = static_cast<float>(step);
+    bins = new_bins;
+    stride = kMargin + bins + 2 * kMargin;
+    cosine.resize(stride + kMargin);
+    sine.resize(stride + kMargin);
+    for (std::size_t i = 0; i < cosine.size(); ++i) {
+      const double angle = step * (static_cast<double>(i) - static_cast<double>(kMargin));
+      cosine[i] = static_cast<float>(std::cos(angle));
+      sine[i] = static_cast<float>(std::sin(angle));
+    }
+    lasers.clear();
+  }
+  begin = bins;
+  const std::size_t lasers_before = lasers.size();
+  lasers.clear();
+  addLasers(lasers_before);
+}
+
+void RangeImage::addLasers(std::size_t count) {
+  const std::size_t before = lasers.size();
+  if (count <= before) return;
+  lasers.resize(count, {kInfinity, -kInfinity, kNoBin, 0});
+  elevations_changed = true;
+  const std::size_t size = count * stride + kMargin;
+  if (x.size() < size) {
+    for (auto* coordinate : {&x, &y, &z}) coordinate->resize(size);
+    element.resize(size);
+  }
+  std::fill(x.begin() + static_cast<std::ptrdiff_t>(before * stride),
+            x.begin() + static_cast<std::ptrdiff_t>(count * stride + kMargin), kNan);
+}
+
+void RangeImage::start(float x_start, float y_start, std::uint32_t column) {
+  started = true;
+  const double azimuth =
+      std::atan2(static_cast<double>(y_start - range.origin[1]), static_cast<double>(x_start - range.origin[0]));
+  start_azimuth = azimuth - static_cast<double>(direction * static_cast<float>(kMargin) * radians_per_bin);
+  start_cosine = static_cast<float>(std::cos(start_azimuth));
+  start_sine = static_cast<float>(std::sin(start_azimuth));
+  first_column = column;
+}
+
+ColumnBits RangeImage::place(const RingBlock& block, const RingBlockInfo& info, std::size_t laser,
+                             std::uint32_t column) {
+  Laser& bounds = lasers[laser];
+  if (info.lowest < bounds.lowest || info.highest > bounds.highest) {
+    bounds.lowest = std::min(bounds.lowest, info.lowest - kWidening * (1 + std::fabs(info.lowest)));
+    bounds.highest = std::max(bounds.highest, info.highest + kWidening * (1 + std::fabs(info.highest)));
+    elevations_changed = true;
+  }
+  const ColumnBits not_placed = full ? info.far : placeReturns(*this, block, info, laser, column);
+  forEachBit(not_placed, [&](std::size_t i) {
+    unplaced.push_back({block.x[RingBlock::kMargin + i], block.y[RingBlock::kMargin + i],
+                        block.z[RingBlock::kMargin + i], info.run[i]});
+  });
+  if (unplaced.size() > kFewUnplaced + placed / kPlacedPerUnplaced) full = true;
+  return not_placed;
+}
+
+void RangeImage::stopPlacing() {
+  full = true;
+  unplaced.clear();
+}
+
+void RangeImage::updateElevations() {
+  if (!elevations_changed) return;
+  elevations_changed = false;
+  const std::size_t count = lasers.size();
+  // Envelopes are kept for lasers from top to bottom; if they come the other way round, elevations are turned over.
+  float first = 0;
+  float last = 0;
+  bool any_seen = false;
+  for (const Laser& laser : lasers) {
+    if (laser.lowest > laser.highest) continue;
+    if (!any_seen) first = laser.lowest + laser.highest;
+    any_seen = true;
+    last = laser.lowest + laser.highest;
+  }
+  upside_down = last > first;
+  constexpr float kBeyond = 10.0F;  // radians, more than any elevation
+  for (auto* angles : {&lowest, &highest, &lowest_above, &highest_below}) angles->resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool seen = lasers[i].lowest <= lasers[i].highest;
+    const float low = seen ? std::atan(lasers[i].lowest) : kBeyond;
+    const float high = seen ? std::atan(lasers[i].highest) : -kBeyond;
+    lowest[i] = seen && upside_down ? -high : low;
+    highest[i] = seen && upside_down ? -low : high;
+  }
+  float bound = kBeyond;
+  for (std::size_t i = 0; i < count; ++i) lowest_above[i] = bound = std::min(bound, lowest[i]);
+  bound = -kBeyond;
+  for (std::size_t i = count; i-- > 0;) highest_below[i] = bound = std::max(bound, highest[i]);
+}
+
+void RangeImage::shareElevations(const RangeImage& other) {
+  addLasers(other.lasers.size());
+  for (std::size_t laser = 0; laser < other.lasers.size(); ++laser) {
+    if (other.lasers[laser].lowest >= lasers[laser].lowest && other.lasers[laser].highest <= lasers[laser].highest)
+      continue;
+    lasers[laser].lowest = std::min(lasers[laser].lowest, other.lasers[laser].lowest);
+    lasers[laser].highest = std::max(lasers[laser].highest, other.lasers[laser].highest);
+    elevations_changed = true;
+  }
+}
+
+std::size_t RangeImage::passed() const {
+  std::int64_t front = std::numeric_limits<std::int64_t>::max();
+  std::uint32_t column = 0;
+  for (const Laser& laser : lasers)
+    if (laser.next_bin != kNoBin) column = std::max(column, laser.next_column);
+  for (const Laser& laser : lasers)
+    if (laser.next_bin != kNoBin) front = std::min(front, laser.next_bin + (column - laser.next_column));
+  front = std::clamp<std::int64_t>(front, 0, static_cast<std::int64_t>(bins));
+  return static_cast<std::size_t>(front) / kSector * kSector;
+}
+
+}  // namespace lisco

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/bits.h"
+#include "core/neighbour.h"
+#include "core/ring_block.h"
+#include "lisco/sensor_hints.h"
+
+namespace lisco {
+
+/// The far returns of consecutive columns by laser and *azimuth bin*: a row per laser, a bin per step of the turn.
+///
+/// A return lies in the bin of its measured azimuth, whatever its column; a bin holds one return of a laser. A far return
+/// whose bin is taken, or beyond the memory of the image, is *unplaced*: its neighbours are searched one by one, and it must
+/// be kept in the voxels as well. Lasers are reached by the elevations measured on them.
+///
+/// Bins are counted from the first return's, less kMargin, in the sense of rotation; they do not wrap.
+struct RangeImage {
+  static constexpr std::size_t kSector = 16;  ///< bins of a sector, the unit of linking
+  static constexpr std::size_t kMargin = 64;  ///< bins before the first return's, for staggered lasers
+  static constexpr std::int64_t kNoBin = std::numeric_limits<std::int64_t>::min();
+
+  struct Laser {
+    float lowest, highest;  ///< slopes (z / rho) measured so far
+    std::int64_t next_bin;  ///< after its last return; kNoBin: none yet
+    std::uint32_t next_column;
+  };
+  struct Unplaced {
+    float x, y, z;
+    std::uint32_t element;
+  };
+  /// Components of a horizontal vector towards bin 0 and across, in the sense of rotation, metres.
+  struct FromStart {
+    float u, v;
+  };
+  /// A range of lasers.
+  struct Lasers {
+    std::size_t begin, end;
+  };
+
+  /// Starts a rotation, or a part of one. Keeps its memory.
+  /// \param columns number of columns expected; more than a turn needs no more memory
+  void prepare(const Tolerance& new_tolerance, const SensorHints& hints, std::size_t columns);
+
+  /// False if the hints give no steps, or the tolerance joins nothing: then no return is far.
+  bool inUse() const { return steps > 0; }
+
+  /// Grows to a number of lasers.
+  void addLasers(std::size_t count);
+
+  /// Sets bin 0 a margin before the azimuth of the first far return.
+  void start(float x_start, float y_start, std::uint32_t column);
+
+  /// Puts the far returns of a ring block into their bins.
+  /// \param column the block's first, counted from the first of the rotation
+  /// \return those that are unplaced
+  ColumnBits place(const RingBlock& block, const RingBlockInfo& info, std::size_t laser, std::uint32_t column);
+
+  /// Whether too many returns are unplaced for one image of a rotation: their search costs more than bins save. Then
+  /// stopPlacing () all images of the rotation, after each has been linked to each: all far returns that follow are
+  /// unplaced, and those before are not searched again.
+  bool isFull() const { return full; }
+  void stopPlacing();
+
+  /// Brings the elevations of the lasers up to date.
+  void updateElevations();
+  /// Takes over the elevations that another image of the same sensor has measured.
+  void shareElevations(const RangeImage& other);
+
+  /// The end of the sectors that all lasers have passed, bins.
+  std::size_t passed() const;
+
+  /// Index of a bin of a laser in x, y, z and element.
+  /// \param bin at least -kMargin
+  std::size_t at(std::size_t laser, std::int64_t bin) const {
+    return laser * stride + static_cast<std::size_t>(bin + static_cast<std::int64_t>(kMargin));
+  }
+  bool isFree(std::size_t cell) const { return x[cell] != x[cell]; }
+  Lasers allLasers() const { return {0, lasers.size()}; }
+  Lasers someLasers(std::size_t part, std::size_t parts) const {
+    return {lasers.size() * part / parts, lasers.size() * (part + 1) / parts};
+  }
+  FromStart fromStart(float east, float north) const {
+    return {east * start_cosine + north * start_sine, direction * (north * start_cosine - east * start_sine)};
+  }
+  /// The bin of an azimuth, within half a turn of bin 0.
+  std::int64_t binOf(const FromStart& seen) const {
+    return std::llround(static_cast<double>(std::atan2(seen.v, seen.u)) / static_cast<double>(radians_per_bin));
+  }
+
+  Tolerance tolerance;
+  FarRange range;
+  float reach = 0;
+  std::size_t steps = 0;   ///< bins of a turn
+  std::size_t bins = 0;    ///< of a laser: some more than columns, or than a turn
+  std::size_t stride = 0;  ///< floats per laser
+  float direction = 1;     ///< +1: azimuth grows with time
+  float radians_per_bin = 0;
+  double start_azimuth = 0;  ///< of bin 0
+  float start_cosine = 1;
+  float start_sine = 0;
+  std::uint32_t first_column = 0;
+  bool started = false;
+  std::vector<float> cosine, sine;  ///< of each bin, from -kMargin on
+  std::vector<float> x, y, z;       ///< x is NaN where a bin is free
+  std::vector<std::uint32_t> element;
+
+  std::vector<Laser> lasers;
+  bool upside_down = false;                        ///< the lasers come from bottom to top
+  std::vector<float> lowest, highest;              ///< radians, of each laser; turned over if upside down
+  std::vector<float> lowest_above, highest_below;  ///< of all lasers up to, and from, each one
+  bool elevations_changed = false;
+
+  std::size_t linked = 0;     ///< bins before this are linked
+  std::size_t scheduled = 0;  ///< bins before this are linked or will be next
+  std::vector<Unplaced> unplaced;
+  std::vector<Unplaced> late;  ///< placed in bins before `scheduled`
+  std::size_t placed = 0;
+  std::size_t begin = 0, end = 0;  ///< the first bin taken, and after the last
+  bool full = false;
+};
+
+/// The vectorized part of RangeImage::place.
+ColumnBits placeReturns(RangeImage& image, const RingBlock& block, const RingBlockInfo& info, std::size_t laser,
+                        std::uint32_t first_column);
+
+}  // namespace lisco

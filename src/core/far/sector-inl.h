@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+//
+// Cuts sectors of a range image into segments; compiled once for each SIMD level.
+#if defined(LISCO_SECTOR_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef LISCO_SECTOR_INL_H
+#undef LISCO_SECTOR_INL_H
+#else
+#define LISCO_SECTOR_INL_H
+#endif
+
+#include <algorithm>
+
+#include "core/disjoint_sets.h"
+#include "core/far/constants.h"
+#include "core/far/range_image.h"
+#include "core/far/segment_linker.h"
+#include "core/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lisco {
+namespace HWY_NAMESPACE {
+
+/// Cuts the runs in a sector's bins of some lasers into segments. Ranges of lasers follow each other, from the first on.
+/// \param later added to bin numbers
+void cutSector(const RangeImage& image, std::int64_t number, float later, const RangeImage::Lasers& lasers,
+               Sector& sector, DisjointSets& subclusters) {
+  const std::int64_t first_bin = number * static_cast<std::int64_t>(RangeImage::kSector);
+  const float offset = static_cast<float>(first_bin) + later;
+  sector.number = Sector::kNone;
+  std::uint32_t count = lasers.begin == 0 ? 0 : sector.begin[lasers.begin];
+  for (std::size_t laser = lasers.begin; laser < lasers.end; ++laser) {
+    sector.begin[laser] = count;
+    if (image.lasers[laser].next_bin == RangeImage::kNoBin) continue;
+    const std::size_t cell = image.at(laser, first_bin);
+    float rho[RangeImage::kSector];
+    std::uint32_t returns = 0;
+    std::uint32_t starts = 0;
+    for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
+      const FloatVector x = hn::LoadU(kFloats, &image.x[cell + k]);
+      const FloatVector east = hn::Sub(x, hn::Set(kFloats, image.range.origin[0]));
+      const FloatVector north =
+          hn::Sub(hn::LoadU(kFloats, &image.y[cell + k]), hn::Set(kFloats, image.range.origin[1]));
+      hn::StoreU(hn::Sqrt(hn::Add(hn::Mul(east, east), hn::Mul(north, north))), kFloats, rho + k);
+      returns |= bitsOf(hn::Eq(x, x)) << k;
+      starts |= bitsOf(differ(&image.element[cell + k - 1], hn::LoadU(kWords, &image.element[cell + k]))) << k;
+    }
+    if (returns == 0) continue;
+    starts = returns & (starts | ~(returns << 1));
+    const std::uint32_t ends = ~returns | starts;  // and the sector's
+    while (starts != 0) {
+      const auto first = static_cast<std::uint32_t>(__builtin_ctz(starts));
+      starts &= starts - 1;
+      const std::uint32_t after = ends & ~((2U << first) - 1) & 0xFFFFU;
+      const std::uint32_t end = after != 0 ? static_cast<std::uint32_t>(__builtin_ctz(after))
+                                           : static_cast<std::uint32_t>(RangeImage::kSector);
+      float nearest = rho[first];
+      float farthest = rho[first];
+      float lowest = image.z[cell + first];
+      float highest = lowest;
+      if (end - first > kWorthVectors) {
+        FloatVector low_rho = hn::Set(kFloats, nearest);
+        FloatVector high_rho = low_rho;
+        FloatVector low_z = hn::Set(kFloats, lowest);
+        FloatVector high_z = low_z;
+        const std::uint64_t lanes = ((std::uint64_t{1} << end) - 1) & ~((std::uint64_t{1} << first) - 1);
+        for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
+          const FloatMask inside = lanesOf(lanes >> k);
+          const FloatVector rho_here = hn::LoadU(kFloats, rho + k);
+          const FloatVector z_here = hn::LoadU(kFloats, &image.z[cell + k]);
+          low_rho = hn::IfThenElse(inside, hn::Min(low_rho, rho_here), low_rho);
+          high_rho = hn::IfThenElse(inside, hn::Max(high_rho, rho_here), high_rho);
+          low_z = hn::IfThenElse(inside, hn::Min(low_z, z_here), low_z);
+          high_z = hn::IfThenElse(inside, hn::Max(high_z, z_here), high_z);
+        }
+        nearest = hn::GetLane(hn::MinOfLanes(kFloats, low_rho));
+        farthest = hn::GetLane(hn::MaxOfLanes(kFloats, high_rho));
+        lowest = hn::GetLane(hn::MinOfLanes(kFloats, low_z));
+        highest = hn::GetLane(hn::MaxOfLanes(kFloats, high_z));
+      } else {
+        for (std::uint32_t i = first + 1; i < end; ++i) {
+          nearest = std::min(nearest, rho[i]);
+          farthest = std::max(farthest, rho[i]);
+          lowest = std::min(lowest, image.z[cell + i]);
+          highest = std::max(highest, image.z[cell + i]);
+        }
+      }
+      sector.nearest[count] = nearest;
+      sector.farthest[count] = farthest;
+      sector.lowest[count] = lowest;
+      sector.highest[count] = highest;
+      sector.first[count] = offset + static_cast<float>(first);
+      sector.last[count] = offset + static_cast<float>(end - 1);
+      sector.root[count] = subclusters.find(image.element[cell + first]);
+      sector.cell[count] = static_cast<std::uint32_t>(cell) + first;
+      sector.count[count] = static_cast<std::uint8_t>(end - first);
+      ++count;
+    }
+  }
+  sector.begin[lasers.end] = count;
+  if (lasers.end == image.lasers.size()) sector.number = number;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lisco
+HWY_AFTER_NAMESPACE();
+
+#endif

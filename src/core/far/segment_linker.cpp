@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "core/far/segment_linker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/far/constants.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/far/segment_linker.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
+
+#include "core/far/segment_search-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lisco {
+namespace HWY_NAMESPACE {
+
+/// Joins neighbours in the same bin of adjacent lasers.
+void linkSameBins(const RangeImage& image, std::size_t begin, std::size_t end, const RangeImage::Lasers& lasers,
+                  DisjointSets& subclusters) {
+  const FloatVector r2 = hn::Set(kFloats, image.tolerance.squared());
+  for (std::size_t laser = lasers.begin; laser < lasers.end && laser + 1 < image.lasers.size(); ++laser) {
+    if (image.lasers[laser].next_bin == RangeImage::kNoBin || image.lasers[laser + 1].next_bin == RangeImage::kNoBin)
+      continue;
+    const std::size_t upper = image.at(laser, 0);
+    const std::size_t lower = image.at(laser + 1, 0);
+    // Pairs of the same two runs need one merge.
+    std::uint32_t above = ~std::uint32_t{0};
+    std::uint32_t below = ~std::uint32_t{0};
+    for (std::size_t k = begin; k < end; k += kLanes) {
+      const auto apart = [&](const std::vector<float>& coordinate) {
+        return hn::Sub(hn::LoadU(kFloats, &coordinate[upper + k]), hn::LoadU(kFloats, &coordinate[lower + k]));
+      };
+      std::uint32_t left = bitsOf(areNeighbours(apart(image.x), apart(image.y), apart(image.z), r2));
+      while (left != 0) {
+        left &= bitsOf(hn::Or(differ(&image.element[upper + k], hn::Set(kWords, above)),
+                              differ(&image.element[lower + k], hn::Set(kWords, below))));
+        if (left == 0) break;
+        const auto i = static_cast<std::size_t>(__builtin_ctz(left));
+        above = image.element[upper + k + i];
+        below = image.element[lower + k + i];
+        subclusters.merge(above, below);
+      }
+    }
+  }
+}
+
+void linkBins(const RangeImage& image, SegmentLinkerState& state, std::size_t begin, std::size_t end,
+              DisjointSets& subclusters) {
+  linkSameBins(image, begin, end, image.allLasers(), subclusters);
+  SegmentSearch search(image, state, subclusters);
+  for (std::size_t bin = begin; bin < end; bin += RangeImage::kSector) {
+    const auto sector = static_cast<std::int64_t>(bin / RangeImage::kSector);
+    search.prepareSector(sector, image.allLasers());
+    search.linkSector(sector, 0, 1);
+  }
+}
+
+/// One of the parts of linkBins for a sector, in order.
+void linkPartOfSector(const RangeImage& image, SegmentLinkerState& state, std::size_t bin, std::size_t part,
+                      DisjointSets& subclusters) {
+  constexpr std::size_t kSame = 8;
+  constexpr std::size_t kPrepare = 8;
+  constexpr std::size_t kLink = SegmentLinkerState::kParts - kSame - kPrepare;
+  const auto sector = static_cast<std::int64_t>(bin / RangeImage::kSector);
+  SegmentSearch search(image, state, subclusters);
+  if (part < kSame) {
+    const RangeImage::Lasers lasers = image.someLasers(part, kSame);
+    linkSameBins(image, bin, bin + RangeImage::kSector, lasers, subclusters);
+    state.work += (lasers.end - lasers.begin) * kWorkOfSameBins;
+  } else if (part < kSame + kPrepare) {
+    const RangeImage::Lasers lasers = image.someLasers(part - kSame, kPrepare);
+    search.prepareSector(sector, lasers);
+    state.work += (lasers.end - lasers.begin) * kWorkOfCutting;
+  } else {
+    search.linkSector(sector, part - kSame - kPrepare, kLink);
+  }
+}
+
+void linkAcross(const RangeImage& image, SegmentLinkerState& state, const RangeImage& other, double later,
+                DisjointSets& subclusters) {
+  SegmentSearch(image, state, subclusters).linkAcross(other, later);
+}
+
+/// Compares one return with all bins that may hold its neighbours.
+void searchOne(const RangeImage& image, const RangeImage::Unplaced& point, DisjointSets& subclusters) {
+  const float east = point.x - image.range.origin[0];
+  const float north = point.y - image.range.origin[1];
+  const float rho = std::sqrt(east * east + north * north);
+  const auto turn = static_cast<std::int64_t>(image.steps);
+  const std::int64_t bin = image.binOf(image.fromStart(east, north)) % turn;
+  const std::int64_t middle = bin < 0 ? bin + turn : bin;
+  const float angle = asinBound(image.reach / rho);
+  const auto before = static_cast<std::int64_t>(angle / image.radians_per_bin + (kDeviation + 1.0F));
+  const float slope = std::atan((point.z - image.range.origin[2]) / rho);
+  const float elevation = image.upside_down ? -slope : slope;
+  const auto last = static_cast<std::int64_t>(image.end) - 1;
+  for (const std::int64_t center : {middle - turn, middle, middle + turn}) {
+    const std::int64_t from = std::max<std::int64_t>(0, center - before);
+    const std::int64_t to = std::min(last, center + before);
+    if (from > to) continue;
+    for (std::size_t laser = 0; laser < image.lasers.size(); ++laser) {
+      if (image.lowest[laser] > elevation + angle + kAngleRounding ||
+          image.highest[laser] < elevation - angle - kAngleRounding)
+        continue;
+      for (std::size_t cell = image.at(laser, from); cell <= image.at(laser, to); ++cell)
+        if (!image.isFree(cell) && squaredDistance(image.x[cell] - point.x, image.y[cell] - point.y,
+                                                   image.z[cell] - point.z) < image.tolerance.squared())
+          subclusters.merge(point.element, image.element[cell]);
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lisco
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lisco {
+namespace {
+
+HWY_EXPORT(linkBins);
+HWY_EXPORT(linkPartOfSector);
+HWY_EXPORT(linkAcross);
+HWY_EXPORT(searchOne);
+
+}  // namespace
+
+void SegmentLinker::prepare(const RangeImage& image) {
+  linked_parts_ = 0;
+  masks.clear();
+  fit(image);
+}
+
+/// Grows to the lasers of the image.
+void SegmentLinker::fit(const RangeImage& image) {
+  const std::size_t count = image.lasers.size();
+  if (masks.size() == count) return;
+  linked_parts_ = 0;  // of a sector with fewer lasers
+  masks.assign(count, NeighborMask());
+  const std::size_t segments = count * RangeImage::kSector + RangeImage::kSector;  // vectors are read behind the last
+  const auto grow = [&](Sector& sector) {
+    sector.number = Sector::kNone;
+    for (auto* bound :
+         {&sector.nearest, &sector.farthest, &sector.lowest, &sector.highest, &sector.first, &sector.last})
+      bound->resize(segments);
+    sector.root.resize(segments);
+    sector.cell.resize(segments);
+    sector.count.resize(segments);
+    sector.begin.resize(count + 1);
+  };
+  for (Sector& sector : sectors) grow(sector);
+  grow(beyond);
+}
+
+/// Sectors are cut again: returns may have come late, or will come.
+void SegmentLinker::forgetSectors() {
+  for (Sector& sector : sectors) sector.number = Sector::kNone;
+}
+
+void SegmentLinker::schedule(RangeImage& image) {
+  if (!image.started) return;
+  fit(image);
+  image.updateElevations();
+  image.scheduled = std::max(image.scheduled, image.passed());
+}
+
+std::size_t SegmentLinker::linkPart(RangeImage& image, DisjointSets& subclusters) {
+  fit(image);
+  if (image.lowest.size() < image.lasers.size()) image.updateElevations();  // lasers were added since schedule ()
+  const std::size_t before = work;
+  HWY_DYNAMIC_DISPATCH(linkPartOfSector)(image, *this, image.linked, linked_parts_, subclusters);
+  if (++linked_parts_ == kParts) {
+    linked_parts_ = 0;
+    image.linked += RangeImage::kSector;
+  }
+  return work - before;
+}
+
+void SegmentLinker::link(RangeImage& image, DisjointSets& subclusters) {
+  schedule(image);
+  while (linked_parts_ > 0) linkPart(image, subclusters);
+  if (image.linked < image.scheduled)
+    HWY_DYNAMIC_DISPATCH(linkBins)(image, *this, image.linked, image.scheduled, subclusters);
+  image.linked = image.scheduled;
+}
+
+void SegmentLinker::linkRest(RangeImage& image, DisjointSets& subclusters) {
+  if (!image.started) return;
+  link(image, subclusters);
+  if (image.end > image.linked) HWY_DYNAMIC_DISPATCH(linkBins)(image, *this, image.linked, image.end, subclusters);
+  if (!image.late.empty()) forgetSectors();
+  for (const RangeImage::Unplaced& late : image.late) HWY_DYNAMIC_DISPATCH(searchOne)(image, late, subclusters);
+  image.late.clear();
+}
+
+void SegmentLinker::linkTo(RangeImage& image, RangeImage& other, DisjointSets& subclusters) {
+  if (!image.started || !other.started) return;
+  if (&other != &image) {
+    image.shareElevations(other);
+    other.shareElevations(image);
+    other.updateElevations();
+  }
+  fit(image);
+  image.updateElevations();
+  const auto turn = static_cast<double>(image.steps);
+  const double ahead =
+      image.direction * (other.start_azimuth - image.start_azimuth) / static_cast<double>(image.radians_per_bin);
+  const double least = &other == &image ? 1.0 : -static_cast<double>(other.end) - kMaxReach;
+  const double most = static_cast<double>(image.end) + kMaxReach;
+  if (image.placed > 0 && other.placed > 0) {
+    const auto first = static_cast<int>(std::ceil((least - ahead) / turn));
+    const auto last = static_cast<int>(std::floor((most - ahead) / turn));
+    for (int turns = first; turns <= last; ++turns)
+      HWY_DYNAMIC_DISPATCH(linkAcross)(image, *this, other, ahead + turn * turns, subclusters);
+  }
+  forgetSectors();
+  for (const RangeImage::Unplaced& unplaced : other.unplaced)
+    HWY_DYNAMIC_DISPATCH(searchOne)(image, unplaced, subclusters);
+  if (&other == &image) return;
+  for (const RangeImage::Unplaced& unplaced : image.unplaced)
+    HWY_DYNAMIC_DISPATCH(searchOne)(other, unplaced, subclusters);
+}
+
+}  // namespace lisco
+#endif

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/disjoint_sets.h"
+#include "core/far/range_image.h"
+
+namespace lisco {
+
+/// The segments of a sector of sixteen bins, ordered by laser and bin: what each run has there, with measured bounds.
+struct Sector {
+  static constexpr std::int64_t kNone = -1;
+  std::int64_t number = kNone;
+  std::vector<float> nearest, farthest;  ///< horizontal distance
+  std::vector<float> lowest, highest;    ///< z
+  std::vector<float> first, last;        ///< bin
+  std::vector<std::uint32_t> root;       ///< of its subcluster, perhaps outdated
+  std::vector<std::uint32_t> cell;       ///< index of its first return in the image
+  std::vector<std::uint8_t> count;       ///< of returns
+  std::vector<std::uint32_t> begin;      ///< of each laser's segments, and the end
+};
+
+/// The paper's neighbor mask (Algorithm 2) of one laser's returns in a sector, from measured bounds.
+struct NeighborMask {
+  float nearest = 0;  ///< horizontal distance, metres
+  int before = 0;     ///< sigma: bins that it reaches over
+  std::uint32_t first_laser = 0, last_laser = 0;
+  std::uint32_t above = 0, below = 0;  ///< lambda: the same lasers, counted from this one; where the next search begins
+  bool by_bins = false;                ///< comparing bins is cheaper than comparing segments
+};
+
+/// What the vectorized code of SegmentLinker works on.
+struct SegmentLinkerState {
+  static constexpr std::size_t kSectorsKept = 8;
+  static constexpr std::size_t kParts = 80;  ///< in which a sector is linked part by part
+
+  std::array<Sector, kSectorsKept> sectors;
+  Sector beyond;                    ///< a sector of another image, or of this one a turn later
+  std::vector<NeighborMask> masks;  ///< of each laser in the sector at hand
+  std::size_t work = 0;             ///< done so far, about in comparisons of registers
+};
+
+/// Algorithm 4 on range images: joins far returns that are neighbours. Returns in the same bin of adjacent lasers are
+/// compared first, several at once, which joins most of what belongs together. Then each segment looks at the segments in
+/// its neighbor mask that are in another subcluster by then: bounds first, returns last.
+///
+/// Finds all pairs of placed returns; pairs with an unplaced one are found by linkTo (). Serves one image.
+class SegmentLinker : private SegmentLinkerState {
+ public:
+  /// Starts a rotation, or a part of one. Keeps its memory.
+  void prepare(const RangeImage& image);
+
+  /// Links what has come since the last call, as far as all lasers have passed it.
+  void link(RangeImage& image, DisjointSets& subclusters);
+
+  /// The same part by part: schedule () tells what is linked next.
+  void schedule(RangeImage& image);
+  std::size_t partsLeft(const RangeImage& image) const {
+    return (image.scheduled - image.linked) / RangeImage::kSector * kParts - linked_parts_;
+  }
+  /// \return its work, about in comparisons of registers
+  std::size_t linkPart(RangeImage& image, DisjointSets& subclusters);
+
+  /// Links all that has not been linked within the image. More returns may come later.
+  void linkRest(RangeImage& image, DisjointSets& subclusters);
+  /// Links the returns of the image with those of another one of the same rotation; or, of itself, those at its end with
+  /// those a turn before. After linkRest () of both.
+  void linkTo(RangeImage& image, RangeImage& other, DisjointSets& subclusters);
+
+  /// Work done since prepare (), about in comparisons of registers.
+  std::size_t workDone() const { return work; }
+
+ private:
+  void fit(const RangeImage& image);
+  void forgetSectors();
+
+  std::size_t linked_parts_ = 0;  ///< of the sector at image.linked
+};
+
+}  // namespace lisco

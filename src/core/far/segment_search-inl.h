@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+//
+// Algorithm 4 on the segments of a range image; compiled once for each SIMD level.
+#if defined(LISCO_SEGMENT_SEARCH_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef LISCO_SEGMENT_SEARCH_INL_H
+#undef LISCO_SEGMENT_SEARCH_INL_H
+#else
+#define LISCO_SEGMENT_SEARCH_INL_H
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/far/sector-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lisco {
+namespace HWY_NAMESPACE {
+
+/// The returns of a segment.
+struct Returns {
+  const RangeImage* image;
+  std::size_t cell, count;
+};
+
+/// Whether any return of one segment is a neighbour of any return of the other.
+bool haveNeighbours(Returns a, Returns b) {
+  if (a.count > b.count) std::swap(a, b);
+  const FloatVector r2 = hn::Set(kFloats, a.image->tolerance.squared());
+  const std::uint32_t lanes = (1U << b.count) - 1;
+  for (std::size_t i = a.cell; i < a.cell + a.count; ++i) {
+    const FloatVector x = hn::Set(kFloats, a.image->x[i]);
+    const FloatVector y = hn::Set(kFloats, a.image->y[i]);
+    const FloatVector z = hn::Set(kFloats, a.image->z[i]);
+    for (std::size_t k = 0; k < b.count; k += kLanes) {
+      const FloatMask near = areNeighbours(hn::Sub(x, hn::LoadU(kFloats, &b.image->x[b.cell + k])),
+                                           hn::Sub(y, hn::LoadU(kFloats, &b.image->y[b.cell + k])),
+                                           hn::Sub(z, hn::LoadU(kFloats, &b.image->z[b.cell + k])), r2);
+      if ((bitsOf(near) & lanes >> k) != 0) return true;
+    }
+  }
+  return false;
+}
+
+/// Searches the neighbours of a sector's segments in the sectors up to it.
+class SegmentSearch {
+ public:
+  SegmentSearch(const RangeImage& image, SegmentLinkerState& linking, DisjointSets& subclusters)
+      : image_(image), state_(linking), subclusters_(subclusters), bins_per_radian_(1.00001F / image.radians_per_bin) {}
+
+  /// Cuts some lasers of a sector and makes their masks. Ranges of lasers follow each other, from the first on.
+  void prepareSector(std::int64_t number, const RangeImage::Lasers& lasers) {
+    Sector& sector = sectorOf(number);
+    cutSector(image_, number, 0.0F, lasers, sector, subclusters_);
+    for (std::size_t laser = lasers.begin; laser < lasers.end; ++laser) prepareMask(sector, laser);
+  }
+
+  /// Links a sector with itself and with those before it, for every one_in-th of its lasers from first_laser on.
+  void linkSector(std::int64_t number, std::size_t first_laser, std::size_t one_in) {
+    Sector& sector = sectorOf(number);
+    for (std::size_t laser = first_laser; laser < image_.lasers.size(); laser += one_in) {
+      if (sector.begin[laser] == sector.begin[laser + 1]) continue;
+      if (state_.masks[laser].by_bins)
+        compareBins(number, laser);
+      else
+        forEachSegment(image_, sector, laser, [&](Segment& segment) {
+          const std::int64_t sectors = sectorsWithin(segment.before);
+          for (std::int64_t other = std::max<std::int64_t>(number - sectors, 0); other < number; ++other)
+            search(segment, cut(other), ~0U);
+          search(segment, sector, segment.index);
+        });
+    }
+  }
+
+  /// Links another image with this one, whose bin 0 is this one's bin `later`: the image itself a turn later joins its end
+  /// with its beginning. Both share elevations.
+  void linkAcross(const RangeImage& other, double later) {
+    // Bins of different images differ by a fraction.
+    const double reach = binsWithin(asinBound(image_.reach / image_.range.min_range)) + 1;
+    const auto last = sectorAt(static_cast<double>(image_.end - 1));
+    const auto first_of_other =
+        sectorAt(std::max(static_cast<double>(other.begin), static_cast<double>(image_.begin) - reach - later));
+    const auto last_of_other =
+        sectorAt(std::min(static_cast<double>(other.end), static_cast<double>(image_.end) + reach - later));
+    for (std::int64_t number = first_of_other; number <= last_of_other; ++number) {
+      Sector& sector = state_.beyond;
+      cutSector(other, number, static_cast<float>(later), image_.allLasers(), sector, subclusters_);
+      for (std::size_t laser = 0; laser < image_.lasers.size(); ++laser) {
+        prepareMask(sector, laser);
+        forEachSegment(other, sector, laser, [&](Segment& segment) {
+          segment.first -= 1;
+          segment.last += 1;
+          const std::int64_t from = std::max<std::int64_t>(0, sectorAt(static_cast<double>(segment.first)));
+          const std::int64_t to = std::min(last, sectorAt(static_cast<double>(segment.last)));
+          for (std::int64_t one = from; one <= to; ++one) search(segment, cut(one), ~0U);
+        });
+      }
+    }
+  }
+
+ private:
+  /// A segment and its neighbor mask, as bounds on segments that may hold neighbours.
+  struct Segment {
+    std::uint32_t index;
+    std::uint32_t root;
+    std::int64_t before;  ///< bins that the mask reaches over
+    std::size_t first_laser, last_laser;
+    Returns returns;
+    float nearest, farthest, lowest, highest, first, last;
+  };
+
+  static std::int64_t sectorsWithin(std::int64_t bins) {
+    constexpr auto kSector = static_cast<std::int64_t>(RangeImage::kSector);
+    return (bins + kSector - 1) / kSector;
+  }
+
+  static std::int64_t sectorAt(double bin) {
+    return static_cast<std::int64_t>(std::floor(bin / static_cast<double>(RangeImage::kSector)));
+  }
+
+  Sector& sectorOf(std::int64_t number) {
+    return state_.sectors[static_cast<std::size_t>(number) % SegmentLinkerState::kSectorsKept];
+  }
+
+  Sector& cut(std::int64_t number) {
+    Sector& sector = sectorOf(number);
+    if (sector.number != number) cutSector(image_, number, 0.0F, image_.allLasers(), sector, subclusters_);
+    return sector;
+  }
+
+  /// getNeighborMask (Algorithm 2) of a laser's returns in a sector; chooses what is cheaper to compare, segments or bins.
+  void prepareMask(const Sector& sector, std::size_t laser) {
+    const std::uint32_t begin = sector.begin[laser];
+    const std::uint32_t end = sector.begin[laser + 1];
+    if (begin == end) return;
+    float nearest = sector.nearest[begin];
+    for (std::uint32_t i = begin + 1; i < end; ++i) nearest = std::min(nearest, sector.nearest[i]);
+    const float angle = asinBound(image_.reach / nearest);
+    NeighborMask& mask = state_.masks[laser];
+    mask.nearest = nearest;
+    mask.before = binsWithin(angle);
+    reachLasers(laser, angle, mask);
+    const auto registers = static_cast<std::uint32_t>(RangeImage::kSector / kLanes);
+    const std::uint32_t by_bins =
+        (mask.last_laser - mask.first_laser + 1) * static_cast<std::uint32_t>(mask.before) * registers;
+    const std::uint32_t by_segments = (end - begin) * static_cast<std::uint32_t>(sectorsWithin(mask.before) + 1);
+    mask.by_bins = by_bins < kSegmentCost * by_segments;
+  }
+
+  /// Compares a laser's bins in a sector with all bins of its mask, up to its own, sixteen at a time. Where the other
+  /// laser is compared by segments, this one compares both directions.
+  void compareBins(std::int64_t sector, std::size_t laser) {
+    const NeighborMask& mask = state_.masks[laser];
+    const std::int64_t bin = sector * static_cast<std::int64_t>(RangeImage::kSector);
+    const std::size_t own = image_.at(laser, bin);
+    for (std::uint32_t other = mask.first_laser; other <= mask.last_laser; ++other) {
+      const std::size_t same = image_.at(other, bin);
+      const bool both_ways = other < laser && !state_.masks[other].by_bins;
+      const int first = both_ways ? -mask.before : other > laser + 1 ? 0 : 1;  // the next laser's: linkSameBins
+      state_.work += static_cast<std::size_t>(mask.before + 1 - first) * (RangeImage::kSector / kLanes) * kWorkOfBins;
+      for (int k = first; k <= mask.before; ++k)
+        compareBinsWith(own, same - static_cast<std::size_t>(static_cast<std::int64_t>(k)));
+    }
+  }
+
+  HWY_INLINE void compareBinsWith(std::size_t own, std::size_t other) {
+    const FloatVector r2 = hn::Set(kFloats, image_.tolerance.squared());
+    for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
+      const auto apart = [&](const std::vector<float>& coordinate) {
+        return hn::Sub(hn::LoadU(kFloats, &coordinate[own + k]), hn::LoadU(kFloats, &coordinate[other + k]));
+      };
+      const FloatMask near = areNeighbours(apart(image_.x), apart(image_.y), apart(image_.z), r2);
+      const FloatMask unlike = differ(&image_.element[own + k], hn::LoadU(kWords, &image_.element[other + k]));
+      for (std::uint32_t left = bitsOf(hn::And(near, unlike)); left != 0; left &= left - 1) {
+        const auto i = k + static_cast<std::size_t>(__builtin_ctz(left));
+        const std::uint32_t a = image_.element[own + i];
+        const std::uint32_t b = image_.element[other + i];
+        if (a == last_a_ && b == last_b_) continue;
+        last_a_ = a;
+        last_b_ = b;
+        subclusters_.merge(a, b);
+      }
+    }
+  }
+
+  /// Calls visit with each of a laser's segments. It may change the segment's root.
+  template <typename Visit>
+  void forEachSegment(const RangeImage& image, Sector& sector, std::size_t laser, Visit&& visit) {
+    const NeighborMask& mask = state_.masks[laser];
+    Segment segment{};
+    for (std::uint32_t i = sector.begin[laser]; i < sector.begin[laser + 1]; ++i) {
+      const float reach = image_.reach + 1e-6F * sector.farthest[i];
+      segment.before = mask.before;
+      segment.first_laser = mask.first_laser;
+      segment.last_laser = mask.last_laser;
+      if (sector.nearest[i] > kWorthNarrowing * mask.nearest) narrow(laser, sector.nearest[i], segment);
+      const auto bins = static_cast<float>(segment.before);
+      segment.index = i;
+      segment.root = subclusters_.find(sector.root[i]);
+      segment.returns = {&image, sector.cell[i], sector.count[i]};
+      segment.nearest = sector.nearest[i] - reach;
+      segment.farthest = sector.farthest[i] + reach;
+      segment.lowest = sector.lowest[i] - reach;
+      segment.highest = sector.highest[i] + reach;
+      segment.first = sector.first[i] - bins;
+      segment.last = sector.last[i] + bins;
+      state_.work += kWorkOfSegment;
+      visit(segment);
+      sector.root[i] = segment.root;
+    }
+  }
+
+  int binsWithin(float angle) const {
+    return std::min(kMaxReach, static_cast<int>(angle * bins_per_radian_ + (2 * kDeviation + 0.02F)));
+  }
+
+  /// Narrows the mask of a segment that is further away than the nearest of its laser, for which the mask was made.
+  void narrow(std::size_t laser, float nearest, Segment& segment) const {
+    const float angle = asinBound(image_.reach / nearest);
+    segment.before = binsWithin(angle);
+    const float top = image_.highest[laser] + angle + kAngleRounding;
+    const float bottom = image_.lowest[laser] - angle - kAngleRounding;
+    while (segment.first_laser < laser && image_.lowest_above[segment.first_laser] > top) ++segment.first_laser;
+    while (segment.last_laser > laser && image_.highest_below[segment.last_laser] < bottom) --segment.last_laser;
+  }
+
+  /// Sets the lasers whose elevations come within the angle of this one's: lambda of Algorithm 2.
+  void reachLasers(std::size_t laser, float angle, NeighborMask& mask) {
+    const float top = image_.highest[laser] + angle + kAngleRounding;
+    const float bottom = image_.lowest[laser] - angle - kAngleRounding;
+    const auto last_of_all = image_.lasers.size() - 1;
+    std::size_t first = laser - std::min<std::size_t>(laser, mask.above);
+    while (first > 0 && image_.lowest_above[first - 1] <= top) --first;
+    while (first < laser && image_.lowest_above[first] > top) ++first;
+    std::size_t last = std::min<std::size_t>(last_of_all, laser + mask.below);
+    while (last < last_of_all && image_.highest_below[last + 1] >= bottom) ++last;
+    while (last > laser && image_.highest_below[last] < bottom) --last;
+    mask.above = static_cast<std::uint32_t>(laser - first);
+    mask.below = static_cast<std::uint32_t>(last - laser);
+    mask.first_laser = static_cast<std::uint32_t>(first);
+    mask.last_laser = static_cast<std::uint32_t>(last);
+  }
+
+  /// cluster (p) of Algorithm 4 for a segment: compares it with the segments of a sector that its mask shows.
+  /// \param limit only with those before this one
+  HWY_INLINE void search(Segment& segment, Sector& other, std::uint32_t limit) {
+    const std::uint32_t begin = other.begin[segment.first_laser];
+    const std::uint32_t end = std::min(limit, other.begin[segment.last_laser + 1]);
+    state_.work += 1 + (end - begin) / kLanes;
+    for (std::uint32_t i = begin; i < end; i += std::uint32_t{kLanes}) {
+      const auto load = [&](const std::vector<float>& bound) { return hn::LoadU(kFloats, &bound[i]); };
+      const auto all = [](float value) { return hn::Set(kFloats, value); };
+      const FloatMask range = hn::And(hn::Le(load(other.nearest), all(segment.farthest)),
+                                      hn::Ge(load(other.farthest), all(segment.nearest)));
+      // Most segments nearby are in the same subcluster already.
+      std::uint32_t left = bitsOf(hn::And(range, differ(&other.root[i], hn::Set(kWords, segment.root))));
+      if (end - i < kLanes) left &= (1U << (end - i)) - 1;
+      if (left == 0) continue;
+      const FloatMask height =
+          hn::And(hn::Le(load(other.lowest), all(segment.highest)), hn::Ge(load(other.highest), all(segment.lowest)));
+      const FloatMask bins =
+          hn::And(hn::Le(load(other.first), all(segment.last)), hn::Ge(load(other.last), all(segment.first)));
+      left &= bitsOf(hn::And(height, bins));
+      for (; left != 0; left &= left - 1) {
+        const std::uint32_t candidate = i + static_cast<std::uint32_t>(__builtin_ctz(left));
+        const std::uint32_t other_root = subclusters_.find(other.root[candidate]);
+        other.root[candidate] = other_root;
+        if (other_root == segment.root) continue;
+        state_.work += kWorkOfPair;
+        if (haveNeighbours(segment.returns, {&image_, other.cell[candidate], other.count[candidate]}))
+          other.root[candidate] = segment.root = subclusters_.merge(segment.root, other_root);
+      }
+    }
+  }
+
+  const RangeImage& image_;
+  SegmentLinkerState& state_;
+  DisjointSets& subclusters_;
+  float bins_per_radian_;
+  std::uint32_t last_a_ = ~std::uint32_t{0};  ///< the last two that were joined
+  std::uint32_t last_b_ = ~std::uint32_t{0};
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lisco
+HWY_AFTER_NAMESPACE();
+
+#endif

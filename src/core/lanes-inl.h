@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+//
+// Shared by the vector code of several files; compiled once for each SIMD level.
+#if defined(LISCO_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef LISCO_LANES_INL_H
+#undef LISCO_LANES_INL_H
+#else
+#define LISCO_LANES_INL_H
+#endif
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace lisco {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Up to 16 floats, or as many 32-bit integers.
+using Floats = hn::CappedTag<float, 16>;
+using Words = hn::RebindToUnsigned<Floats>;
+constexpr Floats kFloats{};
+constexpr Words kWords{};
+constexpr std::size_t kLanes = hn::MaxLanes(kFloats);  // vectors of unknown length are not among the levels
+using FloatVector = hn::Vec<Floats>;
+using FloatMask = hn::Mask<Floats>;
+
+/// Bit i of the result is lane i of the mask.
+HWY_INLINE std::uint32_t bitsOf(FloatMask mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(kFloats, mask, bytes);
+  std::uint32_t bits;
+  std::memcpy(&bits, bytes, sizeof bits);
+  return bits;
+}
+
+/// The mask of the lowest kLanes bits: the inverse of bitsOf.
+HWY_INLINE FloatMask lanesOf(std::uint64_t bits) {
+  std::uint8_t bytes[8];
+  std::memcpy(bytes, &bits, sizeof bytes);
+  return hn::LoadMaskBits(kFloats, bytes);
+}
+
+/// The bits of the kLanes columns from k on, shifted to 0.
+HWY_INLINE std::uint64_t bitsAt(std::uint64_t bits, std::size_t k) {
+  return bits >> k & ((std::uint64_t{1} << kLanes) - 1);
+}
+
+/// squaredDistance (neighbour.h) < squared_tolerance, lane by lane: separate multiplications and additions in its order.
+HWY_INLINE FloatMask areNeighbours(FloatVector dx, FloatVector dy, FloatVector dz, FloatVector squared_tolerance) {
+  return hn::Lt(hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz)), squared_tolerance);
+}
+
+HWY_INLINE FloatMask differ(const std::uint32_t* a, hn::Vec<Words> b) {
+  return hn::RebindMask(kFloats, hn::Ne(hn::LoadU(kWords, a), b));
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lisco
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "core/near/voxel_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/near/kernels.h"
+
+namespace lisco {
+
+namespace {
+
+/// Side of a voxel over eps, a little less than 1 / sqrt (3). Rounding moves a return by less than an eighth of a voxel, so
+/// that neighbours, which are 1.7323 sides apart at most, lie in voxels whose numbers differ by 2 at most.
+constexpr double kSide = 0.9999 / 1.7320508075688772;
+/// 2^51: up to here, voxel numbers computed in double are exact enough.
+constexpr double kMaxNumber = 2251799813685248.0;
+constexpr std::size_t kMinSlots = 256;
+
+std::uint32_t hashOf(const std::array<std::uint32_t, 3>& key) {
+  // Teschner et al. 2003, with a final mix so that flat scenes use the whole table.
+  std::uint32_t hash = key[0] * 73856093U ^ key[1] * 19349663U ^ key[2] * 83492791U;
+  hash ^= hash >> 15;
+  return hash;
+}
+
+bool sameKey(const std::array<std::uint32_t, 3>& a, const std::array<std::uint32_t, 3>& b) {
+  return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2])) == 0;
+}
+
+}  // namespace
+
+void VoxelGrid::prepare(const Tolerance& new_tolerance) {
+  tolerance = new_tolerance;
+  voxels_per_metre_ = 1.0 / (kSide * std::max(tolerance.reach(), 1e-22));
+  in_float_range_ = voxels_per_metre_ > 1e-30 && voxels_per_metre_ < 1e30;
+  points_ = 0;
+  fragments.clear();
+  cliques.clear();
+  bricks.clear();
+  first_cliques.clear();
+  new_bricks.clear();
+  filter.clear();
+  recent_cliques_.fill({Key{}, kNone});
+  all_in_float_range = true;
+  anything_linked = false;
+  if (slots_.size() < kMinSlots)
+    slots_.assign(kMinSlots, kNone);
+  else
+    std::fill(slots_.begin(), slots_.end(), kNone);
+}
+
+void VoxelGrid::add(const RingBlock& block, const RingBlockInfo& info, ColumnBits which, DisjointSets& subclusters) {
+  if (!tolerance.joinsAnything()) return;
+  const float* const block_x = block.x + RingBlock::kMargin;
+  const float* const block_y = block.y + RingBlock::kMargin;
+  const float* const block_z = block.z + RingBlock::kMargin;
+  VoxelNumbers numbers;
+  ColumnBits changes = 0;
+  if (!in_float_range_ || !numberVoxels(block, which, static_cast<float>(voxels_per_metre_), numbers, changes)) {
+    forEachBit(which, [&](std::size_t i) {
+      const float point[3] = {block_x[i], block_y[i], block_z[i]};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double number = std::clamp(static_cast<double>(point[axis]) * voxels_per_metre_, -kMaxNumber, kMaxNumber);
+        numbers.of[axis][1 + i] = static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(number)));
+      }
+    });
+    changes = ~ColumnBits{0};
+    all_in_float_range = false;
+  }
+  // A fragment goes on where the return before is in the same run and voxel.
+  const ColumnBits starts = which & ~(which << 1 & ~info.starts & ~changes);
+  std::size_t point = newPoints(countBits(which));
+  forEachChain(starts, which, [&](std::size_t begin, std::size_t end) {
+    const auto fragment = static_cast<std::uint32_t>(fragments.size());
+    fragments.push_back({static_cast<std::uint32_t>(point), static_cast<std::uint32_t>(end - begin), kNone});
+    Box box = Box::around(block_x[begin], block_y[begin], block_z[begin]);
+    for (std::size_t i = begin; i < end; ++i, ++point) {
+      x[point] = block_x[i];
+      y[point] = block_y[i];
+      z[point] = block_z[i];
+      box.add(Box::around(block_x[i], block_y[i], block_z[i]));
+    }
+    addFragment({numbers.of[0][1 + begin], numbers.of[1][1 + begin], numbers.of[2][1 + begin]}, box, fragment,
+                info.run[begin], subclusters);
+  });
+}
+
+/// Adds a number of points, with undefined coordinates. \return the first of them
+std::size_t VoxelGrid::newPoints(std::size_t count) {
+  const std::size_t first = points_;
+  points_ += count;
+  const std::size_t size = points_ + kReadBehind;
+  if (x.size() < size)
+    for (auto* coordinate : {&x, &y, &z}) {
+      coordinate->reserve(size + size / 4);  // or it would double
+      coordinate->resize(size + size / 4);
+    }
+  return first;
+}
+
+void VoxelGrid::addFragment(const Key& voxel, const Box& box, std::uint32_t fragment, std::uint32_t element,
+                            DisjointSets& subclusters) {
+  // Most fragments lie in a voxel that was used recently.
+  RecentClique& recent = recent_cliques_[hashOf(voxel) % kRecentCliques];
+  if (recent.clique != kNone && sameKey(recent.voxel, voxel)) {
+    Clique& clique = cliques[recent.clique];
+    if (clique.is_new && Box::squaredSpan(clique.box, box) < tolerance.squared()) {
+      addTo(clique, box, fragment, element, subclusters);
+      return;
+    }
+  }
+  const Key key{voxel[0] >> 2, voxel[1] >> 2, voxel[2] >> 2};
+  const std::uint32_t brick_number = makeBrick(key);
+  Brick& brick = bricks[brick_number];
+  if (!brick.is_new) {
+    brick.is_new = true;
+    new_bricks.push_back(brick_number);
+  }
+  std::uint32_t& first = firstClique(brick, (voxel[0] & 3U) | (voxel[1] & 3U) << 2 | (voxel[2] & 3U) << 4);
+  for (std::uint32_t i = first; i != kNone; i = cliques[i].next_in_voxel) {
+    Clique& clique = cliques[i];
+    if (!(Box::squaredSpan(clique.box, box) < tolerance.squared())) continue;
+    addTo(clique, box, fragment, element, subclusters);
+    recent = {voxel, i};
+    return;
+  }
+  const auto number = static_cast<std::uint32_t>(cliques.size());
+  cliques.push_back({box, element, fragment, first, true});
+  first = number;
+  recent = {voxel, number};
+}
+
+void VoxelGrid::addTo(Clique& clique, const Box& box, std::uint32_t fragment, std::uint32_t element,
+                      DisjointSets& subclusters) {
+  clique.box.add(box);
+  clique.is_new = true;
+  fragments[fragment].next_in_clique = clique.first_fragment;
+  clique.first_fragment = fragment;
+  if (clique.root != element) clique.root = subclusters.merge(clique.root, element);
+}
+
+std::uint32_t VoxelGrid::findBrick(const Key& key) const {
+  const std::size_t mask = slots_.size() - 1;
+  for (std::size_t slot = hashOf(key) & mask;; slot = (slot + 1) & mask)
+    if (slots_[slot] == kNone || sameKey(bricks[slots_[slot]].key, key)) return slots_[slot];
+}
+
+std::uint32_t VoxelGrid::makeBrick(const Key& key) {
+  const std::uint32_t found = findBrick(key);
+  if (found != kNone) return found;
+  const auto number = static_cast<std::uint32_t>(bricks.size());
+  bricks.push_back({key, 0, 0, kNone, 0, false});
+  filter.add(key);
+  if (2 * bricks.size() > slots_.size())
+    rehash(2 * slots_.size());
+  else
+    takeSlot(number);
+  return number;
+}
+
+void VoxelGrid::rehash(std::size_t count) {
+  slots_.assign(count, kNone);
+  for (std::size_t brick = 0; brick < bricks.size(); ++brick) takeSlot(static_cast<std::uint32_t>(brick));
+}
+
+/// Puts a brick that is not in the table where it is looked for.
+void VoxelGrid::takeSlot(std::uint32_t brick) {
+  const std::size_t mask = slots_.size() - 1;
+  std::size_t slot = hashOf(bricks[brick].key) & mask;
+  while (slots_[slot] != kNone) slot = (slot + 1) & mask;
+  slots_[slot] = brick;
+}
+
+/// The first clique of a voxel, kNone if it is new. The list of a brick has one entry for each voxel in use, in the
+/// order of their bits; it moves to the end when it outgrows its capacity.
+std::uint32_t& VoxelGrid::firstClique(Brick& brick, std::uint32_t voxel) {
+  const std::uint64_t bit = std::uint64_t{1} << voxel;
+  const auto rank = countBits(brick.occupied & (bit - 1));
+  if ((brick.occupied & bit) != 0) return first_cliques[brick.cliques + rank];
+  const auto used = countBits(brick.occupied);
+  if (used == brick.capacity) {
+    const auto moved = static_cast<std::uint32_t>(first_cliques.size());
+    brick.capacity = std::max<std::uint32_t>(4, 2 * brick.capacity);
+    first_cliques.resize(first_cliques.size() + brick.capacity);
+    std::copy_n(first_cliques.begin() + brick.cliques, used, first_cliques.begin() + moved);
+    brick.cliques = moved;
+  }
+  brick.occupied |= bit;
+  const auto list = first_cliques.begin() + brick.cliques;
+  std::copy_backward(list + rank, list + used, list + used + 1);
+  return *(list + rank) = kNone;
+}
+
+bool VoxelGrid::BloomFilter::mayHaveNear(const Key& brick) const {
+  // Three bricks in a row lie in two pairs at most.
+  for (const std::uint32_t x : {((brick[0] - 1) & kBrickMask) / 2, ((brick[0] + 1) & kBrickMask) / 2})
+    for (const std::uint32_t y : {((brick[1] - 1) & kBrickMask) / 2, ((brick[1] + 1) & kBrickMask) / 2})
+      if ((bits_[wordOf(x, y)] & bitOf(x, y)) != 0) return true;
+  return false;
+}
+
+void VoxelGrid::compactFragments(Clique& clique) {
+  std::uint32_t count = fragments[clique.first_fragment].count;
+  std::uint32_t end = fragments[clique.first_fragment].next_in_clique;
+  if (end == kNone || fragments[end].count > 2 * count) return;
+  for (; end != kNone && fragments[end].count <= 2 * count; end = fragments[end].next_in_clique)
+    count += fragments[end].count;
+  const std::size_t first = newPoints(count);
+  std::size_t point = first;
+  for (std::uint32_t i = clique.first_fragment; i != end; i = fragments[i].next_in_clique)
+    for (std::uint32_t k = fragments[i].first_point; k < fragments[i].first_point + fragments[i].count; ++k, ++point) {
+      x[point] = x[k];
+      y[point] = y[k];
+      z[point] = z[k];
+    }
+  fragments[clique.first_fragment] = {static_cast<std::uint32_t>(first), count, end};
+}
+
+}  // namespace lisco

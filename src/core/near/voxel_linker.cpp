@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "core/near/voxel_linker.h"
+
+#include <algorithm>
+
+#include "core/near/kernels.h"
+
+namespace lisco {
+
+namespace {
+
+using Brick = VoxelGrid::Brick;
+using Clique = VoxelGrid::Clique;
+using Fragment = VoxelGrid::Fragment;
+using NearBrick = VoxelGrid::NearBrick;
+
+constexpr std::uint32_t kNone = VoxelGrid::kNone;
+constexpr std::size_t kNeighbourBricks = 27;
+constexpr std::size_t kOwnBrick = kNeighbourBricks / 2;
+/// Bits of a brick's number along an axis; those numbered in float have fewer.
+constexpr unsigned kOrderBits = 21;
+
+/// masks[voxel][i]: those voxels of neighbour brick i whose numbers differ by 2 at most from the voxel's.
+struct Neighbourhood {
+  std::uint64_t all[64][kNeighbourBricks] = {};
+
+  Neighbourhood() {
+    for (int voxel = 0; voxel < 64; ++voxel)
+      for (int dz = -2; dz <= 2; ++dz)
+        for (int dy = -2; dy <= 2; ++dy)
+          for (int dx = -2; dx <= 2; ++dx) {
+            const int x = (voxel & 3) + dx;
+            const int y = (voxel >> 2 & 3) + dy;
+            const int z = (voxel >> 4) + dz;
+            const auto brick = [](int number) -> std::size_t { return number < 0 ? 0 : number > 3 ? 2 : 1; };
+            const std::size_t i = brick(z) * 9 + brick(y) * 3 + brick(x);
+            const std::uint64_t bit = std::uint64_t{1} << ((x & 3) | (y & 3) << 2 | (z & 3) << 4);
+            all[voxel][i] |= bit;
+          }
+  }
+};
+
+const Neighbourhood kNeighbourhood;
+
+/// Finds the bricks around one that are in use and wanted.
+/// \param wanted callable as bool (const Brick&)
+template <typename Wanted>
+std::size_t findNear(const VoxelGrid& grid, const VoxelGrid::Key& key, NearBrick* near, Wanted&& wanted) {
+  constexpr std::uint32_t kMask = VoxelGrid::kBrickMask;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < kNeighbourBricks; ++i) {
+    const auto step = [](std::size_t which) { return static_cast<std::uint32_t>(which) - 1U; };
+    const std::uint32_t number = grid.findBrick(
+        {(key[0] + step(i % 3)) & kMask, (key[1] + step(i / 3 % 3)) & kMask, (key[2] + step(i / 9)) & kMask});
+    if (number != kNone && wanted(grid.bricks[number]))
+      near[count++] = {i, grid.bricks[number].occupied, grid.bricks[number].cliques};
+  }
+  return count;
+}
+
+/// Calls visit for each clique in the voxels around one.
+/// \param in_own_brick which voxels of its own brick are visited
+template <typename Visit>
+void forEachAround(const VoxelGrid& grid, std::size_t voxel, const NearBrick* near, std::size_t count,
+                   std::uint64_t in_own_brick, Visit&& visit) {
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint64_t around = near[i].occupied & kNeighbourhood.all[voxel][near[i].mask];
+    if (near[i].mask == kOwnBrick) around &= in_own_brick;
+    for (; around != 0; around &= around - 1) {
+      const std::uint64_t before = (around & -around) - 1;
+      const auto rank = countBits(near[i].occupied & before);
+      for (std::uint32_t other = grid.first_cliques[near[i].cliques + rank]; other != kNone;
+           other = grid.cliques[other].next_in_voxel)
+        visit(other);
+    }
+  }
+}
+
+/// Whether any return of one clique is a neighbour of any return of another: boxes first, points last.
+bool haveNeighbours(VoxelGrid& own_grid, Clique& own, VoxelGrid& other_grid, Clique& other) {
+  const float squared_tolerance = own_grid.tolerance.squared();
+  if (!(Box::squaredGap(own.box, other.box) < squared_tolerance)) return false;
+  if (Box::squaredSpan(own.box, other.box) < squared_tolerance) return true;
+  own_grid.compactFragments(own);
+  other_grid.compactFragments(other);
+  const auto pointsOf = [](const VoxelGrid& grid, const Fragment& fragment) {
+    const std::size_t first = fragment.first_point;
+    return PointSpan{&grid.x[first], &grid.y[first], &grid.z[first], fragment.count};
+  };
+  for (std::uint32_t i = own.first_fragment; i != kNone; i = own_grid.fragments[i].next_in_clique)
+    for (std::uint32_t k = other.first_fragment; k != kNone; k = other_grid.fragments[k].next_in_clique)
+      if (haveNeighbours(pointsOf(own_grid, own_grid.fragments[i]), own.box,
+                         pointsOf(other_grid, other_grid.fragments[k]), other.box, squared_tolerance))
+        return true;
+  return false;
+}
+
+void linkIfNeighbours(VoxelGrid& grid, std::uint32_t a_number, std::uint32_t b_number, DisjointSets& subclusters) {
+  Clique& a = grid.cliques[a_number];
+  Clique& b = grid.cliques[b_number];
+  if (a.root == b.root) return;
+  a.root = subclusters.find(a.root);
+  b.root = subclusters.find(b.root);
+  if (a.root != b.root && haveNeighbours(grid, a, grid, b)) a.root = b.root = subclusters.merge(a.root, b.root);
+}
+
+/// The root of all cliques of a brick, kNone if they have several.
+std::uint32_t commonRoot(VoxelGrid& grid, const Brick& brick, DisjointSets& subclusters) {
+  std::uint32_t root = kNone;
+  bool common = true;
+  grid.forEachClique(brick, [&](std::size_t, std::uint32_t number) {
+    Clique& clique = grid.cliques[number];
+    if (clique.root == root || !common) return;
+    clique.root = subclusters.find(clique.root);
+    common = root == kNone || clique.root == root;
+    root = clique.root;
+  });
+  return common ? root : kNone;
+}
+
+/// Links the new cliques of a brick with all cliques around them; each pair of new ones once. Bricks of one common root,
+/// which most are, are skipped as a whole.
+void linkNew(VoxelGrid& grid, const Brick& brick, DisjointSets& subclusters) {
+  NearBrick near[kNeighbourBricks];
+  const std::size_t count = findNear(grid, brick.key, near, [&](const Brick& other) {
+    if (brick.root == kNone || other.root == kNone) return true;
+    return subclusters.find(brick.root) != subclusters.find(other.root);
+  });
+  if (count == 0) return;
+  grid.forEachClique(brick, [&](std::size_t voxel, std::uint32_t clique) {
+    if (!grid.cliques[clique].is_new) return;
+    forEachAround(grid, voxel, near, count, ~std::uint64_t{0}, [&](std::uint32_t other) {
+      if (!grid.cliques[other].is_new || other < clique) linkIfNeighbours(grid, clique, other, subclusters);
+    });
+  });
+}
+
+/// Links all cliques of a brick with those that come after them, there and in the bricks given.
+void linkBrick(VoxelGrid& grid, const Brick& brick, const NearBrick* near, std::size_t count,
+               DisjointSets& subclusters) {
+  std::uint32_t rank = 0;
+  for (std::uint64_t left = brick.occupied; left != 0; left &= left - 1, ++rank) {
+    const auto voxel = static_cast<std::size_t>(__builtin_ctzll(left));
+    for (std::uint32_t clique = grid.first_cliques[brick.cliques + rank]; clique != kNone;
+         clique = grid.cliques[clique].next_in_voxel) {
+      for (std::uint32_t other = grid.cliques[clique].next_in_voxel; other != kNone;
+           other = grid.cliques[other].next_in_voxel)
+        linkIfNeighbours(grid, clique, other, subclusters);
+      forEachAround(grid, voxel, near, count, left & (left - 1),
+                    [&](std::uint32_t other) { linkIfNeighbours(grid, clique, other, subclusters); });
+    }
+  }
+}
+
+void linkBrickTo(VoxelGrid& grid, const Brick& brick, VoxelGrid& other, VoxelLinker::Part part, PairVisitor& visitor) {
+  NearBrick near[kNeighbourBricks];
+  std::size_t count = 0;
+  bool searched = false;
+  grid.forEachClique(brick, [&](std::size_t voxel, std::uint32_t number) {
+    Clique& own = grid.cliques[number];
+    if ((part == VoxelLinker::Part::kNew && !own.is_new) || !visitor.reaches(own.box)) return;
+    if (!searched)
+      count = findNear(other, brick.key, near, [&](const Brick& others) {
+        return brick.root == kNone || others.root == kNone || visitor.inDifferentSets(brick.root, others.root);
+      });
+    searched = true;
+    forEachAround(other, voxel, near, count, ~std::uint64_t{0}, [&](std::uint32_t j) {
+      Clique& others = other.cliques[j];
+      if (Box::squaredGap(own.box, others.box) < grid.tolerance.squared() &&
+          visitor.inDifferentSets(own.root, others.root) && haveNeighbours(grid, own, other, others))
+        visitor.join(own.root, others.root);
+    });
+  });
+}
+
+}  // namespace
+
+void VoxelLinker::link(VoxelGrid& grid, DisjointSets& subclusters) {
+  if (!grid.anything_linked && grid.all_in_float_range) {
+    linkInOrder(grid, subclusters);
+  } else {
+    for (const std::uint32_t brick : grid.new_bricks)
+      grid.bricks[brick].root = commonRoot(grid, grid.bricks[brick], subclusters);
+    for (const std::uint32_t brick : grid.new_bricks) linkNew(grid, grid.bricks[brick], subclusters);
+  }
+}
+
+void VoxelLinker::markLinked(VoxelGrid& grid) {
+  for (const std::uint32_t brick : grid.new_bricks) {
+    grid.bricks[brick].is_new = false;
+    grid.forEachClique(grid.bricks[brick],
+                       [&](std::size_t, std::uint32_t clique) { grid.cliques[clique].is_new = false; });
+  }
+  grid.anything_linked = grid.anything_linked || !grid.new_bricks.empty();
+  grid.new_bricks.clear();
+}
+
+/// Links all with all. Bricks are sorted by z, y and x: the bricks around one are found by cursors in its own and four
+/// following rows, without the hash table.
+void VoxelLinker::linkInOrder(VoxelGrid& grid, DisjointSets& subclusters) {
+  constexpr std::uint32_t kMiddle = std::uint32_t{1} << (kOrderBits - 1);
+  const auto number = [](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    return (std::uint64_t{z} << kOrderBits | y) << kOrderBits | x;
+  };
+  ordered_.clear();
+  for (std::uint32_t brick = 0; brick < grid.bricks.size(); ++brick) {
+    const auto along = [&](std::size_t axis) {
+      return (grid.bricks[brick].key[axis] + kMiddle) & VoxelGrid::kBrickMask;
+    };
+    ordered_.push_back({number(along(0), along(1), along(2)), brick});
+  }
+  std::sort(ordered_.begin(), ordered_.end(),
+            [](const OrderedBrick& a, const OrderedBrick& b) { return a.number < b.number; });
+
+  constexpr std::size_t kRows = 4;
+  const std::uint64_t row_at[kRows] = {number(0, 1, 0), number(0, 0, 1) - number(0, 1, 0), number(0, 0, 1),
+                                       number(0, 1, 1)};
+  constexpr std::size_t kFirstMask[kRows] = {15, 18, 21, 24};
+  std::size_t cursors[kRows] = {};
+  NearBrick near[kNeighbourBricks];
+  for (std::size_t i = 0; i < ordered_.size(); ++i) {
+    const OrderedBrick& own = ordered_[i];
+    std::size_t count = 0;
+    const auto add = [&](std::size_t mask, const OrderedBrick& other) {
+      const Brick& brick = grid.bricks[other.brick];
+      near[count++] = {mask, brick.occupied, brick.cliques};
+    };
+    add(kOwnBrick, own);
+    if (i + 1 < ordered_.size() && ordered_[i + 1].number == own.number + 1) add(kOwnBrick + 1, ordered_[i + 1]);
+    for (std::size_t row = 0; row < kRows; ++row) {
+      const std::uint64_t first = own.number + row_at[row] - 1;
+      std::size_t& at = cursors[row];
+      while (at < ordered_.size() && ordered_[at].number < first) ++at;
+      for (std::size_t k = at; k < ordered_.size() && ordered_[k].number <= first + 2; ++k)
+        add(kFirstMask[row] + static_cast<std::size_t>(ordered_[k].number - first), ordered_[k]);
+    }
+    linkBrick(grid, grid.bricks[own.brick], near, count, subclusters);
+  }
+}
+
+void VoxelLinker::linkTo(VoxelGrid& grid, VoxelGrid& other, Part part, PairVisitor& visitor) {
+  const auto link = [&](const Brick& brick) {
+    if (other.filter.mayHaveNear(brick.key)) linkBrickTo(grid, brick, other, part, visitor);
+  };
+  if (part == Part::kAll)
+    std::for_each(grid.bricks.begin(), grid.bricks.end(), link);
+  else
+    for (const std::uint32_t brick : grid.new_bricks) link(grid.bricks[brick]);
+}
+
+}  // namespace lisco

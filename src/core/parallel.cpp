@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <thread>
+#include <vector>
+
+// Without OpenMP, and under ThreadSanitizer, which does not know OpenMP's barriers.
+#ifdef __has_feature
+#if __has_feature(thread_sanitizer)
+#define LISCO_STD_THREADS
+#endif
+#endif
+#if defined(__SANITIZE_THREAD__) || !defined(_OPENMP)
+#define LISCO_STD_THREADS
+#endif
+
+namespace lisco {
+
+std::size_t allThreads() {
+  return std::max<std::size_t>(1, std::thread::hardware_concurrency());
+}
+
+void inParallel(std::size_t threads, void (*work)(void* context, std::size_t thread), void* context) {
+  if (threads <= 1) {
+    if (threads == 1) work(context, 0);
+    return;
+  }
+  std::exception_ptr failure;
+  std::atomic_flag has_failed = ATOMIC_FLAG_INIT;
+  const auto run = [&](std::size_t thread) {
+    try {
+      work(context, thread);
+    } catch (...) {  // may not leave the thread; the first one tells
+      if (!has_failed.test_and_set()) failure = std::current_exception();
+    }
+  };
+#ifdef LISCO_STD_THREADS
+  std::vector<std::thread> running;
+  for (std::size_t thread = 1; thread < threads; ++thread) running.emplace_back(run, thread);
+  run(0);
+  for (std::thread& one : running) one.join();
+#else
+  const auto count = static_cast<int>(threads);
+#pragma omp parallel for num_threads(count) schedule(static, 1)
+  for (int thread = 0; thread < count; ++thread) run(static_cast<std::size_t>(thread));
+#endif
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace lisco

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstddef>
+#include <type_traits>
+
+namespace lisco {
+
+/// One thread for each core.
+std::size_t allThreads();
+
+/// Calls work (context, i) for each i below `threads`, each in a thread of its own, and returns when all have.
+void inParallel(std::size_t threads, void (*work)(void* context, std::size_t thread), void* context);
+
+template <typename Work>
+void inParallel(std::size_t threads, Work&& work) {
+  inParallel(
+      threads,
+      [](void* context, std::size_t thread) { (*static_cast<std::remove_reference_t<Work>*>(context))(thread); },
+      &work);
+}
+
+}  // namespace lisco

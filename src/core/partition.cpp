@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "core/partition.h"
+
+#include <algorithm>
+
+namespace lisco {
+
+namespace {
+
+/// Of a return, beyond what the segment linker counts, in its units of work (benchmarks/suite.sh stages).
+constexpr std::size_t kWorkOfReturn = 2;
+
+/// Joins neighbours in the voxels of two partitions of one rotation.
+class Merger : public PairVisitor {
+ public:
+  explicit Merger(DisjointSets& subclusters) : subclusters_(subclusters) {}
+  bool inDifferentSets(std::uint32_t own, std::uint32_t others) override {
+    return subclusters_.find(own) != subclusters_.find(others);
+  }
+  void join(std::uint32_t own, std::uint32_t others) override { subclusters_.merge(own, others); }
+
+ private:
+  DisjointSets& subclusters_;
+};
+
+}  // namespace
+
+void fill(RingBlock& block, std::size_t at, const CellSource& cells, std::size_t laser, std::size_t first,
+          std::size_t count) {
+  const std::size_t to = RingBlock::kMargin + at;
+  cells.read(laser, first, count, {block.x + to, block.y + to, block.z + to, block.source_index + at});
+}
+
+void Partition::prepare(const Tolerance& tolerance, const SensorHints& hints, std::size_t columns) {
+  tolerance_ = tolerance;
+  runs.clear();
+  voxels_.prepare(tolerance);
+  image_.prepare(tolerance, hints, columns);
+  segments_.prepare(image_);
+}
+
+void Partition::readColumns(const CellSource& cells, std::size_t first_cell, std::size_t count, std::size_t lasers,
+                            std::uint32_t first_column, DisjointSets& subclusters) {
+  for (std::size_t laser = 0; laser < lasers; ++laser) {
+    fill(block_, 0, cells, laser, first_cell, count);
+    readRing(block_, laser, first_column, count, subclusters);
+  }
+  segments_.link(image_, subclusters);
+}
+
+void Partition::linkWithin(DisjointSets& subclusters) {
+  segments_.linkRest(image_, subclusters);
+  near_.link(voxels_, subclusters);
+}
+
+void Partition::linkTo(Partition& earlier, DisjointSets& subclusters) {
+  Merger merger(subclusters);
+  segments_.linkTo(image_, earlier.image_, subclusters);
+  VoxelLinker::linkTo(voxels_, earlier.voxels_, VoxelLinker::Part::kNew, merger);
+}
+
+std::size_t Partition::workDone() const {
+  return segments_.workDone() + kWorkOfReturn * runs.returns;
+}
+
+}  // namespace lisco

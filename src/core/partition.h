@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/bits.h"
+#include "core/disjoint_sets.h"
+#include "core/far/range_image.h"
+#include "core/far/segment_linker.h"
+#include "core/near/voxel_grid.h"
+#include "core/near/voxel_linker.h"
+#include "core/neighbour.h"
+#include "core/ring_block.h"
+#include "core/runs.h"
+#include "lisco/return.h"
+#include "lisco/sensor_hints.h"
+
+namespace lisco {
+
+/// Consecutive columns that are read together: a thread's part of a rotation, or a stream's pane. Linked among
+/// themselves; links to other partitions follow later. Run i is element first_element + i of a forest of subclusters.
+class Partition {
+ public:
+  /// Forgets all. Keeps its memory.
+  /// \param hints without steps_per_turn, all returns are near
+  /// \param columns number of columns expected; more than a turn needs no more memory
+  void prepare(const Tolerance& tolerance, const SensorHints& hints, std::size_t columns);
+
+  /// Grows to a number of lasers, which is otherwise done when they are read.
+  void addLasers(std::size_t lasers) {
+    if (image_.inUse()) image_.addLasers(lasers);
+  }
+
+  /// Reads some columns laser by laser, and links them as far as all lasers have passed them.
+  /// \param first_column of these, in the rotation
+  /// \param first_cell of these, among the cells
+  void readColumns(const CellSource& cells, std::size_t first_cell, std::size_t count, std::size_t lasers,
+                   std::uint32_t first_column, DisjointSets& subclusters);
+
+  /// Reads a ring block, without linking it.
+  void readRing(RingBlock& block, std::size_t laser, std::uint32_t first_column, std::size_t columns,
+                DisjointSets& subclusters) {
+    readRing(block, laser, first_column, columns, subclusters,
+             [](const RingBlock&, const RingBlockInfo& info) { return info.returns; });
+  }
+  /// \param choose callable as ColumnBits (const RingBlock&, RingBlockInfo&): the returns that may have neighbours; it may
+  ///        add to info.starts
+  template <typename Choose>
+  void readRing(RingBlock& block, std::size_t laser, std::uint32_t first_column, std::size_t columns,
+                DisjointSets& subclusters, Choose&& choose);
+
+  /// Links what is new within the partition, near and far.
+  void linkWithin(DisjointSets& subclusters);
+  /// Links an earlier partition of the same rotation.
+  void linkTo(Partition& earlier, DisjointSets& subclusters);
+  /// Links the end of the partition with its beginning, a turn before.
+  void linkSeam(DisjointSets& subclusters) { segments_.linkTo(image_, image_, subclusters); }
+  /// Marks all that is near as linked with all other partitions.
+  void markLinked() { VoxelLinker::markLinked(voxels_); }
+
+  /// Linking of far returns part by part: see SegmentLinker.
+  void scheduleFar() { segments_.schedule(image_); }
+  std::size_t farPartsLeft() const { return segments_.partsLeft(image_); }
+  std::size_t linkFarPart(DisjointSets& subclusters) { return segments_.linkPart(image_, subclusters); }
+
+  /// Whether bins save no work: see RangeImage::isFull.
+  bool isImageFull() const { return image_.isFull(); }
+  void stopPlacing() { image_.stopPlacing(); }
+
+  /// Work that reading and linking has taken since prepare (), in the segment linker's units.
+  std::size_t workDone() const;
+
+  /// Links the near returns of this pane, all or new, with those of another one.
+  void linkPanes(Partition& other, VoxelLinker::Part part, PairVisitor& visitor) {
+    VoxelLinker::linkTo(voxels_, other.voxels_, part, visitor);
+  }
+
+  Runs runs;
+  std::uint32_t first_element = 0;
+
+ private:
+  Tolerance tolerance_;
+  RangeImage image_;  ///< far returns
+  SegmentLinker segments_;
+  VoxelGrid voxels_;  ///< near returns, and those that are not placed
+  VoxelLinker near_;
+  RingBlock block_{};
+  RingBlockInfo info_{};
+};
+
+/// Copies cells of one laser into a ring block, from its column `at` on.
+void fill(RingBlock& block, std::size_t at, const CellSource& cells, std::size_t laser, std::size_t first,
+          std::size_t count);
+
+template <typename Choose>
+void Partition::readRing(RingBlock& block, std::size_t laser, std::uint32_t first_column, std::size_t columns,
+                         DisjointSets& subclusters, Choose&& choose) {
+  measure(block, columns, tolerance_.squared(), image_.range, info_);
+  if (info_.returns == 0) return;
+  const ColumnBits chosen = choose(block, info_);
+  runs.add(block, info_, laser, first_column, columns, first_element, subclusters);
+  ColumnBits unplaced = 0;
+  if (info_.far != 0) {
+    if (!image_.started) {
+      const auto first = static_cast<std::size_t>(__builtin_ctzll(info_.far));
+      image_.start(block.x[RingBlock::kMargin + first], block.y[RingBlock::kMargin + first],
+                   first_column + static_cast<std::uint32_t>(first));
+    }
+    unplaced = image_.place(block, info_, laser, first_column);
+  }
+  const ColumnBits near = chosen & (~info_.interior | unplaced);
+  if (near != 0) voxels_.add(block, info_, near, subclusters);
+}
+
+}  // namespace lisco

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace lisco {
+
+/// What one laser measured in up to 64 consecutive columns; sets of its columns are bits of a machine word.
+struct RingBlock {
+  static constexpr std::size_t kColumns = 64;
+  static constexpr std::size_t kMargin = 16;  ///< floats before the first column's, so that vectors may begin there
+
+  float x[kMargin + kColumns], y[kMargin + kColumns], z[kMargin + kColumns];
+  std::uint32_t source_index[kColumns];
+};
+
+/// What is measured on a ring block, as seen from the sensor.
+struct RingBlockInfo {
+  std::uint64_t returns;                   ///< columns with a return
+  std::uint64_t starts;                    ///< of these, those that are no neighbour of a return in the column before
+  std::uint64_t far;                       ///< horizontal distance within [FarRange::min_range, FarRange::max_range)
+  std::uint64_t interior;                  ///< of these, those whose neighbours are all far
+  float lowest, highest;                   ///< slope (z / rho) of the far ones; lowest > highest if there are none
+  float rho[RingBlock::kColumns];          ///< horizontal distance, metres
+  std::uint32_t run[RingBlock::kColumns];  ///< the run of each return; set by Runs::add
+};
+
+/// Which returns are far, by their horizontal distance from the sensor, metres.
+struct FarRange {
+  std::array<float, 3> origin{};  ///< of the sensor
+  float min_range = 0;
+  float max_range = 0;     ///< beyond, returns go to the voxels: their squares may overflow
+  float interior_min = 0;  ///< from here on all neighbours are at least at min_range
+  float interior_max = 0;  ///< up to here all neighbours are below max_range
+};
+
+/// Finds the returns of a ring block, which of them are linked to the one before, and their distances. Sets x of cells
+/// that are no returns to NaN.
+/// \param columns number of columns; those behind count as empty
+void measure(RingBlock& block, std::size_t columns, float squared_tolerance, const FarRange& range,
+             RingBlockInfo& info);
+
+}  // namespace lisco

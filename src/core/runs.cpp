@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "core/runs.h"
+
+#include <algorithm>
+
+#include "core/bits.h"
+
+namespace lisco {
+
+void Runs::clear() {
+  source_index.clear();
+  runs.clear();
+  blocks.clear();
+  returns = 0;
+}
+
+void Runs::add(const RingBlock& block, RingBlockInfo& info, std::size_t laser, std::uint32_t first_column,
+               std::size_t columns, std::uint32_t first_element, DisjointSets& subclusters) {
+  const auto first_run = static_cast<std::uint32_t>(runs.size());
+  const auto first_cell = static_cast<std::uint32_t>(source_index.size());
+  const std::size_t end_run = first_run + static_cast<std::size_t>(__builtin_popcountll(info.starts));
+  subclusters.grow(first_element + end_run);
+  runs.resize(end_run);
+  source_index.insert(source_index.end(), block.source_index, block.source_index + columns);
+  returns += static_cast<std::size_t>(__builtin_popcountll(info.returns));
+  std::uint32_t number = first_run;
+  forEachChain(info.starts, info.returns, [&](std::size_t begin, std::size_t end) {
+    const std::uint32_t element = first_element + number;
+    subclusters.create(element);
+    std::fill(info.run + begin, info.run + end, element);
+    runs[number++] = {first_cell + static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin), 0};
+  });
+  blocks.push_back({static_cast<std::uint32_t>(laser), first_column, first_cell, first_run, number - first_run});
+}
+
+std::uint32_t Runs::runAt(const Block& block, std::uint32_t column) const {
+  const std::uint32_t cell = block.first_cell + column;
+  const auto begin = runs.begin() + block.first_run;
+  const auto after = std::upper_bound(begin, begin + block.count, cell,
+                                      [](std::uint32_t wanted, const Run& run) { return wanted < run.first_cell; });
+  if (after == begin || cell >= (after - 1)->first_cell + (after - 1)->count) return kNone;
+  return static_cast<std::uint32_t>(after - 1 - runs.begin());
+}
+
+}  // namespace lisco

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/disjoint_sets.h"
+#include "core/ring_block.h"
+#include "lisco/return.h"
+
+namespace lisco {
+
+/// The returns of some columns as *runs*: chains of neighbours that one laser returned in consecutive columns.
+struct Runs {
+  /// The runs of a ring block; blocks without a return have no entry.
+  struct Block {
+    std::uint32_t laser;
+    std::uint32_t first_column;
+    std::uint32_t first_cell;  ///< that of first_column
+    std::uint32_t first_run;
+    std::uint32_t count;
+  };
+
+  std::vector<std::uint32_t> source_index;  ///< of each cell of the blocks with returns
+  std::vector<Run> runs;                    ///< Run::first_cell counts in source_index
+  std::vector<Block> blocks;
+  std::size_t returns = 0;
+
+  /// Forgets all. Keeps its memory.
+  void clear();
+
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  /// The run of a cell of a block, kNone if it is no return.
+  /// \param column within the block
+  std::uint32_t runAt(const Block& block, std::uint32_t column) const;
+
+  /// Cuts a ring block at info.starts. Each run is a new set of the subclusters; run i is element first_element + i.
+  /// \param info receives the element of each return's run
+  void add(const RingBlock& block, RingBlockInfo& info, std::size_t laser, std::uint32_t first_column,
+           std::size_t columns, std::uint32_t first_element, DisjointSets& subclusters);
+};
+
+/// The ring blocks of several partitions by laser, those of one laser by column: the order in which an organized cloud lies
+/// in memory.
+class LaserOrder {
+ public:
+  struct Entry {
+    std::uint32_t partition, block;
+  };
+
+  /// \param runs_of callable as const Runs& (std::size_t partition)
+  template <typename RunsOf>
+  void sort(std::size_t partitions, RunsOf&& runs_of) {
+    end_.clear();
+    std::size_t blocks = 0;
+    for (std::size_t partition = 0; partition < partitions; ++partition)
+      for (const Runs::Block& block : runs_of(partition).blocks) {
+        if (end_.size() < block.laser + std::size_t{2}) end_.resize(block.laser + std::size_t{2}, 0);
+        ++end_[block.laser + 1];
+        ++blocks;
+      }
+    for (std::size_t laser = 1; laser < end_.size(); ++laser) end_[laser] += end_[laser - 1];
+    entries_.resize(blocks);
+    for (std::size_t partition = 0; partition < partitions; ++partition)
+      for (std::size_t block = 0; block < runs_of(partition).blocks.size(); ++block)
+        entries_[end_[runs_of(partition).blocks[block].laser]++] = {static_cast<std::uint32_t>(partition),
+                                                                    static_cast<std::uint32_t>(block)};
+  }
+
+  /// Calls visit(partition, runs, block) for each ring block in this order, after sort ().
+  template <typename RunsOf, typename Visit>
+  void forEachBlock(RunsOf&& runs_of, Visit&& visit) const {
+    for (const Entry& entry : entries_) {
+      const Runs& runs = runs_of(entry.partition);
+      visit(std::size_t{entry.partition}, runs, runs.blocks[entry.block]);
+    }
+  }
+
+  const std::vector<Entry>& entries() const { return entries_; }
+  /// Range of a laser's blocks among the entries, after sort ().
+  std::size_t beginOf(std::size_t laser) const { return laser == 0 ? 0 : endOf(laser - 1); }
+  std::size_t endOf(std::size_t laser) const { return laser < end_.size() ? end_[laser] : entries_.size(); }
+
+ private:
+  std::vector<std::size_t> end_;  ///< after sort (): behind each laser's last entry
+  std::vector<Entry> entries_;
+};
+
+}  // namespace lisco

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "core/sensor_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/neighbour.h"
+
+namespace lisco {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Of a point as seen from the sensor, radians.
+struct Direction {
+  double azimuth, elevation;
+};
+
+Direction directionOf(const Return& point, const std::array<float, 3>& origin) {
+  const double x = static_cast<double>(point.x) - static_cast<double>(origin[0]);
+  const double y = static_cast<double>(point.y) - static_cast<double>(origin[1]);
+  const double z = static_cast<double>(point.z) - static_cast<double>(origin[2]);
+  return {std::atan2(y, x), std::atan2(z, std::hypot(x, y))};
+}
+
+float median(Sample<double>& values, float if_empty) {
+  if (values.empty()) return if_empty;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return static_cast<float>(*middle);
+}
+
+/// Whether a sensor may have measured what lies in the box: it is not further outside than the box is wide.
+bool mayHaveSeen(const std::array<float, 3>& origin, const Box& box) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double lo = static_cast<double>(box.lo[axis]);
+    const double hi = static_cast<double>(box.hi[axis]);
+    const double o = static_cast<double>(origin[axis]);
+    const double width = std::max({static_cast<double>(box.hi[0]) - static_cast<double>(box.lo[0]),
+                                   static_cast<double>(box.hi[1]) - static_cast<double>(box.lo[1]),
+                                   static_cast<double>(box.hi[2]) - static_cast<double>(box.lo[2])});
+    if (!(std::fabs(o) <= 1e30) || o < lo - width || o > hi + width) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+SensorHints SensorEstimator::estimate(const std::array<float, 3>& declared_origin) const {
+  constexpr std::size_t kMinPairs = 8;
+  SensorHints hints;
+  if (along_row_.size() + along_column_.size() < kMinPairs || further_.size() < kMinPairs) return hints;
+
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  for (const auto* pairs : {&along_row_, &along_column_})
+    for (const Pair& pair : *pairs) box.add(Box::around(pair.a.x, pair.a.y, pair.a.z));
+  if (!mayHaveSeen(hints.origin, box)) {
+    if (!mayHaveSeen(declared_origin, box)) return hints;
+    hints.origin = declared_origin;
+  }
+  const auto& origin = hints.origin;
+
+  const auto rangeOf = [&origin](const Return& point) {
+    return std::hypot(static_cast<double>(point.x) - static_cast<double>(origin[0]),
+                      static_cast<double>(point.y) - static_cast<double>(origin[1]),
+                      static_cast<double>(point.z) - static_cast<double>(origin[2]));
+  };
+  Sample<double> jumps;
+  for (const Pair& pair : along_row_) jumps.push_back(std::fabs(rangeOf(pair.a) - rangeOf(pair.b)));
+  for (std::size_t i = 0; i < alone_; ++i) jumps.push_back(std::numeric_limits<double>::infinity());
+  hints.roughness = median(jumps, 0.0F);
+
+  Sample<double> elevation_steps;
+  for (const Pair& pair : along_column_)
+    elevation_steps.push_back(std::fabs(directionOf(pair.a, origin).elevation - directionOf(pair.b, origin).elevation));
+  hints.elevation_step = median(elevation_steps, hints.elevation_step);
+
+  // Over many columns, the step and the sense of rotation are measured more finely.
+  Sample<double> turns;
+  for (const FurtherPair& pair : further_)
+    turns.push_back(
+        std::remainder(directionOf(pair.b, origin).azimuth - directionOf(pair.a, origin).azimuth, 2.0 * kPi) /
+        static_cast<double>(pair.columns));
+  const auto step = static_cast<double>(median(turns, 0.0F));
+  Sample<double> deviations;
+  for (const double turn : turns) deviations.push_back(std::fabs(turn - step));
+  constexpr double kMinStep = 1e-4;      // radians
+  constexpr double kMaxDeviation = 0.5;  // median, in steps: beyond, the columns are no steps of a turn
+  if (std::fabs(step) > kMinStep && static_cast<double>(median(deviations, 0.0F)) < kMaxDeviation * std::fabs(step))
+    hints.steps_per_turn = static_cast<int>(std::lround(2.0 * kPi / std::fabs(step)));
+  hints.clockwise = step < 0;
+
+  constexpr double kFew = 0.2;  // share of the returns beyond SensorHints::far_distance
+  Sample<double> distances;
+  for (const Pair& pair : along_row_)
+    distances.push_back(std::hypot(static_cast<double>(pair.a.x) - static_cast<double>(origin[0]),
+                                   static_cast<double>(pair.a.y) - static_cast<double>(origin[1])));
+  if (!distances.empty()) {
+    const auto few = distances.end() - 1 - static_cast<std::ptrdiff_t>(kFew * static_cast<double>(distances.size()));
+    std::nth_element(distances.begin(), few, distances.end());
+    hints.far_distance = static_cast<float>(*few);
+  }
+  return hints;
+}
+
+SensorHints estimateSensor(std::size_t columns, std::size_t lasers, const std::array<float, 3>& declared_origin,
+                           const CellSource& cells) {
+  constexpr std::size_t kSmall = 4096;  // cells, below which a range image is not worth its preparation
+  constexpr std::size_t kSampledRows = 8;
+  constexpr std::size_t kSamples = 128;
+  constexpr std::size_t kFurther = 32;  // columns; less than half a turn of any sensor
+  constexpr std::size_t kMinShare = 4;  // of a turn: 1 / kMinShare; less would leave the range image mostly empty
+  if (lasers < 2 || columns * lasers < kSmall) return SensorHints();
+  const auto valid = [](const Return& cell) { return isReturn(cell.x, cell.y, cell.z); };
+
+  SensorEstimator estimator;
+  const std::size_t row_step = std::max<std::size_t>(1, lasers / kSampledRows);
+  const std::size_t samples_per_row = std::max<std::size_t>(1, kSamples * row_step / lasers);
+  const std::size_t column_step = std::max<std::size_t>(1, columns / samples_per_row);
+  for (std::size_t laser = row_step / 2; laser < lasers; laser += row_step)
+    for (std::size_t column = column_step / 2; column < columns; column += column_step) {
+      const Return cell = cells.at(laser, column);
+      if (!valid(cell)) continue;
+      const Return right = column + 1 < columns ? cells.at(laser, column + 1) : kNoReturn;
+      const Return below = laser + 1 < lasers ? cells.at(laser + 1, column) : kNoReturn;
+      const Return further = column + kFurther < columns ? cells.at(laser, column + kFurther) : kNoReturn;
+      if (valid(right))
+        estimator.addAlongRow(cell, right);
+      else
+        estimator.addAlone();
+      if (valid(further)) estimator.addFurtherAlongRow(cell, further, kFurther);
+      if (valid(below)) estimator.addAlongColumn(cell, below);
+    }
+  SensorHints hints = estimator.estimate(declared_origin);
+  if (static_cast<std::size_t>(hints.steps_per_turn) > kMinShare * columns) hints.steps_per_turn = 0;
+  return hints;
+}
+
+}  // namespace lisco

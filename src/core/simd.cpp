@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "lisco/simd.h"
+
+#include <cstdint>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/simd.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace lisco {
+namespace HWY_NAMESPACE {
+
+std::int64_t target() {
+  return HWY_TARGET;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lisco
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lisco {
+namespace {
+
+HWY_EXPORT(target);
+
+const std::vector<std::int64_t>& targets() {
+  static const std::vector<std::int64_t> all = hwy::SupportedAndGeneratedTargets();
+  return all;
+}
+
+void use(std::int64_t target) {
+  hwy::SetSupportedTargetsForTest(target);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+}  // namespace
+
+std::string simdLevel() {
+  return hwy::TargetName(HWY_DYNAMIC_DISPATCH(target)());
+}
+
+std::vector<std::string> simdLevels() {
+  std::vector<std::string> names;
+  for (const std::int64_t target : targets()) names.emplace_back(hwy::TargetName(target));
+  return names;
+}
+
+bool useSimdLevel(const std::string& name) {
+  for (const std::int64_t target : targets())
+    if (name.empty() || hwy::TargetName(target) == name) {
+      use(name.empty() ? 0 : target);
+      return true;
+    }
+  return false;
+}
+
+}  // namespace lisco
+#endif

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "lisco/window_clusterer.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <vector>
+
+#include "core/column_block.h"
+#include "core/disjoint_sets.h"
+#include "core/partition.h"
+#include "core/runs.h"
+
+namespace lisco {
+
+/// The panes of the last window and the one that is being filled.
+class WindowClusterer::Window {
+ public:
+  void begin(const WindowParameters& parameters);
+  bool addColumn(const Return* cells, std::size_t lasers);
+
+  bool isUsable() const { return usable_; }
+  std::size_t columnCount() const { return columns_; }
+  std::size_t returnCount() const { return returns_; }
+  std::size_t subclusterCount() const { return sizes_.size(); }
+  std::uint32_t sizeOf(std::uint32_t subcluster) const { return sizes_[subcluster]; }
+  void visitRuns(const RunVisitor& visit);
+
+ private:
+  /// A subcluster of an older pane and one of a newer pane that hold neighbours.
+  struct Edge {
+    std::uint32_t older_subcluster, newer_subcluster;
+    std::uint64_t newer_pane;  ///< its number
+  };
+  struct Pane : Partition {
+    DisjointSets subclusters;               ///< of its runs
+    std::vector<std::uint32_t> subcluster;  ///< of each run
+    std::vector<std::uint32_t> sizes;       ///< of its subclusters
+    std::vector<Edge> edges;                ///< to newer panes
+    std::uint32_t first_in_window = 0;      ///< element of its first subcluster in the window's forest
+  };
+  class EdgeFinder;
+
+  Pane& pane(std::uint64_t number) { return panes_[number % panes_.size()]; }
+  void startPane();
+  void readBlock();
+  void finishPane();
+  void numberWithin(Pane& pane);
+  void placePanes();
+  void linkPanes();
+  void keepUsefulEdges(Pane& older);
+  void numberSubclusters();
+
+  WindowParameters parameters_;
+  Tolerance tolerance_;
+  bool usable_ = false;  ///< begun, and left by no exception since
+  ColumnBlock block_;
+  std::vector<Pane> panes_;       ///< a ring
+  std::uint64_t newest_ = 0;      ///< number of the pane that is being filled
+  std::uint64_t oldest_ = 0;      ///< of the window
+  std::size_t pane_columns_ = 0;  ///< read into the newest
+  DisjointSets window_;           ///< of the panes' subclusters
+  std::vector<std::uint32_t> subcluster_of_element_;
+  std::vector<std::uint32_t> sizes_;
+  std::size_t columns_ = 0;
+  std::size_t returns_ = 0;
+  LaserOrder order_;
+};
+
+void WindowClusterer::Window::begin(const WindowParameters& parameters) {
+  const std::size_t hop = parameters.hop_columns;
+  if (hop == 0 || parameters.window_columns < hop || parameters.window_columns % hop != 0)
+    throw std::invalid_argument("lisco::WindowClusterer: the window must be a multiple of the hop, 1 or more");
+  if (!usable_) *this = Window();
+  usable_ = false;
+  parameters_ = parameters;
+  tolerance_ = Tolerance(parameters.tolerance);
+  // One more than a window has, so that its panes last while the next one is filled.
+  panes_.resize(std::max(panes_.size(), parameters.window_columns / hop + 1));
+  newest_ = oldest_ = 0;
+  startPane();
+  block_.clear();
+  sizes_.clear();
+  columns_ = returns_ = 0;
+  usable_ = true;
+}
+
+bool WindowClusterer::Window::addColumn(const Return* cells, std::size_t lasers) {
+  if (parameters_.lasers != 0 && lasers > parameters_.lasers)
+    throw std::invalid_argument("lisco::WindowClusterer: a column of more cells than lasers were declared");
+  usable_ = false;
+  block_.add(cells, lasers);
+  const bool pane_ends = pane_columns_ + block_.columns() == parameters_.hop_columns;
+  if (pane_ends || block_.columns() == RingBlock::kColumns) readBlock();
+  if (pane_ends) finishPane();
+  usable_ = true;
+  return pane_ends;
+}
+
+void WindowClusterer::Window::startPane() {
+  pane(newest_).prepare(tolerance_, SensorHints(), 0);
+  pane(newest_).edges.clear();
+  pane_columns_ = 0;
+}
+
+void WindowClusterer::Window::readBlock() {
+  Pane& newest = pane(newest_);
+  for (std::size_t laser = 0; laser < block_.lasers(); ++laser)
+    newest.readRing(block_.ring(laser), laser, static_cast<std::uint32_t>(pane_columns_), block_.columns(),
+                    newest.subclusters);
+  pane_columns_ += block_.columns();
+  block_.clear();
+}
+
+/// The newest pane is complete, and with it a window.
+void WindowClusterer::Window::finishPane() {
+  pane(newest_).linkWithin(pane(newest_).subclusters);
+  pane(newest_).markLinked();
+  numberWithin(pane(newest_));
+  if (newest_ - oldest_ == parameters_.window_columns / parameters_.hop_columns) ++oldest_;
+  placePanes();
+  linkPanes();
+  numberSubclusters();
+  columns_ = (newest_ - oldest_ + 1) * parameters_.hop_columns;
+  ++newest_;
+  startPane();
+}
+
+/// Numbers the subclusters of a pane.
+void WindowClusterer::Window::numberWithin(Pane& pane) {
+  pane.sizes.clear();
+  pane.subcluster.clear();
+  for (std::uint32_t run = 0; run < pane.runs.runs.size(); ++run) {
+    const std::uint32_t root = pane.subclusters.find(run);  // the first of its set
+    if (root == run) {
+      pane.subcluster.push_back(static_cast<std::uint32_t>(pane.sizes.size()));
+      pane.sizes.push_back(0);
+    } else {
+      pane.subcluster.push_back(pane.subcluster[root]);
+    }
+    pane.sizes[pane.subcluster.back()] += pane.runs.runs[run].count;
+  }
+}
+
+/// Makes each subcluster of the window's panes an element of its forest.
+void WindowClusterer::Window::placePanes() {
+  std::uint32_t elements = 0;
+  returns_ = 0;
+  for (std::uint64_t number = oldest_; number != newest_ + 1; ++number) {
+    pane(number).first_in_window = elements;
+    elements += static_cast<std::uint32_t>(pane(number).sizes.size());
+    returns_ += pane(number).runs.returns;
+  }
+  window_.reset(elements);
+  for (std::uint32_t element = 0; element < elements; ++element) window_.create(element);
+  subcluster_of_element_.resize(elements);
+}
+
+/// Joins subclusters of the newest pane with those of an older one, and notes the edges there.
+class WindowClusterer::Window::EdgeFinder : public PairVisitor {
+ public:
+  EdgeFinder(Window& window, std::uint64_t older) : window_(window), older_(window.pane(older)) {}
+
+  bool inDifferentSets(std::uint32_t own, std::uint32_t others) override {
+    return window_.window_.find(newest_.first_in_window + newest_.subcluster[own]) !=
+           window_.window_.find(older_.first_in_window + older_.subcluster[others]);
+  }
+
+  void join(std::uint32_t own, std::uint32_t others) override {
+    const Edge edge{older_.subcluster[others], newest_.subcluster[own], window_.newest_};
+    window_.window_.merge(older_.first_in_window + edge.older_subcluster,
+                          newest_.first_in_window + edge.newer_subcluster);
+    older_.edges.push_back(edge);
+  }
+
+ private:
+  Window& window_;
+  Pane& newest_{window_.pane(window_.newest_)};
+  Pane& older_;
+};
+
+/// Joins the panes of the window, from the newest older one to the oldest.
+void WindowClusterer::Window::linkPanes() {
+  for (std::uint64_t number = newest_; number != oldest_; --number) {
+    Pane& older = pane(number - 1);
+    keepUsefulEdges(older);
+    EdgeFinder finder(*this, number - 1);
+    pane(newest_).linkPanes(older, VoxelLinker::Part::kAll, finder);
+  }
+}
+
+/// Joins a pane with the newer ones by its edges; drops edges within subclusters that newer edges join.
+void WindowClusterer::Window::keepUsefulEdges(Pane& older) {
+  const auto isUseless = [&](const Edge& edge) {
+    const std::uint32_t a = older.first_in_window + edge.older_subcluster;
+    const std::uint32_t b = pane(edge.newer_pane).first_in_window + edge.newer_subcluster;
+    if (window_.find(a) == window_.find(b)) return true;
+    window_.merge(a, b);
+    return false;
+  };
+  older.edges.erase(std::remove_if(older.edges.begin(), older.edges.end(), isUseless), older.edges.end());
+}
+
+/// Numbers the subclusters of the window.
+void WindowClusterer::Window::numberSubclusters() {
+  sizes_.clear();
+  for (std::uint64_t number = oldest_; number != newest_ + 1; ++number) {
+    Pane& own = pane(number);
+    for (std::uint32_t i = 0; i < own.sizes.size(); ++i) {
+      const std::uint32_t element = own.first_in_window + i;
+      const std::uint32_t root = window_.find(element);
+      if (root == element) {
+        subcluster_of_element_[element] = static_cast<std::uint32_t>(sizes_.size());
+        sizes_.push_back(0);
+      } else {
+        subcluster_of_element_[element] = subcluster_of_element_[root];
+      }
+      sizes_[subcluster_of_element_[element]] += own.sizes[i];
+    }
+  }
+}
+
+void WindowClusterer::Window::visitRuns(const RunVisitor& visit) {
+  if (columns_ == 0) return;
+  const auto runsOf = [this](std::size_t i) -> const Runs& { return pane(oldest_ + i).runs; };
+  order_.sort(newest_ - oldest_, runsOf);
+  order_.forEachBlock(runsOf, [&](std::size_t i, const Runs&, const Runs::Block& block) {
+    Pane& own = pane(oldest_ + i);
+    for (std::uint32_t run = block.first_run; run < block.first_run + block.count; ++run)
+      own.runs.runs[run].subcluster = subcluster_of_element_[own.first_in_window + own.subcluster[run]];
+    visit(own.runs.runs.data() + block.first_run, block.count, own.runs.source_index.data());
+  });
+}
+
+// --- The public face ------------------------------------------------------------------------------------------------
+
+WindowClusterer::WindowClusterer() : window_(std::make_unique<Window>()) {}
+WindowClusterer::~WindowClusterer() = default;
+WindowClusterer::WindowClusterer(const WindowClusterer& other) : window_(std::make_unique<Window>(*other.window_)) {}
+WindowClusterer& WindowClusterer::operator=(const WindowClusterer& other) {
+  *window_ = *other.window_;
+  return *this;
+}
+
+void WindowClusterer::begin(const WindowParameters& parameters) {
+  window_->begin(parameters);
+}
+
+bool WindowClusterer::addColumn(const Return* cells, std::size_t lasers) {
+  if (!window_->isUsable())
+    throw std::logic_error("lisco::WindowClusterer: a column before begin (), or after an exception");
+  return window_->addColumn(cells, lasers);
+}
+
+std::size_t WindowClusterer::columnCount() const {
+  return window_->columnCount();
+}
+std::size_t WindowClusterer::returnCount() const {
+  return window_->returnCount();
+}
+std::size_t WindowClusterer::subclusterCount() const {
+  return window_->subclusterCount();
+}
+std::uint32_t WindowClusterer::sizeOf(std::uint32_t subcluster) const {
+  return window_->sizeOf(subcluster);
+}
+
+void WindowClusterer::visitRuns(const RunVisitor& visit) {
+  if (window_->isUsable()) window_->visitRuns(visit);
+}
+
+}  // namespace lisco

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+// How work is spread: over the columns of a rotation, and over threads.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "core/block_scheduler.h"
+#include "core/load_balancer.h"
+#include "random.h"
+
+namespace lisco_test {
+namespace {
+
+struct Spent {
+  std::vector<std::size_t> per_column;
+  std::size_t most_left = 0;  ///< parts
+};
+
+/// Rotations of which every block of 64 columns brings parts; what each column spends in the last one.
+Spent spend(const std::vector<std::size_t>& work_of_part, std::size_t parts_per_block, std::size_t rotations) {
+  lisco::WorkBudget budget;
+  Spent spent;
+  for (std::size_t rotation = 0; rotation < rotations; ++rotation) {
+    budget.begin();
+    spent = Spent();
+    std::size_t come = 0;
+    std::size_t done = 0;
+    while (come < work_of_part.size() || done < come) {
+      if (spent.per_column.size() % 64 == 0) {
+        come = std::min(come + parts_per_block, work_of_part.size());
+        budget.plan(come - done);
+        spent.most_left = std::max(spent.most_left, come - done);
+      }
+      budget.addColumns(1);
+      std::size_t work = 0;
+      for (; done < come && budget.isBehind(); ++done) {
+        budget.spend(work_of_part[done]);
+        work += work_of_part[done];
+      }
+      spent.per_column.push_back(work);
+      if (spent.per_column.size() > 100000) return spent;
+    }
+  }
+  return spent;
+}
+
+TEST(WorkBudget, SpreadsEvenWorkEvenly) {
+  const Spent spent = spend(std::vector<std::size_t>(200 * 50, 7), 200, 3);
+  for (std::size_t column = 640; column < 64 * 50; ++column)
+    EXPECT_NEAR(static_cast<double>(spent.per_column[column]), 7.0 * 200 / 64, 8.0) << column;
+  EXPECT_LT(spent.most_left, 800U);
+}
+
+// A tenth of the parts, all in one place, takes ten times as much as others.
+TEST(WorkBudget, EvensOutWhatIsDense) {
+  std::vector<std::size_t> work(200 * 50, 10);
+  std::fill(work.begin() + 4000, work.begin() + 5000, 100);
+  const Spent spent = spend(work, 200, 5);
+  const std::size_t all = std::accumulate(work.begin(), work.end(), std::size_t{0});
+  EXPECT_EQ(std::accumulate(spent.per_column.begin(), spent.per_column.end(), std::size_t{0}), all);
+  const std::size_t most = *std::max_element(spent.per_column.begin(), spent.per_column.end());
+  EXPECT_LT(most, 200 * 100 / 64) << "as much as if each block were done while the next one comes";
+  EXPECT_LT(spent.most_left, 200U * 25);
+}
+
+TEST(WorkBudget, DoesItsWorkWhateverItWasBefore) {
+  for (const std::size_t work : {std::size_t{1}, std::size_t{1000}, std::size_t{1000000}}) {
+    const Spent spent = spend(std::vector<std::size_t>(2000, work), 50, 1);
+    EXPECT_EQ(std::accumulate(spent.per_column.begin(), spent.per_column.end(), std::size_t{0}), 2000 * work);
+    EXPECT_LT(spent.per_column.size(), 10000U) << work;
+  }
+}
+
+struct Share {
+  std::size_t first, end;
+};
+
+std::vector<Share> cut(const lisco::LoadBalancer& balancer, std::size_t count) {
+  std::vector<Share> all;
+  balancer.divide(count, [&](std::size_t share, std::size_t first, std::size_t end) {
+    EXPECT_EQ(share, all.size());
+    all.push_back({first, end});
+  });
+  return all;
+}
+
+TEST(LoadBalancer, HoldEachColumnOnce) {
+  for (std::uint64_t seed = 1; seed < 200; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    lisco::LoadBalancer balancer;
+    const std::size_t columns = 1 + random.below(3000);
+    const std::size_t lasers = 1 + random.below(130);
+    const double kept = random.unit();
+    const auto cell_at = [&](std::size_t laser, std::size_t column) {
+      EXPECT_LT(laser, lasers);
+      EXPECT_LT(column, columns);
+      return random.chance(kept) ? lisco::Return{1, 2, 3, 0} : lisco::Return{0, 0, 0, 0};
+    };
+    balancer.prepare(columns, lasers, lisco::CellSource(cell_at));
+    if (random.chance(0.5))
+      for (std::size_t first = 0; first < columns; first += 64)
+        balancer.record(first, std::min<std::size_t>(64, columns - first), 64 + random.below(100000));
+    const std::size_t count = balancer.partCount(1 + random.below(20));
+    const std::vector<Share> all = cut(balancer, count);
+    ASSERT_EQ(all.size(), count);
+    EXPECT_EQ(all.front().first, 0U);
+    EXPECT_EQ(all.back().end, columns);
+    for (std::size_t i = 1; i < all.size(); ++i) EXPECT_EQ(all[i].first, all[i - 1].end);
+  }
+}
+
+TEST(LoadBalancer, FollowTheWorkOfTheLastRotation) {
+  lisco::LoadBalancer balancer;
+  std::size_t looks = 0;
+  const auto cell_at = [&](std::size_t, std::size_t) {
+    ++looks;
+    return lisco::Return{1, 2, 3, 0};
+  };
+  balancer.prepare(1024, 64, lisco::CellSource(cell_at));
+  EXPECT_GT(looks, 0U);
+  EXPECT_EQ(cut(balancer, 2)[0].end, 512U);
+  for (std::size_t first = 0; first < 1024; first += 64) balancer.record(first, 64, first < 256 ? 3000 : 1000);
+  looks = 0;
+  balancer.prepare(1024, 64, lisco::CellSource(cell_at));
+  EXPECT_EQ(looks, 0U);
+  EXPECT_EQ(cut(balancer, 2)[0].end, 256U) << "4 x 3000 and 12 x 1000";
+  balancer.prepare(1024, 32, lisco::CellSource(cell_at));  // another sensor
+  EXPECT_GT(looks, 0U);
+  EXPECT_EQ(cut(balancer, 2)[0].end, 512U);
+}
+
+TEST(LoadBalancer, HoldColumnsThatTookNothing) {
+  lisco::LoadBalancer balancer;
+  const auto cell_at = [](std::size_t, std::size_t) { return lisco::Return{1, 2, 3, 0}; };
+  balancer.prepare(1000, 64, lisco::CellSource(cell_at));
+  balancer.record(0, 512, 100);
+  balancer.record(512, 488, 0);
+  EXPECT_EQ(cut(balancer, 3).back().end, 1000U);
+}
+
+TEST(LoadBalancer, FollowTheReturnsOfTheFirstRotation) {
+  lisco::LoadBalancer balancer;
+  const auto cell_at = [](std::size_t, std::size_t column) {
+    return column < 400 ? lisco::Return{1, 2, 3, 0} : lisco::Return{0, 0, 0, 0};
+  };
+  balancer.prepare(1600, 64, lisco::CellSource(cell_at));
+  const std::size_t border = cut(balancer, 2)[0].end;  // a return has five times the weight of a cell alone
+  EXPECT_GT(border, 250U);
+  EXPECT_LT(border, 450U);
+}
+
+}  // namespace
+}  // namespace lisco_test

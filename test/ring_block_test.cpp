@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+// What is measured of a row, at every level of vector instructions, against the same cell by cell.
+#include "core/ring_block.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/far/range_image.h"
+#include "core/neighbour.h"
+#include "engine.h"
+#include "lisco/return.h"
+#include "lisco/simd.h"
+#include "oracle.h"
+#include "random.h"
+
+namespace lisco_test {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::size_t kMargin = lisco::RingBlock::kMargin;
+
+/// What measureRow() is to find, without vectors. Elements beyond the columns are no returns.
+lisco::RingBlockInfo measuredCellByCell(const lisco::RingBlock& row, std::size_t columns, float squared_tolerance,
+                                        const lisco::FarRange& range) {
+  lisco::RingBlockInfo measured{};
+  measured.lowest = kInfinity;
+  measured.highest = -kInfinity;
+  for (std::size_t i = 0; i < columns; ++i) {
+    const float x = row.x[kMargin + i];
+    const float y = row.y[kMargin + i];
+    const float z = row.z[kMargin + i];
+    if (!lisco::isReturn(x, y, z)) continue;
+    const std::uint64_t bit = std::uint64_t{1} << i;
+    const bool follows = (measured.returns & bit >> 1) != 0;
+    measured.returns |= bit;
+    const std::size_t before = kMargin + i - 1;
+    if (i == 0 || !follows ||
+        !(lisco::squaredDistance(x - row.x[before], y - row.y[before], z - row.z[before]) < squared_tolerance))
+      measured.starts |= bit;
+    const float east = x - range.origin[0];
+    const float north = y - range.origin[1];
+    const float rho = std::sqrt(east * east + north * north);
+    measured.rho[i] = rho;
+    if (rho >= range.interior_min && rho < range.interior_max) measured.interior |= bit;
+    if (!(rho >= range.min_range && rho < range.max_range)) continue;
+    measured.far |= bit;
+    const float slope = (z - range.origin[2]) / rho;
+    measured.lowest = std::min(measured.lowest, slope);
+    measured.highest = std::max(measured.highest, slope);
+  }
+  return measured;
+}
+
+/// Measures the row at every level of vector instructions.
+void expectMeasured(const lisco::RingBlock& row, std::size_t columns, float squared_tolerance,
+                    const lisco::FarRange& range) {
+  const lisco::RingBlockInfo right = measuredCellByCell(row, columns, squared_tolerance, range);
+  for (const std::string& name : levels()) {
+    const SimdLevel level(name);
+    SCOPED_TRACE(name);
+    lisco::RingBlock measured_row = row;
+    lisco::RingBlockInfo measured;
+    std::fill_n(measured.run, lisco::RingBlock::kColumns, 77U);
+    lisco::measure(measured_row, columns, squared_tolerance, range, measured);
+    ASSERT_EQ(measured.returns, right.returns);
+    ASSERT_EQ(measured.starts, right.starts);
+    ASSERT_EQ(measured.far, right.far);
+    ASSERT_EQ(measured.interior & right.far, right.interior & right.far);
+    ASSERT_EQ(measured.lowest, right.lowest);
+    ASSERT_EQ(measured.highest, right.highest);
+    for (std::size_t i = 0; i < lisco::RingBlock::kColumns; ++i) {
+      const std::size_t at = kMargin + i;
+      ASSERT_EQ(measured.run[i], 77U) << "runs are the engine's";
+      if ((right.returns >> i & 1U) == 0) {
+        ASSERT_TRUE(std::isnan(measured_row.x[at])) << i;
+        continue;
+      }
+      ASSERT_EQ(measured.rho[i], right.rho[i]) << i;
+      ASSERT_EQ(measured_row.x[at], row.x[at]) << i;
+      ASSERT_EQ(measured_row.y[at], row.y[at]) << i;
+      ASSERT_EQ(measured_row.z[at], row.z[at]) << i;
+    }
+  }
+}
+
+float oddNumber(Random& random) {
+  const std::array<float, 14> numbers{
+      0.0F,   -0.0F,  kNan,  kInfinity, -kInfinity, 1e-45F, -1e-45F,
+      1e-38F, 1e-20F, 1e15F, -3e15F,    1e19F,      -1e30F, std::numeric_limits<float>::max()};
+  return random.oneOf(numbers);
+}
+
+lisco::RingBlock randomRow(Random& random) {
+  lisco::RingBlock row;
+  const std::array<double, 4> sizes{1.0, 30.0, 1e-15, 1e10};
+  const double size = random.oneOf(sizes);
+  const double step = size * random.magnitude(1e-4, 1.0);
+  const double odd = random.chance(0.5) ? 0.0 : random.unit();
+  const double lost = random.chance(0.5) ? 0.0 : random.unit();
+  std::array<double, 3> at{random.between(-size, size), random.between(-size, size), random.between(-size, size)};
+  // The margin and what lies behind the columns hold anything.
+  for (std::size_t i = 0; i < kMargin + lisco::RingBlock::kColumns; ++i) {
+    for (double& axis : at) axis += random.between(-step, step);
+    row.x[i] = static_cast<float>(at[0]);
+    row.y[i] = static_cast<float>(at[1]);
+    row.z[i] = static_cast<float>(at[2]);
+    for (float* axis : {&row.x[i], &row.y[i], &row.z[i]})
+      if (random.chance(odd * 0.5)) *axis = oddNumber(random);
+    if (random.chance(lost)) row.x[i] = row.y[i] = row.z[i] = random.chance(0.5) ? 0.0F : kNan;
+    if (i > 0 && random.chance(0.05)) {
+      row.x[i] = row.x[i - 1];
+      row.y[i] = row.y[i - 1];
+      row.z[i] = row.z[i - 1];
+    }
+  }
+  return row;
+}
+
+/// A tolerance that separates two of the row's returns, or just does not.
+float criticalSquare(Random& random, const lisco::RingBlock& row) {
+  const std::size_t i = kMargin + 1 + random.below(lisco::RingBlock::kColumns - 1);
+  const float d2 = lisco::squaredDistance(row.x[i] - row.x[i - 1], row.y[i] - row.y[i - 1], row.z[i] - row.z[i - 1]);
+  return random.chance(0.5) ? d2 : std::nextafter(d2, kInfinity);
+}
+
+TEST(RingBlock, IsMeasuredAlikeAtEveryLevel) {
+  for (std::uint64_t seed = 1; seed < 6000; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const lisco::RingBlock row = randomRow(random);
+    lisco::FarRange range;
+    if (random.chance(0.4))
+      for (float& axis : range.origin) axis = static_cast<float>(random.between(-20.0, 20.0));
+    // Ends that are some return's distance exactly.
+    const auto distance = [&] {
+      const std::size_t i = kMargin + random.below(lisco::RingBlock::kColumns);
+      const float east = row.x[i] - range.origin[0];
+      const float north = row.y[i] - range.origin[1];
+      return std::sqrt(east * east + north * north);
+    };
+    range.min_range = distance();
+    range.max_range = random.chance(0.5) ? 1e15F : distance();
+    range.interior_min = random.chance(0.5) ? 1.1F * range.min_range : distance();
+    range.interior_max = random.chance(0.5) ? 0.9F * range.max_range : distance();
+    expectMeasured(row, 1 + random.below(lisco::RingBlock::kColumns), criticalSquare(random, row), range);
+    if (HasFailure()) return;
+  }
+}
+
+TEST(RingBlock, OfAnyNumberOfColumns) {
+  Random random(1);
+  lisco::FarRange range;
+  range.min_range = 0.5F;
+  range.interior_min = 0.6F;
+  range.max_range = range.interior_max = 1e15F;
+  for (std::size_t columns = 0; columns <= lisco::RingBlock::kColumns; ++columns)
+    for (int time = 0; time < 20; ++time) {
+      SCOPED_TRACE(columns);
+      const lisco::RingBlock row = randomRow(random);
+      expectMeasured(row, columns, criticalSquare(random, row), range);
+      if (HasFailure()) return;
+    }
+}
+
+TEST(RingBlock, EqualReturnsAtToleranceThatJoinsNothing) {
+  lisco::RingBlock row{};
+  for (std::size_t i = 0; i < kMargin + lisco::RingBlock::kColumns; ++i) row.x[i] = 1.0F;
+  for (const float squared : {0.0F, kNan, 1e-45F, kInfinity})
+    expectMeasured(row, lisco::RingBlock::kColumns, squared, lisco::FarRange());
+}
+
+// By the ranges that the range image sets.
+TEST(RingBlock, WithoutFarReturns) {
+  Random random(2);
+  lisco::RangeImage image;
+  image.prepare(lisco::Tolerance(1.0F), lisco::SensorHints(), ~std::size_t{0});
+  for (int time = 0; time < 100; ++time) {
+    const lisco::RingBlock row = randomRow(random);
+    expectMeasured(row, lisco::RingBlock::kColumns, 1.0F, image.range);
+    EXPECT_EQ(measuredCellByCell(row, lisco::RingBlock::kColumns, 1.0F, image.range).far, 0U);
+  }
+}
+
+TEST(Simd, LevelsCanBeChosen) {
+  ASSERT_FALSE(levels().empty());
+  EXPECT_EQ(lisco::simdLevel(), levels().front()) << "the best is in use";
+  for (const std::string& level : levels()) {
+    EXPECT_TRUE(lisco::useSimdLevel(level));
+    EXPECT_EQ(lisco::simdLevel(), level);
+    EXPECT_EQ(lisco::simdLevels(), levels());
+  }
+  EXPECT_FALSE(lisco::useSimdLevel("no such level"));
+  EXPECT_EQ(lisco::simdLevel(), levels().back());
+  EXPECT_TRUE(lisco::useSimdLevel({}));
+  EXPECT_EQ(lisco::simdLevel(), levels().front());
+}
+
+}  // namespace
+}  // namespace lisco_test
