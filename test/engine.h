@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lisco/column_clusterer.h"
+#include "lisco/window_clusterer.h"
 #include "oracle.h"
 #include "random.h"
 #include "scans.h"
@@ -54,6 +55,9 @@ class SimdLevel {
 
 /// The clusters of all columns added so far, in order. Calls update().
 Clustering clustersOf(lisco::ColumnClusterer& clusterer);
+
+/// Those of the last window, in order.
+Clustering clustersOf(lisco::WindowClusterer& clusterer);
 
 /// Clusters the scan with one setting.
 Clustering cluster(lisco::ColumnClusterer& clusterer, const Scan& scan, float tolerance, const Setting& setting);
