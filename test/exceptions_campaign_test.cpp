@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -19,6 +21,7 @@
 #include "interruptions.h"
 #include "lisco/column_clusterer.h"
 #include "lisco/endless_clusterer.h"
+#include "lisco/parallel.h"
 #include "lisco/window_clusterer.h"
 #include "oracle.h"
 #include "pair_scans.h"
@@ -181,6 +184,29 @@ TEST(ExceptionsCampaign, RotationsWhoseCallbacksThrow) {
   for (const std::size_t number :
        {RotationSession::kAddColumns, RotationSession::kAddRest, RotationSession::kLook, RotationSession::kLookAgain})
     EXPECT_GT(interrupted[number], 0U) << "call " << number << " was not interrupted";
+}
+
+// Where threads are started for each call, each may be refused.
+TEST(ExceptionsCampaign, ParallelWorkThatIsRefusedMemory) {
+  constexpr std::size_t kThreads = 4;
+  bool happened = true;
+  for (std::size_t refused = 1; happened; ++refused) {
+    std::array<std::atomic<int>, kThreads> calls{};
+    bool thrown = false;
+    const std::size_t live = liveAllocations();
+    {
+      const RefusedAllocation refusal(refused);
+      try {
+        lisco::inParallel(kThreads, [&](std::size_t thread) { ++calls.at(thread); });
+      } catch (const std::bad_alloc&) {
+        thrown = true;
+      }
+      happened = refusal.happened();
+    }
+    EXPECT_EQ(liveAllocations(), live);
+    for (const std::atomic<int>& count : calls) EXPECT_EQ(count, thrown ? 0 : 1) << "allocation " << refused;
+    if (HasFailure()) return;
+  }
 }
 
 // --- Sliding windows ------------------------------------------------------------------------------------------------
