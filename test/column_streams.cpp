@@ -155,8 +155,8 @@ void goByRate(Random& random, ColumnStream& stream) {
   }
 }
 
-/// Empties the cells of which the engine and the definition may say different things, both rightly: the engine takes the
-/// stagger for up to 0.002 radians larger, and the reach end jumps where the distance is that of the tolerance.
+/// Empties the cells of which the engine and the definition may say different things, both rightly: the engine takes
+/// the stagger for up to 0.002 radians larger, and the reach end jumps where the distance is that of the tolerance.
 void emptyUndecidedCells(ColumnStream& stream) {
   constexpr double kMostStaggerMore = 0.0025;  // radians
   constexpr double kRoundingOfStagger = 1e-6;

@@ -62,7 +62,8 @@ Clustering clustersOf(lisco::WindowClusterer& clusterer);
 /// Clusters the scan with one setting.
 Clustering cluster(lisco::ColumnClusterer& clusterer, const Scan& scan, float tolerance, const Setting& setting);
 
-/// Holds every setting's outcome, and those of some at each level of vector instructions, against the oracle's and against the verifier.
+/// Holds every setting's outcome, and those of some at each level of vector instructions, against the oracle's and
+/// against the verifier.
 /// \return whether all were right; otherwise test failures have been added
 bool expectExact(lisco::ColumnClusterer& clusterer, const Scan& scan, float tolerance);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Exceptions in the midst of every kind of call: memory that is refused, callbacks that throw. Nothing leaks, and after begin ()
-// the clusters are the oracle's. A program of its own: refused_allocations.cpp replaces operator new.
+// Exceptions in the midst of every kind of call: memory that is refused, callbacks that throw. Nothing leaks, and after
+// begin () the clusters are the oracle's. A program of its own: refused_allocations.cpp replaces operator new.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -48,11 +48,12 @@ bool interruptedCall(Session& session, std::size_t number, std::size_t refused, 
   return refused > 0 && refusal.happened();
 }
 
-/// Refuses the first allocation of a call, then in a new session the second, and so on until the call needs no more. After
-/// each refusal, holds the session to what it promises, then to being usable again, and to giving all its memory back.
+/// Refuses the first allocation of a call, then in a new session the second, and so on until the call needs no more.
+/// After each refusal, holds the session to what it promises, then to being usable again, and to giving all its memory
+/// back.
 ///
-/// A Session has call (number); checkInterrupted (number), after an exception in that call; and redo (), which begins anew and tells
-/// what is wrong with the clusters.
+/// A Session has call (number); checkInterrupted (number), after an exception in that call; and redo (), which begins
+/// anew and tells what is wrong with the clusters.
 /// \param make makes a session
 /// \param number of the call
 /// \return how many allocations were refused

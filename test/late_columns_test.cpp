@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Columns that come in another order than their azimuths: late and swapped packets, and worse. The order decides the speed,
-// never the clusters.
+// Columns that come in another order than their azimuths: late and swapped packets, and worse. The order decides the
+// speed, never the clusters.
 #include <gtest/gtest.h>
 
 #include <algorithm>

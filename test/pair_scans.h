@@ -15,8 +15,8 @@ struct PairScan {
   float tolerance = 1.0F;
 };
 
-/// Many pairs in one scan of up to three turns, each just within the tolerance or just beyond it, where windows and segments
-/// end. The hints fit the scan, but for one in five.
+/// Many pairs in one scan of up to three turns, each just within the tolerance or just beyond it, where windows and
+/// segments end. The hints fit the scan, but for one in five.
 PairScan randomPairs(Random& random);
 
 }  // namespace lisco_test

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Exceptions in the midst of the PCL face's calls: memory that is refused, callbacks that throw. Nothing leaks, what is still given out
-// is right, and what is begun anew is the oracle's. A program of its own: refused_allocations.cpp replaces operator new.
+// Exceptions in the midst of the PCL face's calls: memory that is refused, callbacks that throw. Nothing leaks, what is
+// still given out is right, and what is begun anew is the oracle's. A program of its own: refused_allocations.cpp
+// replaces operator new.
 #include <algorithm>
 #include <array>
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Several instances of each clusterer at work at the same time, each with threads of its own: any number of them may work side
-// by side. To be run under ThreadSanitizer as well.
+// Several instances of each clusterer at work at the same time, each with threads of its own: any number of them may
+// work side by side. To be run under ThreadSanitizer as well.
 #include <gtest/gtest.h>
 
 #include <algorithm>
