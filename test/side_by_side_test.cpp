@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -29,7 +30,9 @@ namespace {
 /// Clusters something again and again, with an instance of its own. \return what was wrong; empty if nothing
 using Task = std::function<std::string()>;
 
-constexpr int kTimes = 3;  // so that the tasks overlap
+// So often that the tasks overlap.
+constexpr int kRotations = 3;
+constexpr int kStreams = 40;
 
 Task rotationTask(Random& random) {
   Scan scan = largeScan(random);
@@ -45,7 +48,7 @@ Task rotationTask(Random& random) {
   const bool by_columns = random.chance(0.2);
   return [scan, parameters, by_columns, right = trueClusters(scan.points(), parameters.tolerance)] {
     lisco::ColumnClusterer clusterer;
-    for (int i = 0; i < kTimes; ++i) {
+    for (int i = 0; i < kRotations; ++i) {
       clusterer.begin(parameters);
       if (by_columns)
         for (std::size_t column = 0; column < scan.columns; ++column)
@@ -72,7 +75,7 @@ Task windowTask(Random& random) {
         trueClusters(pointsOf(stream, end - std::min(end, parameters.window_columns), end), parameters.tolerance));
   return [stream, parameters, right] {
     lisco::WindowClusterer clusterer;
-    for (int i = 0; i < kTimes; ++i) {
+    for (int i = 0; i < kStreams; ++i) {
       clusterer.begin(parameters);
       std::size_t window = 0;
       for (const StreamColumn& column : stream.columns) {
@@ -89,7 +92,7 @@ Task endlessTask(Random& random) {
   const ColumnStream stream = randomColumnStream(random);
   return [stream, truth = endlessTruth(stream).deliveries] {
     lisco::EndlessClusterer clusterer;
-    for (int i = 0; i < kTimes; ++i) {
+    for (int i = 0; i < kStreams; ++i) {
       const std::string wrong = wrongDeliveries(stream, truth, deliveriesOf(clusterer, stream), {}, true);
       if (!wrong.empty()) return wrong;
     }
@@ -112,7 +115,13 @@ TEST(SideBySide, InstancesDoNotDisturbEachOther) {
     }
     std::vector<std::string> wrong(tasks.size());
     std::vector<std::thread> threads;
-    for (std::size_t i = 0; i < tasks.size(); ++i) threads.emplace_back([&, i] { wrong[i] = tasks[i](); });
+    std::atomic<std::size_t> waiting{tasks.size()};
+    for (std::size_t i = 0; i < tasks.size(); ++i)
+      threads.emplace_back([&, i] {
+        --waiting;
+        while (waiting > 0) std::this_thread::yield();
+        wrong[i] = tasks[i]();
+      });
     for (std::thread& thread : threads) thread.join();
     for (const std::string& one : wrong) ASSERT_EQ(one, "");
   }
