@@ -143,7 +143,7 @@ class RotationSession {
 
 TEST(ExceptionsCampaign, RotationsThatAreRefusedMemory) {
   std::array<std::size_t, RotationSession::kCalls> refused{};
-  for (std::uint64_t seed = 1; seed <= timesEffort(3); ++seed) {
+  for (std::uint64_t seed = 1; seed <= timesEffort(2); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const SimdLevel level(levels()[seed % levels().size()]);
@@ -160,7 +160,7 @@ TEST(ExceptionsCampaign, RotationsThatAreRefusedMemory) {
 
 TEST(ExceptionsCampaign, RotationsWhoseCallbacksThrow) {
   std::array<std::size_t, RotationSession::kCalls> interrupted{};
-  for (std::uint64_t seed = 1000; seed < 1000 + timesEffort(150); ++seed) {
+  for (std::uint64_t seed = 1000; seed < 1000 + timesEffort(50); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const SimdLevel level(levels()[seed % levels().size()]);
