@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-//
-// A program of its own, since it replaces operator new.
+// A program of its own: refused_allocations.cpp replaces operator new.
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <new>
@@ -18,26 +15,7 @@
 #include "lisco/endless_clusterer.h"
 #include "lisco/window_clusterer.h"
 #include "random.h"
-
-namespace {
-
-std::atomic<std::size_t> allocations{0};
-std::atomic<std::size_t> refused_allocation{0};  ///< that one, by its number; 0: none
-
-}  // namespace
-
-// Not inlined: GCC would see malloc () and free () beside the other operators and warn.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  if (++allocations == refused_allocation) throw std::bad_alloc();
-  if (void* const memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
+#include "refused_allocations.h"
 
 namespace lisco_test {
 namespace {
@@ -70,10 +48,10 @@ template <typename Turn>
 std::size_t allocationsOf(int turns, Turn&& turn) {
   std::size_t before = 0;
   for (int i = 0; i < turns; ++i) {
-    if (i == turns / 2) before = allocations;
+    if (i == turns / 2) before = allocationCount();
     turn();
   }
-  return allocations - before;
+  return allocationCount() - before;
 }
 
 TEST(Allocations, AreCounted) {
@@ -180,13 +158,12 @@ void refuseEachAllocation(Make&& make) {
   for (bool done = false; !done; ++refused) {
     ASSERT_LT(refused, 10000U);
     const auto work = make();
-    refused_allocation = allocations + refused + 1;
     try {
+      const RefusedAllocation refusal(refused + 1);
       EXPECT_EQ(work(), expected);
       done = true;  // it needs no more than were granted
     } catch (const std::bad_alloc&) {
     }
-    refused_allocation = 0;
     ASSERT_EQ(work(), expected) << "after allocation " << refused << " had been refused";
   }
   EXPECT_GT(refused, 10U);

@@ -104,8 +104,10 @@ SimdLevel::~SimdLevel() {
   EXPECT_TRUE(lisco::useSimdLevel({}));
 }
 
-Clustering clustersOf(lisco::ColumnClusterer& clusterer) {
-  clusterer.update();
+namespace {
+
+template <typename Clusterer>
+Clustering visitedBy(Clusterer& clusterer) {
   Clustering clusters(clusterer.subclusterCount());
   std::size_t returns = 0;
   clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster) {
@@ -121,6 +123,17 @@ Clustering clustersOf(lisco::ColumnClusterer& clusterer) {
     clusters[i].claimed_size = clusterer.sizeOf(i);
   }
   return inOrder(std::move(clusters));
+}
+
+}  // namespace
+
+Clustering clustersOf(lisco::ColumnClusterer& clusterer) {
+  clusterer.update();
+  return visitedBy(clusterer);
+}
+
+Clustering clustersOf(lisco::WindowClusterer& clusterer) {
+  return visitedBy(clusterer);
 }
 
 Clustering cluster(lisco::ColumnClusterer& clusterer, const Scan& scan, float tolerance, const Setting& setting) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lisco/column_clusterer.h"
+#include "lisco/window_clusterer.h"
 #include "oracle.h"
 #include "random.h"
 #include "scans.h"
@@ -49,10 +50,14 @@ class SimdLevel {
 /// The clusters of all columns added so far, in order. Calls update().
 Clustering clustersOf(lisco::ColumnClusterer& clusterer);
 
+/// Those of the last window, in order.
+Clustering clustersOf(lisco::WindowClusterer& clusterer);
+
 /// Clusters the scan with one setting.
 Clustering cluster(lisco::ColumnClusterer& clusterer, const Scan& scan, float tolerance, const Setting& setting);
 
-/// Holds every setting's outcome, and those of some at each level of vector instructions, against the oracle's and against the verifier.
+/// Holds every setting's outcome, and those of some at each level of vector instructions, against the oracle's and
+/// against the verifier.
 /// \return whether all were right; otherwise test failures have been added
 bool expectExact(lisco::ColumnClusterer& clusterer, const Scan& scan, float tolerance);
 

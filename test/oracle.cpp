@@ -30,18 +30,20 @@ bool areNeighbours(const Point& a, const Point& b, float tolerance) {
 }
 
 Clustering trueClusters(const std::vector<Point>& points, float tolerance) {
+  std::vector<std::uint32_t> returns;
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    if (isValid(points[i])) returns.push_back(i);
   Clustering clusters;
   std::vector<bool> taken(points.size(), false);
-  for (std::uint32_t seed = 0; seed < points.size(); ++seed) {
-    if (taken[seed] || !isValid(points[seed])) continue;
-    taken[seed] = true;
-    std::vector<std::uint32_t> members{seed};
+  for (auto seed = returns.begin(); seed != returns.end(); ++seed) {
+    if (taken[*seed]) continue;
+    taken[*seed] = true;
+    std::vector<std::uint32_t> members{*seed};
     for (std::size_t next = 0; next < members.size(); ++next)
-      for (std::uint32_t other = seed + 1; other < points.size(); ++other) {
-        if (taken[other] || !isValid(points[other])) continue;
-        if (!areNeighbours(points[members[next]], points[other], tolerance)) continue;
-        taken[other] = true;
-        members.push_back(other);
+      for (auto other = seed + 1; other != returns.end(); ++other) {
+        if (taken[*other] || !areNeighbours(points[members[next]], points[*other], tolerance)) continue;
+        taken[*other] = true;
+        members.push_back(*other);
       }
     std::sort(members.begin(), members.end());
     clusters.push_back({members, members.size()});

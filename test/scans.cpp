@@ -180,6 +180,32 @@ Scan extremeScan(Random& random) {
   return scan;
 }
 
+Scan largeScan(Random& random) {
+  const std::array<std::size_t, 6> laser_choices{2, 3, 5, 16, 32, 64};
+  const std::size_t lasers = random.oneOf(laser_choices);
+  const std::size_t columns = 8192 / lasers + random.below(300);
+  const double kept = random.chance(0.7) ? random.between(0.02, 0.2) : 1.0;
+  const double lag = random.chance(0.5) ? random.between(0.0, 30.0) : 0.0;
+  const double start = random.between(0.0, 6.28);
+  const bool clockwise = random.chance(0.5);
+  const double turns = random.chance(0.7) ? 1.0 : random.between(0.5, 1.5);
+  Scan scan(columns, lasers);
+  for (std::size_t laser = 0; laser < lasers; ++laser)
+    for (std::size_t column = 0; column < columns; ++column) {
+      if (!random.chance(kept)) continue;
+      const double azimuth = start + (clockwise ? -6.283185307179586 : 6.283185307179586) * turns *
+                                         (static_cast<double>(column) + lag * static_cast<double>(laser % 4)) /
+                                         static_cast<double>(columns);
+      const double elevation = 0.2 - 0.5 * static_cast<double>(laser) / static_cast<double>(lasers);
+      double rho = 4.0 + 3.0 * std::sin(5.0 * azimuth) + random.magnitude(0.01, 3.0);
+      if (elevation < -0.01) rho = std::min(rho, -1.8 / elevation);
+      scan.set(laser, column,
+               {static_cast<float>(rho * std::cos(azimuth)), static_cast<float>(rho * std::sin(azimuth)),
+                static_cast<float>(rho * std::tan(elevation))});
+    }
+  return scan;
+}
+
 float criticalTolerance(Random& random, const Scan& scan) {
   std::vector<Point> valid = scan.points();
   valid.erase(std::remove_if(valid.begin(), valid.end(), [](const Point& p) { return !isValid(p); }), valid.end());

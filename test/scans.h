@@ -39,6 +39,9 @@ Scan latticeScan(Random& random, float& spacing);
 /// Coordinates where floats end: 3e38, 1e30, denormals, and everything else in between.
 Scan extremeScan(Random& random);
 
+/// A rotation of at least as many cells as are worth threads, of which few or most are returns.
+Scan largeScan(Random& random);
+
 /// A tolerance near which some points of the scan change sides, often by one ulp; positive and finite.
 float criticalTolerance(Random& random, const Scan& scan);
 

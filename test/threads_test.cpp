@@ -19,33 +19,6 @@
 namespace lisco_test {
 namespace {
 
-/// A rotation of at least as many cells as are worth threads, of which few or most are returns.
-Scan largeScan(Random& random) {
-  const std::array<std::size_t, 6> laser_choices{2, 3, 5, 16, 32, 64};
-  const std::size_t lasers = random.oneOf(laser_choices);
-  const std::size_t columns = 8192 / lasers + random.below(300);
-  const double kept = random.chance(0.7) ? random.between(0.02, 0.2) : 1.0;
-  const double lag = random.chance(0.5) ? random.between(0.0, 30.0) : 0.0;
-  const double start = random.between(0.0, 6.28);
-  const bool clockwise = random.chance(0.5);
-  const double turns = random.chance(0.7) ? 1.0 : random.between(0.5, 1.5);
-  Scan scan(columns, lasers);
-  for (std::size_t laser = 0; laser < lasers; ++laser)
-    for (std::size_t column = 0; column < columns; ++column) {
-      if (!random.chance(kept)) continue;
-      const double azimuth = start + (clockwise ? -6.283185307179586 : 6.283185307179586) * turns *
-                                         (static_cast<double>(column) + lag * static_cast<double>(laser % 4)) /
-                                         static_cast<double>(columns);
-      const double elevation = 0.2 - 0.5 * static_cast<double>(laser) / static_cast<double>(lasers);
-      double rho = 4.0 + 3.0 * std::sin(5.0 * azimuth) + random.magnitude(0.01, 3.0);
-      if (elevation < -0.01) rho = std::min(rho, -1.8 / elevation);
-      scan.set(laser, column,
-               {static_cast<float>(rho * std::cos(azimuth)), static_cast<float>(rho * std::sin(azimuth)),
-                static_cast<float>(rho * std::tan(elevation))});
-    }
-  return scan;
-}
-
 lisco::Parameters parametersFor(Random& random, const Scan& scan, std::size_t threads) {
   lisco::Parameters parameters;
   parameters.tolerance = static_cast<float>(random.magnitude(0.05, 0.7));
@@ -105,17 +78,9 @@ TEST(Threads, EqualTheOracle) {
     Scan scan = largeScan(random);
     for (lisco::Return& cell : scan.cells)
       if (random.chance(0.6)) cell = {0, 0, 0, cell.source_index};
-    std::vector<Point> returns;
-    std::vector<std::uint32_t> number(scan.cells.size());
-    for (const lisco::Return& cell : scan.cells) {
-      number[cell.source_index] = static_cast<std::uint32_t>(returns.size());
-      if (isValid({cell.x, cell.y, cell.z})) returns.push_back({cell.x, cell.y, cell.z});
-    }
     const lisco::Parameters parameters = parametersFor(random, scan, random.oneOf(kThreads));
-    Clustering found = clustered(clusterer, parameters, scan);
-    for (Cluster& cluster : found)
-      for (std::uint32_t& member : cluster.members) member = number[member];
-    ASSERT_EQ(difference(trueClusters(returns, parameters.tolerance), found), "");
+    ASSERT_EQ(difference(trueClusters(scan.points(), parameters.tolerance), clustered(clusterer, parameters, scan)),
+              "");
   }
 }
 

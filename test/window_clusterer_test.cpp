@@ -20,19 +20,6 @@
 namespace lisco_test {
 namespace {
 
-Clustering clustersOf(lisco::WindowClusterer& clusterer) {
-  Clustering clusters(clusterer.subclusterCount());
-  std::size_t returns = 0;
-  clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster) {
-    ASSERT_LT(subcluster, clusters.size());
-    clusters[subcluster].members.insert(clusters[subcluster].members.end(), source_indices, source_indices + count);
-    returns += count;
-  });
-  EXPECT_EQ(returns, clusterer.returnCount());
-  for (std::uint32_t i = 0; i < clusters.size(); ++i) clusters[i].claimed_size = clusterer.sizeOf(i);
-  return inOrder(std::move(clusters));
-}
-
 Clustering trueClustersOfColumns(const Scan& scan, std::size_t first, std::size_t end, float tolerance) {
   std::vector<Point> points = scan.points();
   for (std::size_t i = 0; i < points.size(); ++i)

@@ -40,8 +40,14 @@ void inParallel(std::size_t threads, void (*work)(void* context, std::size_t thr
   };
 #ifdef LISCO_STD_THREADS
   std::vector<std::thread> running;
-  for (std::size_t thread = 1; thread < threads; ++thread) running.emplace_back(run, thread);
+  running.reserve(threads - 1);
+  std::size_t started = 1;
+  try {
+    for (; started < threads; ++started) running.emplace_back(run, started);
+  } catch (...) {  // there are no more threads: this one does what is left
+  }
   run(0);
+  for (std::size_t thread = started; thread < threads; ++thread) run(thread);
   for (std::thread& one : running) one.join();
 #else
   const auto count = static_cast<int>(threads);

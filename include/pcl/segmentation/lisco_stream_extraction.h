@@ -28,8 +28,9 @@ namespace pcl {
 
 namespace detail {
 
-/** \brief What the classes that are given one column after the other have in common. Their errors are told by PCL_ERROR; what
- * was wrong has no effect.
+/** \brief What the classes that are given one column after the other have in common. Their errors are told by PCL_ERROR;
+ * what was wrong has no effect. An exception (memory was refused, or a callback threw) ends the rotation or stream, unless
+ * it comes from writing clusters out: no column is taken and nothing is delivered until the next one begins.
  */
 template <typename PointT>
 class LiscoColumnStream {
@@ -95,7 +96,7 @@ class LiscoColumnStream {
   std::size_t lasers_ = 0;
   PCLHeader header_;
 
-  bool begun_ = false;
+  bool begun_ = false;         ///< and left by no exception since
   std::size_t most_rows_ = 0;  ///< of any column since the beginning
   LiscoColumnStore<PointT> store_;
 

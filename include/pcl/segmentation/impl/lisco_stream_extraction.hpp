@@ -20,7 +20,7 @@ bool pcl::detail::LiscoColumnStream<PointT>::accepts(const PointT* points, std::
                                                      const char* caller) {
   const std::size_t rows = std::max(count, most_rows_);
   if (!begun_)
-    PCL_ERROR("[%s] A column before beginRotation () or beginStream ().\n", caller);
+    PCL_ERROR("[%s] A column before beginRotation () or beginStream (), or after an exception.\n", caller);
   else if (!points && count > 0)
     PCL_ERROR("[%s] A column without points.\n", caller);
   else if (lasers_ != 0 && count > lasers_)
@@ -79,6 +79,7 @@ void pcl::LiscoStreamExtraction<PointT>::learn() {
 
 template <typename PointT>
 void pcl::LiscoStreamExtraction<PointT>::beginRotation() {
+  begun_ = false;  // unless nothing is thrown, here and below
   if (has_ended_) learn();
   lisco::Parameters parameters;
   parameters.tolerance = static_cast<float>(cluster_tolerance_);
@@ -95,12 +96,14 @@ void pcl::LiscoStreamExtraction<PointT>::beginRotation() {
 template <typename PointT>
 bool pcl::LiscoStreamExtraction<PointT>::addColumn(const PointT* points, std::size_t count) {
   if (!this->accepts(points, count, store_.size() + 1, "pcl::LiscoStreamExtraction::addColumn")) return (false);
+  begun_ = false;
   most_rows_ = std::max(most_rows_, count);
   const std::uint32_t first = store_.add(points, count);
   clusterer_.addColumns(1, count, [&](std::size_t row, std::size_t) {
     return (lisco::Return{points[row].x, points[row].y, points[row].z, first + static_cast<std::uint32_t>(row)});
   });
   is_up_to_date_ = false;
+  begun_ = true;
   return (true);
 }
 
@@ -112,7 +115,10 @@ bool pcl::LiscoStreamExtraction<PointT>::addColumn(const PointCloud& column) {
 template <typename PointT>
 void pcl::LiscoStreamExtraction<PointT>::update() {
   if (is_up_to_date_) return;
+  const bool begun = begun_;
+  begun_ = false;
   clusterer_.update();
+  begun_ = begun;
   is_up_to_date_ = true;
 }
 
@@ -147,7 +153,7 @@ void pcl::LiscoStreamExtraction<PointT>::getSubclusters(std::vector<PointIndices
 template <typename PointT>
 bool pcl::LiscoStreamExtraction<PointT>::endRotation(std::vector<PointIndices>& clusters) {
   if (!begun_) {
-    PCL_ERROR("[pcl::LiscoStreamExtraction::endRotation] No rotation has begun.\n");
+    PCL_ERROR("[pcl::LiscoStreamExtraction::endRotation] No rotation has begun, or after an exception.\n");
     clusters.clear();
     return (false);
   }
@@ -162,11 +168,14 @@ bool pcl::LiscoStreamExtraction<PointT>::endRotation(std::vector<PointIndices>& 
 
 template <typename PointT>
 bool pcl::LiscoWindowExtraction<PointT>::beginStream() {
+  const bool begun = begun_;
+  begun_ = false;  // unless nothing is thrown, here and below
   try {
     clusterer_.begin({static_cast<float>(cluster_tolerance_), window_size_, hop_, 0});
   } catch (const std::invalid_argument&) {
     PCL_ERROR("[pcl::LiscoWindowExtraction::beginStream] A window of %zu columns is no multiple of a hop of %zu.\n",
               window_size_, hop_);
+    begun_ = begun;
     return (false);
   }
   store_.clear();
@@ -180,9 +189,12 @@ bool pcl::LiscoWindowExtraction<PointT>::beginStream() {
 template <typename PointT>
 bool pcl::LiscoWindowExtraction<PointT>::addColumn(const PointT* points, std::size_t count) {
   if (!this->accepts(points, count, columns_kept_, "pcl::LiscoWindowExtraction::addColumn")) return (false);
+  begun_ = false;
   most_rows_ = std::max(most_rows_, count);
   const std::uint32_t first = store_.add(points, count);
-  if (!clusterer_.addColumn(this->namedColumn(points, count, first), count)) return (false);
+  const bool window_ends = clusterer_.addColumn(this->namedColumn(points, count, first), count);
+  begun_ = true;
+  if (!window_ends) return (false);
   window_end_ = store_.endColumn();
   window_first_ = window_end_ - clusterer_.columnCount();
   while (store_.firstColumn() < window_first_) store_.dropFirst();
@@ -196,8 +208,8 @@ bool pcl::LiscoWindowExtraction<PointT>::addColumn(const PointCloud& column) {
 
 template <typename PointT>
 bool pcl::LiscoWindowExtraction<PointT>::extract(std::vector<PointIndices>& clusters) {
-  if (window_first_ == window_end_) {
-    PCL_ERROR("[pcl::LiscoWindowExtraction::extract] No window has ended.\n");
+  if (!begun_ || window_first_ == window_end_) {
+    PCL_ERROR("[pcl::LiscoWindowExtraction::extract] No window has ended, or after an exception.\n");
     clusters.clear();
     return (false);
   }
@@ -213,10 +225,13 @@ bool pcl::LiscoEndlessExtraction<PointT>::beginStream() {
   parameters.tolerance = static_cast<float>(cluster_tolerance_);
   parameters.min_size = min_pts_per_cluster_;
   parameters.max_size = max_pts_per_cluster_;
+  const bool begun = begun_;
+  begun_ = false;  // unless nothing is thrown, here and below
   try {
     clusterer_.begin(parameters, [this](const lisco::EndlessCluster& delivered) { deliver(delivered); });
   } catch (const std::invalid_argument& error) {
     PCL_ERROR("[pcl::LiscoEndlessExtraction::beginStream] %s.\n", error.what());
+    begun_ = begun;
     return (false);
   }
   columns_per_turn_ = parameters.columns_per_turn;
@@ -241,6 +256,7 @@ bool pcl::LiscoEndlessExtraction<PointT>::addColumnAt(const PointT* points, std:
               store_.positionOf(store_.endColumn() - 1));
     return (false);
   }
+  begun_ = false;
   most_rows_ = std::max(most_rows_, count);
   const std::uint32_t first = store_.add(points, count, position);
   const lisco::Return* const cells = this->namedColumn(points, count, first);
@@ -248,6 +264,7 @@ bool pcl::LiscoEndlessExtraction<PointT>::addColumnAt(const PointT* points, std:
     clusterer_.addColumn(cells, count, position);
   else
     clusterer_.addColumn(cells, count);
+  begun_ = true;
   constexpr double kKept = 1.5;  // turns, within which the engine names a cell again
   while (store_.positionOf(store_.firstColumn()) < position - kKept) store_.dropFirst();
   return (true);
@@ -281,14 +298,19 @@ bool pcl::LiscoEndlessExtraction<PointT>::addColumn(const PointCloud& column) {
 
 template <typename PointT>
 void pcl::LiscoEndlessExtraction<PointT>::update() {
-  if (begun_) clusterer_.update();
+  if (!begun_) return;
+  begun_ = false;
+  clusterer_.update();
+  begun_ = true;
 }
 
 template <typename PointT>
 void pcl::LiscoEndlessExtraction<PointT>::finish() {
   if (!begun_) return;
+  begun_ = false;
   clusterer_.finish();
   store_.clear();
+  begun_ = true;
 }
 
 template <typename PointT>

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "endless_streams.h"
+#include "oracle.h"
+#include "random.h"
+
+namespace lisco_test {
+
+/// What the streams stay within, metres and turns: beyond, squares overflow or vanish, and positions are coarser than
+/// the margins of the comparison with the definition.
+constexpr double kSmallestRange = 1e-18;
+constexpr double kLargestRange = 1e17;
+constexpr double kLargestPosition = 1e9;
+
+/// A stream whose cells are numbered in the order of their columns.
+struct ColumnStream : EndlessStream {
+  /// By column: its position is 1 / columns_per_turn after the one before, or 0 if it is the first one.
+  std::vector<bool> is_by_rate;
+
+  std::size_t cellCount() const;
+};
+
+/// A random endless stream with, in any strength: columns of any number of cells, or none; cells that are NaN, infinite
+/// or (0, 0, 0); returns on or beside the sensor's axis, and as far as squares reach; points that come twice; partners
+/// of earlier points at eps (1 +- 1e-7), or about that; positions up to a billion, or by the number of columns of a
+/// turn. No return lies where rounding decides whether it is an outlier, or what its reach end is.
+ColumnStream randomColumnStream(Random& random);
+
+/// The columns first..end-1 as a stream of their own, whose cells keep their numbers. It may begin some turns earlier.
+ColumnStream partOf(const ColumnStream& stream, std::size_t first, std::size_t end, double turns_earlier = 0);
+
+/// What doc/streaming.md does not allow of a stream's deliveries; empty if nothing.
+/// \param truth the definition's, of the whole stream
+/// \param updates after which columns update () was called, ascending
+/// \param finished whether the stream's end was told; if not, clusters that may still grow are not delivered
+///
+/// Reach ends of the actual deliveries are not looked at: the PCL face does not give them.
+std::string wrongDeliveries(const EndlessStream& stream, const std::vector<Delivery>& truth,
+                            std::vector<Delivery> actual, const std::vector<std::size_t>& updates, bool finished);
+
+/// By number of the cell, as the oracle takes them; cells of other columns than first..end-1 are no returns.
+std::vector<Point> pointsOf(const EndlessStream& stream, std::size_t first, std::size_t end);
+
+}  // namespace lisco_test

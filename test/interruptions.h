@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+// Calls that are interrupted by an exception: memory is refused, or a callback throws. For programs with
+// refused_allocations.cpp in them.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <string>
+
+#include "refused_allocations.h"
+
+namespace lisco_test {
+
+/// What callbacks throw.
+struct Interruption {};
+
+/// Throws when it has been asked so many times, by any thread; never if 0.
+class Fuse {
+ public:
+  explicit Fuse(std::size_t times) : left_(times) {}
+  void burn() {
+    if (left_-- == 1) throw Interruption();
+  }
+  void replace(std::size_t times) { left_ = times; }
+
+ private:
+  std::atomic<std::size_t> left_;
+};
+
+/// Makes one call of a session, which must come to its end, be refused memory or be interrupted.
+/// \param refused which of its allocations; 0: none
+/// \return whether as many were asked for
+template <typename Session>
+bool interruptedCall(Session& session, std::size_t number, std::size_t refused, bool& thrown) {
+  const RefusedAllocation refusal(refused);
+  thrown = true;
+  try {
+    session.call(number);
+    thrown = false;
+  } catch (const std::bad_alloc&) {
+  } catch (const Interruption&) {
+  }
+  return refused > 0 && refusal.happened();
+}
+
+/// Refuses the first allocation of a call, then in a new session the second, and so on until the call needs no more.
+/// After each refusal, holds the session to what it promises, then to being usable again, and to giving all its memory
+/// back.
+///
+/// A Session has call (number); checkInterrupted (number), after an exception in that call; and redo (), which begins
+/// anew and tells what is wrong with the clusters.
+/// \param make makes a session
+/// \param number of the call
+/// \return how many allocations were refused
+template <typename Make>
+std::size_t refuseEachAllocation(Make&& make, std::size_t number) {
+  constexpr std::size_t kMostRefused = 20000;
+  for (std::size_t refused = 1; refused < kMostRefused; ++refused) {
+    const std::size_t live = liveAllocations();
+    bool thrown = false;
+    bool happened = false;
+    std::string wrong;
+    {
+      auto session = make();
+      for (std::size_t before = 0; before < number; ++before) session.call(before);
+      happened = interruptedCall(session, number, refused, thrown);
+      if (thrown) session.checkInterrupted(number);
+      if (happened) wrong = session.redo();
+    }
+    if (!wrong.empty() || testing::Test::HasFailure()) {
+      ADD_FAILURE() << "after allocation " << refused << " of call " << number << " had been refused: " << wrong;
+      return refused;
+    }
+    std::string().swap(wrong);
+    EXPECT_EQ(liveAllocations(), live) << "allocation " << refused << " of call " << number << ": a leak";
+    if (!happened) return refused - 1;
+  }
+  ADD_FAILURE() << "call " << number << " has no end";
+  return kMostRefused;
+}
+
+}  // namespace lisco_test

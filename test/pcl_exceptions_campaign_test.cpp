@@ -1,0 +1,435 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+// Exceptions in the midst of the PCL face's calls: memory that is refused, callbacks that throw. Nothing leaks, what is
+// still given out is right, and what is begun anew is the oracle's. A program of its own: refused_allocations.cpp
+// replaces operator new.
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <pcl/console/print.h>
+
+#include "column_streams.h"
+#include "engine.h"
+#include "interruptions.h"
+#include "pair_scans.h"
+#include "pcl_oracle.h"
+#include "pcl_stream.h"
+
+namespace lisco_test {
+namespace {
+
+using pcl::PointXYZ;
+using Cloud = pcl::PointCloud<PointXYZ>;
+
+class PclExceptionsCampaign : public testing::Test {
+ protected:
+  // PCL tells of each refused allocation.
+  void SetUp() override { pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS); }
+  void TearDown() override { pcl::console::setVerbosityLevel(pcl::console::L_INFO); }
+};
+
+std::string differenceOf(const Clusters& expected, const Clusters& found) {
+  if (expected.size() != found.size())
+    return std::to_string(expected.size()) + " clusters expected, " + std::to_string(found.size()) + " found";
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    if (expected[i].indices != found[i].indices || !(expected[i].header == found[i].header))
+      return "cluster " + std::to_string(i) + " is another one";
+  return {};
+}
+
+// --- A whole cloud --------------------------------------------------------------------------------------------------
+
+struct Extracted {
+  explicit Extracted(Random& random) {
+    const bool by_threads = random.chance(0.4);
+    PairScan pairs = randomPairs(random);
+    constexpr std::size_t kWorthThreads = 8192;  // cells
+    while (by_threads == (pairs.scan.columns * pairs.scan.lasers < kWorthThreads)) pairs = randomPairs(random);
+    request.tolerance = static_cast<double>(pairs.tolerance);
+    request.min_size = static_cast<pcl::uindex_t>(1 + random.below(2));
+    threads = by_threads ? 3 : 1;
+    cloud = cloudOf(pairs.scan);
+    with_labels = random.chance(0.5);
+    if (random.chance(0.5)) {
+      indices = shuffledIndices(random, cloud->size());
+      const std::array<std::size_t, 3> shares{1, 3, 20};
+      indices->resize(cloud->size() / random.oneOf(shares));
+      if (random.chance(0.5)) std::sort(indices->begin(), indices->end());
+    }
+    // The clusters come in the order in which their first points appear in the indices.
+    Cloud selected = *cloud;
+    std::vector<std::size_t> place(cloud->size(), indices ? indices->size() : 0);
+    if (indices) {
+      for (std::size_t i = indices->size(); i-- > 0;) place[static_cast<std::size_t>((*indices)[i])] = i;
+      for (std::size_t point = 0; point < selected.size(); ++point)
+        if (place[point] == indices->size()) selected[point].x = selected[point].y = selected[point].z = 0;
+    } else {
+      for (std::size_t point = 0; point < place.size(); ++point) place[point] = point;
+    }
+    right = trueClustersOf(selected, request);
+    const auto firstPlace = [&place](const pcl::PointIndices& cluster) {
+      std::size_t first = place.size();
+      for (const pcl::index_t point : cluster.indices) first = std::min(first, place[static_cast<std::size_t>(point)]);
+      return first;
+    };
+    std::sort(right.begin(), right.end(), [&](const auto& a, const auto& b) { return firstPlace(a) < firstPlace(b); });
+    std::sort(right.rbegin(), right.rend(), pcl::comparePointClusters);
+  }
+
+  Cloud::Ptr cloud;
+  pcl::IndicesPtr indices;
+  Request request;
+  unsigned int threads = 1;
+  bool with_labels = false;
+  Clusters right;
+};
+
+class ExtractSession {
+ public:
+  explicit ExtractSession(const Extracted& extracted) : extracted_(extracted) {
+    extraction_->setInputCloud(extracted.cloud);
+    extraction_->setIndices(extracted.indices);
+    extraction_->setNumberOfThreads(extracted.threads);
+    set(*extraction_, extracted.request);
+  }
+
+  void call(std::size_t) {
+    passed_ = false;
+    if (extracted_.with_labels)
+      extraction_->extract(clusters_, labels_);
+    else
+      extraction_->extract(clusters_);
+    passed_ = true;
+  }
+
+  void checkInterrupted(std::size_t) {}
+
+  std::string redo() {
+    // PCL's initCompute () catches what its own indices are refused, and says so: then there is nothing to cluster.
+    if (passed_ && !clusters_.empty()) return "extract () went on: " + differenceOf(extracted_.right, clusters_);
+    clusters_.clear();
+    call(0);
+    std::string wrong = differenceOf(extracted_.right, clusters_);
+    if (!wrong.empty() || !extracted_.with_labels) return wrong;
+    std::vector<std::uint32_t> expected(extracted_.cloud->size(), 0);
+    for (std::size_t i = 0; i < clusters_.size(); ++i)
+      for (const pcl::index_t point : clusters_[i].indices)
+        expected[static_cast<std::size_t>(point)] = static_cast<std::uint32_t>(i + 1);
+    for (std::size_t point = 0; point < expected.size(); ++point)
+      if (labels_[point].label != expected[point]) return "the label of point " + std::to_string(point);
+    return wrong;
+  }
+
+ private:
+  const Extracted& extracted_;
+  std::unique_ptr<pcl::LiscoClusterExtraction<PointXYZ>> extraction_ =
+      std::make_unique<pcl::LiscoClusterExtraction<PointXYZ>>();
+  Clusters clusters_;
+  pcl::PointCloud<pcl::Label> labels_;
+  bool passed_ = false;
+};
+
+TEST_F(PclExceptionsCampaign, CloudsThatAreRefusedMemory) {
+  std::size_t refused = 0;
+  for (std::uint64_t seed = 1; seed <= timesEffort(6); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const SimdLevel level(levels()[seed % levels().size()]);
+    const Extracted extracted(random);
+    refused += refuseEachAllocation([&] { return ExtractSession(extracted); }, 0);
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(refused, timesEffort(6 * 20));
+}
+
+// --- Streams --------------------------------------------------------------------------------------------------------
+
+/// A short stream and how it is clustered.
+struct Streamed {
+  explicit Streamed(Random& random) {
+    stream = randomColumnStream(random);
+    const std::size_t most_columns = 20 + random.below(100);
+    stream = partOf(stream, 0, std::min(stream.columns.size(), most_columns));
+    columns = columnsOf(stream);
+    request = requestFor(random, stream);
+    hop = 1 + random.below(12);
+    window = hop * (1 + random.below(5));
+    truth = wanted(endlessTruth(stream).deliveries, request);
+  }
+
+  Clusters trueClustersBetween(std::size_t first, std::size_t end) const {
+    Clusters clusters;
+    appendTrueClusters(*organized(columns, first, end, anyHeader()), request, clusters);
+    return clusters;
+  }
+
+  ColumnStream stream;
+  Columns<PointXYZ> columns;
+  Request request;
+  std::size_t hop = 1, window = 1;
+  std::vector<Delivery> truth;  ///< of the endless stream
+};
+
+/// Calls: twice begin, each column, the end; so that the second rotation begins with what the first one has taught.
+class RotationSession {
+ public:
+  explicit RotationSession(const Streamed& streamed) : streamed_(streamed) {
+    set(*stream_, streamed.request);
+    stream_->setHeader(anyHeader());
+    stream_->setBlockColumns(streamed.hop);
+  }
+
+  static std::size_t calls(const Streamed& streamed) { return 2 * (streamed.columns.size() + 3); }
+
+  void call(std::size_t number) {
+    const std::size_t columns = streamed_.columns.size();
+    number %= columns + 3;
+    if (number == 0)
+      stream_->beginRotation();
+    else if (number <= columns)
+      stream_->addColumn(streamed_.columns[number - 1]);
+    else if (number == columns + 1)
+      stream_->getSubclusters(looked_at_);
+    else
+      stream_->endRotation(clusters_);
+  }
+
+  /// The rotation is over, unless it was but a look that failed.
+  void checkInterrupted(std::size_t number) {
+    const std::size_t columns = streamed_.columns.size();
+    number %= columns + 3;
+    Cloud cloud;
+    std::vector<pcl::uindex_t> sizes;
+    stream_->getSubclusterSizes(sizes);
+    EXPECT_LE(stream_->getSubcluster(0, 0), static_cast<pcl::index_t>(sizes.size()));
+    stream_->getCloud(cloud);
+    EXPECT_EQ(cloud.width, stream_->getNumberOfColumns());
+    clusters_.clear();
+    stream_->getSubclusters(clusters_);
+    // What failed before it reached the engine has left all that was there to be looked at.
+    EXPECT_TRUE(clusters_.empty() ||
+                differenceOf(streamed_.trueClustersBetween(0, stream_->getNumberOfColumns()), clusters_).empty());
+    const bool is_over = !stream_->addColumn(nullptr, 0);
+    EXPECT_TRUE(is_over || number > columns);
+    const std::size_t looked_at = clusters_.size();
+    EXPECT_EQ(stream_->endRotation(clusters_), !is_over);
+    EXPECT_EQ(clusters_.size(), is_over ? 0 : 2 * looked_at) << "not appended";
+    EXPECT_TRUE(is_over || looked_at == streamed_.trueClustersBetween(0, columns).size());
+  }
+
+  std::string redo() {
+    std::string wrong;
+    const Clusters right = streamed_.trueClustersBetween(0, streamed_.columns.size());
+    for (std::size_t number = 0; number < calls(streamed_) && wrong.empty(); ++number) {
+      if (number % (streamed_.columns.size() + 3) == 0) clusters_.clear();
+      call(number);
+      if ((number + 1) % (streamed_.columns.size() + 3) == 0) wrong = differenceOf(right, clusters_);
+    }
+    return wrong;
+  }
+
+ private:
+  const Streamed& streamed_;
+  std::unique_ptr<pcl::LiscoStreamExtraction<PointXYZ>> stream_ =
+      std::make_unique<pcl::LiscoStreamExtraction<PointXYZ>>();
+  Clusters looked_at_, clusters_;
+};
+
+/// Calls: begin, then a column and a look each.
+class WindowSession {
+ public:
+  explicit WindowSession(const Streamed& streamed) : streamed_(streamed) {
+    set(*windows_, streamed.request);
+    windows_->setHeader(anyHeader());
+    windows_->setWindowSize(streamed.window);
+    windows_->setHop(streamed.hop);
+  }
+
+  static std::size_t calls(const Streamed& streamed) { return 1 + 2 * streamed.columns.size(); }
+
+  void call(std::size_t number) {
+    if (number == 0) {
+      windows_->beginStream();
+      end_ = 0;
+    } else if (number % 2 != 0) {
+      if (windows_->addColumn(streamed_.columns[number / 2])) end_ = number / 2 + 1;
+    } else if (end_ > 0) {
+      clusters_.clear();
+      windows_->extract(clusters_);
+    }
+  }
+
+  /// The stream is over, unless it was but a look that failed: then it goes on.
+  void checkInterrupted(std::size_t number) {
+    Cloud cloud;
+    windows_->getWindow(cloud);
+    EXPECT_EQ(cloud.width, windows_->getNumberOfColumns());
+    clusters_.resize(2);
+    if (number > 0 && number % 2 == 0) {
+      EXPECT_EQ(goOn(number), "");
+      return;
+    }
+    EXPECT_FALSE(windows_->extract(clusters_));
+    EXPECT_TRUE(clusters_.empty());
+    for (const Cloud& column : streamed_.columns) EXPECT_FALSE(windows_->addColumn(column));
+    EXPECT_FALSE(windows_->extract(clusters_));
+  }
+
+  std::string redo() { return goOn(0); }
+
+ private:
+  /// Makes this call and all after it.
+  std::string goOn(std::size_t number) {
+    std::string wrong;
+    for (; number < calls(streamed_) && wrong.empty(); ++number) {
+      call(number);
+      if (number > 0 && number % 2 == 0 && end_ > 0) wrong = differenceOf(right(), clusters_);
+    }
+    return wrong;
+  }
+
+  Clusters right() const { return streamed_.trueClustersBetween(end_ - std::min(end_, streamed_.window), end_); }
+
+  const Streamed& streamed_;
+  std::unique_ptr<pcl::LiscoWindowExtraction<PointXYZ>> windows_ =
+      std::make_unique<pcl::LiscoWindowExtraction<PointXYZ>>();
+  Clusters clusters_;
+  std::size_t end_ = 0;  ///< of the last window
+};
+
+/// Calls: begin, then each column and perhaps an update, finish.
+class EndlessSession {
+ public:
+  explicit EndlessSession(const Streamed& streamed, Fuse* fuse = nullptr) : streamed_(streamed), fuse_(fuse) {
+    const lisco::EndlessParameters& parameters = streamed.stream.parameters;
+    set(*endless_, streamed.request);
+    endless_->setHeader(anyHeader());
+    endless_->setSensorOrigin({parameters.origin[0], parameters.origin[1], parameters.origin[2], 0});
+    endless_->setClockwise(parameters.clockwise);
+    endless_->setStartAzimuth(parameters.start_azimuth);
+    endless_->setStagger(parameters.stagger);
+    endless_->setBlockColumns(parameters.block_columns);
+    state_->fuse = fuse_;
+    endless_->setClusterCallback([state = state_.get()](const EndlessReceiver::Extraction::Cluster& cluster) {
+      if (state->fuse != nullptr) state->fuse->burn();
+      state->receiver.receive(cluster);
+    });
+    state_->receiver.expect(streamed.stream, anyHeader());
+  }
+
+  static std::size_t calls(const Streamed& streamed) { return 2 + 2 * streamed.columns.size(); }
+
+  void call(std::size_t number) {
+    if (number == 0) {
+      endless_->beginStream();
+      state_->receiver.expect(streamed_.stream, anyHeader());
+      return;
+    }
+    const std::size_t column = (number - 1) / 2;
+    state_->receiver.column = column;
+    if (column == streamed_.columns.size()) return endless_->finish();
+    if (number % 2 != 0)
+      endless_->addColumn(streamed_.columns[column], streamed_.stream.columns[column].position);
+    else if (column % streamed_.hop == 0)
+      endless_->update();
+  }
+
+  void checkInterrupted(std::size_t) {
+    state_->fuse = nullptr;
+    for (const Delivery& delivery : state_->receiver.deliveries()) {
+      const auto right = std::lower_bound(streamed_.truth.begin(), streamed_.truth.end(), delivery);
+      EXPECT_TRUE(right != streamed_.truth.end() && right->members == delivery.members) << delivery;
+    }
+    // The stream is over.
+    const std::size_t before = state_->receiver.deliveries().size();
+    EXPECT_FALSE(endless_->addColumn(nullptr, 0, kLargestPosition));
+    endless_->update();
+    endless_->finish();
+    EXPECT_FALSE(endless_->addColumn(nullptr, 0, kLargestPosition));
+    EXPECT_EQ(state_->receiver.deliveries().size(), before);
+  }
+
+  std::string redo() {
+    state_->fuse = nullptr;
+    for (std::size_t number = 0; number < calls(streamed_); ++number) call(number);
+    std::vector<std::size_t> updates;
+    for (std::size_t column = 0; column < streamed_.columns.size(); column += streamed_.hop) updates.push_back(column);
+    return wrongDeliveries(streamed_.stream, streamed_.truth, state_->receiver.deliveries(), updates, true);
+  }
+
+ private:
+  struct State {
+    Fuse* fuse = nullptr;
+    EndlessReceiver receiver;
+  };
+
+  const Streamed& streamed_;
+  Fuse* fuse_;
+  std::unique_ptr<State> state_ = std::make_unique<State>();
+  std::unique_ptr<EndlessReceiver::Extraction> endless_ = std::make_unique<EndlessReceiver::Extraction>();
+};
+
+template <typename Session>
+void refuseStreams(std::uint64_t first_seed, std::uint64_t seeds) {
+  std::size_t refused = 0;
+  for (std::uint64_t seed = first_seed; seed < first_seed + seeds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const SimdLevel level(levels()[seed % levels().size()]);
+    const Streamed streamed(random);
+    const std::size_t last = Session::calls(streamed) - 1;
+    for (std::size_t number = 0; number <= last;) {
+      refused += refuseEachAllocation([&] { return Session(streamed); }, number);
+      if (testing::Test::HasFailure()) return;
+      // Ends and beginnings are never left out: they allocate most.
+      const std::size_t step = 1 + random.below(12);
+      number = number < last ? std::min(last, number + step) : last + 1;
+    }
+  }
+  EXPECT_GT(refused, 10 * seeds);
+}
+
+TEST_F(PclExceptionsCampaign, RotationsThatAreRefusedMemory) {
+  refuseStreams<RotationSession>(1000, timesEffort(20));
+}
+
+TEST_F(PclExceptionsCampaign, WindowsThatAreRefusedMemory) {
+  refuseStreams<WindowSession>(2000, timesEffort(20));
+}
+
+TEST_F(PclExceptionsCampaign, EndlessStreamsThatAreRefusedMemory) {
+  refuseStreams<EndlessSession>(3000, timesEffort(20));
+}
+
+TEST_F(PclExceptionsCampaign, EndlessStreamsWhoseCallbackThrows) {
+  std::array<std::size_t, 3> interrupted{};  // addColumn (), update () and finish ()
+  for (std::uint64_t seed = 4000; seed < 4000 + timesEffort(300); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const SimdLevel level(levels()[seed % levels().size()]);
+    const Streamed streamed(random);
+    const std::size_t live = liveAllocations();
+    {
+      Fuse fuse(1 + random.below(streamed.truth.size() + 1));
+      EndlessSession session(streamed, &fuse);
+      const std::size_t last = EndlessSession::calls(streamed) - 1;
+      bool thrown = false;
+      for (std::size_t number = 0; number <= last && !thrown; ++number) {
+        interruptedCall(session, number, 0, thrown);
+        if (!thrown) continue;
+        session.checkInterrupted(number);
+        ++interrupted[number == last ? 2 : (number + 1) % 2];
+      }
+      ASSERT_EQ(session.redo(), "");
+    }
+    ASSERT_EQ(liveAllocations(), live) << "a leak";
+    if (HasFailure()) return;
+  }
+  for (const std::size_t count : interrupted) EXPECT_GT(count, 5U);
+}
+
+}  // namespace
+}  // namespace lisco_test
