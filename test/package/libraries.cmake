@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Installed programs and libraries load all they need, and PCL's libraries from PCL_LIBRARY_DIR.
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
+set(ENV{LD_LIBRARY_PATH} ${PREFIX}/${LIBRARY_DIR})  # for programs that are to be installed in /usr
+list(TRANSFORM PROGRAMS PREPEND ${PREFIX}/bin/)
+if(TYPE STREQUAL SHARED_LIBRARY)
+  list(APPEND PROGRAMS ${PREFIX}/${LIBRARY_DIR}/liblisco.so)
+endif()
+get_filename_component(expected ${PCL_LIBRARY_DIR} REALPATH)
+foreach(file IN LISTS PROGRAMS)
+  run(ldd ${file})
+  if(output MATCHES "not found")
+    message(FATAL_ERROR "${file} lacks libraries:\n${output}")
+  endif()
+  string(REGEX MATCHALL "/[^ \n]*/libpcl_[^ \n]*" libraries "${output}")
+  foreach(library IN LISTS libraries)
+    get_filename_component(folder ${library} DIRECTORY)
+    get_filename_component(folder ${folder} REALPATH)
+    if(NOT folder STREQUAL expected)
+      message(FATAL_ERROR "${file} loads ${library}, expected it in ${expected}")
+    endif()
+  endforeach()
+endforeach()
