@@ -3,22 +3,29 @@
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK_DIR})
 
-# The folder: links to the PCL that is there.
+# The folder: links to the PCL that is there. CMake makes no RPATH of folders within the project, as the build folder may be.
+run(mktemp -d)
+string(STRIP "${output}" pcl)
 get_filename_component(root ${PCL_DIR}/../../../.. ABSOLUTE)
 file(RELATIVE_PATH config ${root} ${PCL_DIR})
-get_filename_component(libraries ${config}/../.. ABSOLUTE BASE_DIR ${WORK_DIR}/pcl)
+get_filename_component(libraries ${config}/../.. ABSOLUTE BASE_DIR ${pcl})
 string(REGEX MATCH "^[0-9]+[.][0-9]+" version ${PCL_VERSION})
-file(MAKE_DIRECTORY ${WORK_DIR}/pcl/include)
-file(CREATE_LINK ${root}/include/pcl-${version} ${WORK_DIR}/pcl/include/pcl-${version} SYMBOLIC)
-file(COPY ${PCL_DIR}/ DESTINATION ${WORK_DIR}/pcl/${config})
+file(MAKE_DIRECTORY ${pcl}/include)
+file(CREATE_LINK ${root}/include/pcl-${version} ${pcl}/include/pcl-${version} SYMBOLIC)
+file(COPY ${PCL_DIR}/ DESTINATION ${pcl}/${config})
 file(GLOB files ${PCL_LIBRARY_DIR}/libpcl_*.so*)
 foreach(file IN LISTS files)
   get_filename_component(name ${file} NAME)
   file(CREATE_LINK ${file} ${libraries}/${name} SYMBOLIC)
 endforeach()
 
-run(${CMAKE_COMMAND} -S ${PROJECT_DIR} -B ${WORK_DIR}/build -G ${GENERATOR} -DCMAKE_BUILD_TYPE=${CONFIG}
-  -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DCMAKE_PREFIX_PATH=${WORK_DIR}/pcl -DLISCO_BUILD_TESTS=OFF)
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${PROJECT_DIR} -B ${WORK_DIR}/build -G ${GENERATOR} -DCMAKE_BUILD_TYPE=${CONFIG}
+  -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DCMAKE_PREFIX_PATH=${pcl} -DLISCO_BUILD_TESTS=OFF
+  RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
+file(REMOVE_RECURSE ${pcl})
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "${output}")
+endif()
 file(READ ${WORK_DIR}/build/cmake_install.cmake script)
 file(READ ${WORK_DIR}/build/cmake/install/cmake_install.cmake part)
 string(APPEND script "${part}")
