@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// What PCL's people detector and others use besides the class's common calls: the class and the kd-tree within a template, neither
-// tree nor comparePointClusters included by name, and the free functions with a tree.
+// What PCL's people detector and others use besides the class's common calls: the class and the kd-tree within a
+// template, neither tree nor comparePointClusters included by name, and the free functions with a tree.
 #include <algorithm>
 #include <cstdio>
 #include <memory>

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Installed programs and libraries load all they need, and what they link of PCL from PCL_LIBRARY_DIR. (What PCL's libraries link
-# in turn is found by their own RPATH.)
+# Installed programs and libraries load all they need, and what they link of PCL from PCL_LIBRARY_DIR. (What PCL's
+# libraries link in turn is found by their own RPATH.)
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 set(ENV{LD_LIBRARY_PATH} ${PREFIX}/${LIBRARY_DIR})  # for programs that are to be installed in /usr
 list(TRANSFORM PROGRAMS PREPEND ${PREFIX}/bin/)

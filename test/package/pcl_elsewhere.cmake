@@ -3,7 +3,8 @@
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK_DIR})
 
-# The folder: links to the PCL that is there. CMake makes no RPATH of folders within the project, as the build folder may be.
+# The folder: links to the PCL that is there. CMake makes no RPATH of folders within the project, as the build folder
+# may be.
 run(mktemp -d)
 string(STRIP "${output}" pcl)
 get_filename_component(root ${PCL_DIR}/../../../.. ABSOLUTE)
@@ -19,8 +20,8 @@ foreach(file IN LISTS files)
   file(CREATE_LINK ${file} ${libraries}/${name} SYMBOLIC)
 endforeach()
 
-execute_process(COMMAND ${CMAKE_COMMAND} -S ${PROJECT_DIR} -B ${WORK_DIR}/build -G ${GENERATOR} -DCMAKE_BUILD_TYPE=${CONFIG}
-  -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DCMAKE_PREFIX_PATH=${pcl} -DLISCO_BUILD_TESTS=OFF
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${PROJECT_DIR} -B ${WORK_DIR}/build -G ${GENERATOR}
+  -DCMAKE_BUILD_TYPE=${CONFIG} -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DCMAKE_PREFIX_PATH=${pcl} -DLISCO_BUILD_TESTS=OFF
   RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
 file(REMOVE_RECURSE ${pcl})
 if(NOT status EQUAL 0)

@@ -138,9 +138,9 @@ class LiscoClusterExtraction : public PCLBase<PointT> {
     extractWithLabels(clusters, labels.points.data());
   }
 
-  /** \brief Accepted for compatibility: kept, never searched, and not given the input cloud. The clusters are those of an exact
-   * kd-tree over (x, y, z). A PCL_WARN says so, once per process and kind, if \a tree is a pcl::search::KdTree with
-   * another answer: its epsilon is above 0, or its point representation is not (x, y, z).
+  /** \brief Accepted for compatibility: kept, never searched, and not given the input cloud. The clusters are those of
+   * an exact kd-tree over (x, y, z). A PCL_WARN says so, once per process and kind, if \a tree is a pcl::search::KdTree
+   * with another answer: its epsilon is above 0, or its point representation is not (x, y, z).
    */
   inline void setSearchMethod(const KdTreePtr& tree) {
     detail::LiscoSearchMethodCheck::check<PointT>(tree.get(), "pcl::LiscoClusterExtraction::setSearchMethod");
