@@ -58,6 +58,54 @@ TEST(PclFreeFunctions, WholeCloudWithoutSomeReturnsIsThatOfItsReturns) {
   expectSame(of_returns, of_all);
 }
 
+/// The calls that each name has in common with the other one: a plain rename.
+template <typename Extract>
+void extractWithTree(const Extract& extract, const Cloud::Ptr& cloud, const pcl::IndicesPtr& indices,
+                     Clusters& clusters) {
+  const pcl::search::KdTree<PointXYZ>::Ptr tree(new pcl::search::KdTree<PointXYZ>(false));
+  const pcl::search::Search<PointXYZ>::Ptr search = tree;
+  tree->setInputCloud(cloud, indices);
+  extract(*cloud, *indices, tree, 0.5F, clusters);
+  extract(*cloud, *indices, search, 0.5F, clusters, 2);
+  extract(*cloud, *indices, tree, 0.5F, clusters, 2, 300);
+  tree->setInputCloud(cloud);
+  extract(*cloud, tree, 0.5F, clusters);
+  extract(*cloud, search, 0.5F, clusters, 2);
+  extract(*cloud, tree, 0.5F, clusters, 2, 300);
+}
+
+TEST(PclFreeFunctions, TakeATreeAsPclsDo) {
+  Random random(3);
+  const Cloud::Ptr scan = scanOfBoxes();
+  const auto cloud = std::make_shared<Cloud>(*scan, *returnsOf(*scan));
+  const pcl::IndicesPtr indices = shuffledIndices(random, cloud->size());
+  indices->resize(indices->size() / 2);
+  Clusters expected;
+  Clusters actual;
+  extractWithTree([](auto&&... arguments) { pcl::extractEuclideanClusters<PointXYZ>(arguments...); }, cloud, indices,
+                  expected);
+  extractWithTree([](auto&&... arguments) { pcl::extractLiscoClusters<PointXYZ>(arguments...); }, cloud, indices,
+                  actual);
+  EXPECT_GT(expected.size(), 40U);
+  expectSame(expected, actual);
+  actual.clear();
+  extractWithTree([](auto&&... arguments) { pcl::extractLiscoClusters(arguments...); }, cloud, indices, actual);
+  expectSame(expected, actual);
+}
+
+TEST(PclFreeFunctions, IgnoreTheTree) {
+  const Cloud::Ptr cloud = scanOfBoxes();
+  const pcl::search::KdTree<PointXYZ>::Ptr empty_tree(new pcl::search::KdTree<PointXYZ>);
+  Clusters expected;
+  Clusters actual;
+  pcl::extractLiscoClusters(*cloud, 0.5F, expected, 2);
+  pcl::extractLiscoClusters(*cloud, *returnsOf(*cloud), 0.5F, expected, 2);
+  pcl::extractLiscoClusters(*cloud, empty_tree, 0.5F, actual, 2);
+  pcl::extractLiscoClusters(*cloud, *returnsOf(*cloud), nullptr, 0.5F, actual, 2);
+  expectSame(expected, actual);
+  EXPECT_EQ(empty_tree->getInputCloud(), nullptr);
+}
+
 TEST(PclFreeFunctions, OnNothing) {
   Clusters clusters;
   pcl::extractLiscoClusters(Cloud(), 0.5F, clusters);

@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include "lisco/cxx17.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 // What doc/migration.md says about PCL itself.
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <string>
+
+#include <pcl/point_representation.h>
+
 #include "examples/example_scan.h"
 #include "pcl_client.h"
 
@@ -68,6 +75,157 @@ TEST(Migration, KdTreesThatSortGiveTheSameClusters) {
 TEST(Migration, OrganizedOrNotGivesTheSameClusters) {
   const Cloud::Ptr cloud = exampleScan();
   expectSame(clustersByLisco(cloud), clustersByLisco(inOneRow(cloud)));
+}
+
+using Tree = pcl::search::KdTree<PointXYZI>;
+
+Tree::Ptr treeWithEpsilon(float epsilon) {
+  auto tree = std::make_shared<Tree>(false);
+  tree->setEpsilon(epsilon);
+  return tree;
+}
+
+Tree::Ptr treeWithScales(const std::array<float, 3>& scales) {
+  auto representation = std::make_shared<pcl::DefaultPointRepresentation<PointXYZI>>();
+  representation->setRescaleValues(scales.data());
+  auto tree = std::make_shared<Tree>(false);
+  tree->setPointRepresentation(representation);
+  return tree;
+}
+
+/// x and y only.
+struct PlanRepresentation : pcl::PointRepresentation<PointXYZI> {
+  PlanRepresentation() { nr_dimensions_ = 2, trivial_ = true; }
+  void copyToFloatArray(const PointXYZI& point, float* out) const override { out[0] = point.x, out[1] = point.y; }
+};
+
+Tree::Ptr treeOfPlan() {
+  auto tree = std::make_shared<Tree>(false);
+  tree->setPointRepresentation(std::make_shared<PlanRepresentation>());
+  return tree;
+}
+
+template <typename Extraction>
+Clusters clustersBy(const Tree::Ptr& tree, const Cloud::Ptr& cloud) {
+  Extraction extraction;
+  extraction.setSearchMethod(tree);
+  extraction.setInputCloud(cloud);
+  extraction.setClusterTolerance(0.4);
+  Clusters clusters;
+  extraction.extract(clusters);
+  return clusters;
+}
+
+/// Lisco's clusters with a tree are those of an exact kd-tree, PCL's are others.
+void expectPclsAlone(const Tree::Ptr& tree) {
+  const Cloud::Ptr cloud = inOneRow(exampleScan());
+  const Clusters exact = clustersBy<pcl::EuclideanClusterExtraction<PointXYZI>>(std::make_shared<Tree>(false), cloud);
+  expectSame(exact, clustersBy<pcl::LiscoClusterExtraction<PointXYZI>>(tree, cloud));
+  const Clusters others = clustersBy<pcl::EuclideanClusterExtraction<PointXYZI>>(tree, cloud);
+  EXPECT_FALSE(std::equal(exact.begin(), exact.end(), others.begin(), others.end(),
+                          [](const auto& a, const auto& b) { return a.indices == b.indices; }));
+}
+
+TEST(Migration, PclsClustersOfAnInexactKdTreeAreOthers) {
+  expectPclsAlone(treeWithEpsilon(1.0F));
+}
+
+TEST(Migration, PclsClustersOfAnotherMetricAreOthers) {
+  expectPclsAlone(treeWithScales({1.0F, 1.0F, 0.1F}));
+  expectPclsAlone(treeOfPlan());
+}
+
+void giveToClass(const Tree::Ptr& tree) {
+  pcl::LiscoClusterExtraction<PointXYZI>().setSearchMethod(tree);
+}
+
+void giveToFunctions(const Tree::Ptr& tree) {
+  const pcl::PointCloud<PointXYZI> cloud;
+  Clusters clusters;
+  pcl::extractLiscoClusters(cloud, tree, 0.4F, clusters);
+  pcl::extractLiscoClusters(cloud, pcl::Indices(), tree, 0.4F, clusters);
+}
+
+/// A body run in a process of its own, where no warning has been given yet, prints one line for each text.
+void expectWarnings(void (*body)(), const std::vector<std::string>& texts) {
+  std::string pattern;
+  for (const std::string& text : texts) pattern += "[^\n]*" + text + "[^\n]*\n";
+  const auto run = [&] {
+    body();
+    std::exit(0);
+  };
+  testing::GTEST_FLAG(death_test_style) = "threadsafe";  // a new process, not a copy of this one
+  EXPECT_EXIT(run(), testing::ExitedWithCode(0), "^" + pattern + "[^\n]*$");
+}
+
+TEST(Migration, WarnsOnceOfAnInexactKdTree) {
+  const auto body = [] {
+    giveToClass(treeWithEpsilon(1.0F));
+    giveToClass(treeWithEpsilon(0.5F));
+    giveToFunctions(treeWithEpsilon(1.0F));
+  };
+  expectWarnings(body, {"\\[pcl::LiscoClusterExtraction::setSearchMethod\\] The kd-tree's epsilon is above 0"});
+}
+
+TEST(Migration, WarnsOnceOfAnotherMetric) {
+  const auto body = [] {
+    giveToClass(treeWithScales({1.0F, 1.0F, 0.1F}));
+    giveToClass(treeOfPlan());
+    giveToFunctions(treeOfPlan());
+  };
+  const std::string text =
+      "\\[pcl::LiscoClusterExtraction::setSearchMethod\\] The kd-tree's point representation is not \\(x, y, z\\)";
+  expectWarnings(body, {text});
+  expectWarnings([] { giveToClass(treeOfPlan()); }, {text});
+}
+
+TEST(Migration, WarnsOfBothKinds) {
+  const auto body = [] {
+    giveToClass(treeOfPlan());
+    giveToClass(treeWithEpsilon(1.0F));
+  };
+  expectWarnings(body, {"point representation", "epsilon"});
+}
+
+TEST(Migration, FreeFunctionsWarnToo) {
+  expectWarnings([] { giveToFunctions(treeWithEpsilon(1.0F)); },
+                 {"\\[pcl::extractLiscoClusters\\] The kd-tree's epsilon"});
+}
+
+TEST(Migration, DoesNotWarnOfExactSearchMethods) {
+  const auto body = [] {
+    for (const auto& give : {giveToClass, giveToFunctions}) {
+      give(nullptr);
+      give(std::make_shared<Tree>());
+      give(treeWithEpsilon(0.0F));
+      give(treeWithScales({1.0F, 1.0F, 1.0F}));
+    }
+  };
+  expectWarnings(body, {});
+}
+
+/// The search method after an extraction.
+template <typename Extraction>
+pcl::search::Search<PointXYZI>::Ptr searchMethodAfter(const Tree::Ptr& tree) {
+  Extraction extraction;
+  if (tree) extraction.setSearchMethod(tree);
+  extraction.setInputCloud(inOneRow(exampleScan()));
+  Clusters clusters;
+  extraction.extract(clusters);
+  return extraction.getSearchMethod();
+}
+
+TEST(Migration, LiscoLeavesTheTreeAsItIs) {
+  const auto tree = std::make_shared<Tree>(false);
+  EXPECT_EQ(searchMethodAfter<pcl::LiscoClusterExtraction<PointXYZI>>(tree), tree);
+  EXPECT_EQ(tree->getInputCloud(), nullptr);
+  EXPECT_EQ(searchMethodAfter<pcl::EuclideanClusterExtraction<PointXYZI>>(tree), tree);
+  EXPECT_NE(tree->getInputCloud(), nullptr);
+}
+
+TEST(Migration, LiscoChoosesNoTree) {
+  EXPECT_EQ(searchMethodAfter<pcl::LiscoClusterExtraction<PointXYZI>>(nullptr), nullptr);
+  EXPECT_NE(searchMethodAfter<pcl::EuclideanClusterExtraction<PointXYZI>>(nullptr), nullptr);
 }
 
 }  // namespace

@@ -8,20 +8,20 @@ run(${WORK_DIR}/build/with_pcl)
 run(${WORK_DIR}/build/without_pcl)
 
 # Where there is no PCL, and for a shared library nothing else either.
-set(absent -DCMAKE_DISABLE_FIND_PACKAGE_PCL=ON)
+set(absent -DCMAKE_DISABLE_FIND_PACKAGE_PCL=ON -DCMAKE_DISABLE_FIND_PACKAGE_OpenMP=ON)
 if(TYPE STREQUAL SHARED_LIBRARY)
-  list(APPEND absent -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON -DCMAKE_DISABLE_FIND_PACKAGE_OpenMP=ON)
+  list(APPEND absent -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON)
 endif()
 build(${SOURCE_DIR}/consumer ${WORK_DIR}/build_core -DCMAKE_PREFIX_PATH=${PREFIX} -DCOMPONENTS=core ${absent})
 run(${WORK_DIR}/build_core/without_pcl)
 
-# pkg-config
+# pkg-config, whose flags name the standard too
 file(GLOB_RECURSE files ${PREFIX}/*.pc)
 list(GET files 0 file)
 get_filename_component(folder ${file} DIRECTORY)
 get_filename_component(libraries ${folder} DIRECTORY)
-set(ENV{PKG_CONFIG_PATH} ${folder})
-set(ENV{LD_LIBRARY_PATH} ${libraries})
+set(ENV{PKG_CONFIG_PATH} ${folder}:${PCL_LIBRARY_DIR}/pkgconfig)
+set(ENV{LD_LIBRARY_PATH} ${libraries}:${PCL_LIBRARY_DIR})
 separate_arguments(flags UNIX_COMMAND "${CXX_FLAGS}")
 foreach(pair with_pcl:lisco without_pcl:lisco-core)
   string(REPLACE ":" ";" pair ${pair})
@@ -35,7 +35,7 @@ foreach(pair with_pcl:lisco without_pcl:lisco-core)
      TYPE STREQUAL SHARED_LIBRARY)
     message(FATAL_ERROR "lisco-core asks for more than itself: ${compile_options} ${link_options}")
   endif()
-  run(${CXX_COMPILER} -std=c++17 ${flags} ${compile_options} ${SOURCE_DIR}/consumer/${program}.cpp
+  run(${CXX_COMPILER} -std=c++14 ${flags} ${compile_options} ${SOURCE_DIR}/consumer/${program}.cpp
     -o ${WORK_DIR}/${program} ${link_options})
   run(${WORK_DIR}/${program})
 endforeach()

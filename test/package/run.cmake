@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # What the scripts share.
+string(REPLACE "," ";" PROGRAMS "${PROGRAMS}")
 
 # run(COMMAND...): runs a command, which must succeed. Leaves what it printed in `output` and `errors`.
 function(run)
@@ -16,7 +17,7 @@ endfunction()
 function(build source build)
   run(${CMAKE_COMMAND} -S ${source} -B ${build} -G ${GENERATOR} -DCMAKE_BUILD_TYPE=${CONFIG}
     -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DCMAKE_CXX_COMPILER_LAUNCHER=${CXX_COMPILER_LAUNCHER}
-    -DCMAKE_CXX_FLAGS=${CXX_FLAGS} ${ARGN})
+    -DCMAKE_CXX_FLAGS=${CXX_FLAGS} -DPCL_DIR=${PCL_DIR} ${ARGN})
   run(${CMAKE_COMMAND} --build ${build} --config ${CONFIG})
 endfunction()
 

@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include "lisco/cxx17.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -12,8 +14,11 @@
 #include <pcl/pcl_base.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
+#include <pcl/search/kdtree.h>
 #include <pcl/search/search.h>
+#include <pcl/segmentation/extract_clusters.h>  // comparePointClusters, which its clients call too
 #include <pcl/segmentation/lisco_cluster_writer.h>
+#include <pcl/segmentation/lisco_search_method.h>
 
 #include "lisco/column_clusterer.h"
 #include "lisco/export.h"
@@ -134,10 +139,16 @@ class LiscoClusterExtraction : public PCLBase<PointT> {
     extractWithLabels(clusters, labels.points.data());
   }
 
-  /** \brief Accepted for compatibility. Lisco searches no tree: it changes nothing. */
-  inline void setSearchMethod(const KdTreePtr& tree) { tree_ = tree; }
+  /** \brief Accepted for compatibility: kept, never searched, and not given the input cloud. The clusters are those of
+   * an exact kd-tree over (x, y, z). A PCL_WARN says so, once per process and kind, if \a tree is a pcl::search::KdTree
+   * with another answer: its epsilon is above 0, or its point representation is not (x, y, z).
+   */
+  inline void setSearchMethod(const KdTreePtr& tree) {
+    detail::LiscoSearchMethodCheck::check<PointT>(tree.get(), "pcl::LiscoClusterExtraction::setSearchMethod");
+    tree_ = tree;
+  }
 
-  /** \brief The search method given to setSearchMethod (). */
+  /** \brief The search method given to setSearchMethod (); nullptr if there was none, also after extract (). */
   inline KdTreePtr getSearchMethod() const { return (tree_); }
 
   /** \brief Set the cluster tolerance: points nearer to each other than this belong together.
@@ -228,6 +239,30 @@ template <typename PointT>
 void extractLiscoClusters(const PointCloud<PointT>& cloud, const Indices& indices, float tolerance,
                           std::vector<PointIndices>& clusters, unsigned int min_pts_per_cluster = 1,
                           unsigned int max_pts_per_cluster = (std::numeric_limits<int>::max)());
+
+/** \brief The same with the parameters of pcl::extractEuclideanClusters (cloud, tree, tolerance, clusters, min, max).
+ * \param[in] tree ignored, may be nullptr; a PCL_WARN as in LiscoClusterExtraction::setSearchMethod ()
+ */
+template <typename PointT>
+inline void extractLiscoClusters(const PointCloud<PointT>& cloud, const typename search::Search<PointT>::Ptr& tree,
+                                 float tolerance, std::vector<PointIndices>& clusters,
+                                 unsigned int min_pts_per_cluster = 1,
+                                 unsigned int max_pts_per_cluster = (std::numeric_limits<int>::max)()) {
+  detail::LiscoSearchMethodCheck::check<PointT>(tree.get(), "pcl::extractLiscoClusters");
+  extractLiscoClusters(cloud, tolerance, clusters, min_pts_per_cluster, max_pts_per_cluster);
+}
+
+/** \brief The same for some points of a cloud: the parameters of
+ * pcl::extractEuclideanClusters (cloud, indices, tree, tolerance, clusters, min, max).
+ */
+template <typename PointT>
+inline void extractLiscoClusters(const PointCloud<PointT>& cloud, const Indices& indices,
+                                 const typename search::Search<PointT>::Ptr& tree, float tolerance,
+                                 std::vector<PointIndices>& clusters, unsigned int min_pts_per_cluster = 1,
+                                 unsigned int max_pts_per_cluster = (std::numeric_limits<int>::max)()) {
+  detail::LiscoSearchMethodCheck::check<PointT>(tree.get(), "pcl::extractLiscoClusters");
+  extractLiscoClusters(cloud, indices, tolerance, clusters, min_pts_per_cluster, max_pts_per_cluster);
+}
 
 }  // namespace pcl
 

@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include "lisco/cxx17.h"
+
 /** \file
  * The only place that knows PCL's versions. From 1.12 to 1.15 all is there that Lisco uses of PCL, under the same names:
  *   - pcl::index_t, pcl::uindex_t and pcl::Indices (before 1.12, cluster sizes were int);

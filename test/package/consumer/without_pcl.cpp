@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "lisco/column_clusterer.h"
+#include "lisco/label_clusters.h"
 #include "lisco/version.h"
 
 int main() {
@@ -23,6 +24,12 @@ int main() {
     for (std::size_t i = 1; i < count; ++i) right = right && source_indices[i] % 2 == source_indices[0] % 2;
     right = right && clusterer.sizeOf(subcluster) == 3;
   });
+  const float points[] = {5.0F, 0.0F, 0.0F, 9.0F, 0.0F, 1.0F, 5.0F, 0.2F, 0.0F};
+  std::int32_t labels[3];
+  lisco::LabelParameters label_parameters;
+  label_parameters.tolerance = 0.3F;
+  right = right && lisco::labelClusters(points, 3, 3 * sizeof(float), label_parameters, labels) == 2 &&
+          labels[0] == 0 && labels[1] == 1 && labels[2] == 0;
   std::printf("lisco %s: %s\n", LISCO_VERSION, right ? "two subclusters, as expected" : "not as expected");
   return right ? 0 : 1;
 }

@@ -2,11 +2,12 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include "lisco/cxx17.h"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
 
-#include <pcl/segmentation/extract_clusters.h>  // comparePointClusters
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 
 #include "lisco/sensor_hints.h"
