@@ -46,7 +46,7 @@ std::string endingOf(const fs::path& file) {
   return ending;
 }
 
-constexpr std::array<std::string_view, 6> kEndings{".pcd", ".ply", ".obj", ".ifs", ".bin", ".csv"};
+constexpr std::array<std::string_view, 4> kEndings{".pcd", ".ply", ".bin", ".csv"};
 
 std::string readWhole(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -264,60 +264,6 @@ void checkPlyHeader(const fs::path& file, const Snapshot& content) {
   fail(file, "is damaged, truncated or no ply file");
 }
 
-/// Reads an IFS file: its name, then `VERTICES` and their coordinates. Not by PCL 1.13, which asks for all the memory that
-/// a damaged one promises.
-Cloud::Ptr readIfs(const fs::path& file) {
-  const std::string content = readWhole(file);
-  std::size_t at = 0;
-  const auto skip = [&](std::size_t bytes) {
-    if (bytes > content.size() - at) fail(file, "is damaged, truncated or no ifs file");
-    at += bytes;
-    return content.data() + at - bytes;
-  };
-  const auto nextCount = [&] {
-    std::uint32_t count;
-    std::memcpy(&count, skip(sizeof count), sizeof count);
-    return count;
-  };
-  const auto nextText = [&] {
-    const std::uint32_t length = nextCount();
-    const std::string text(skip(length), length);
-    return text.substr(0, text.find('\0'));
-  };
-  const bool is_ifs = nextText() == "IFS";
-  skip(sizeof(float));  // the version
-  nextText();
-  if (!is_ifs || nextText() != "VERTICES") fail(file, "is damaged, truncated or no ifs file");
-  const std::uint32_t points = nextCount();
-  const char* const coordinates = skip(3 * sizeof(float) * points);
-  auto cloud = std::make_shared<Cloud>();
-  cloud->resize(points);
-  for (std::size_t i = 0; i < points; ++i)
-    std::memcpy((*cloud)[i].data, coordinates + 3 * sizeof(float) * i, 3 * sizeof(float));
-  return cloud;
-}
-
-/// Reads the vertices of an OBJ file. Not by PCL 1.13, which crashes where one has fewer than three coordinates.
-Cloud::Ptr readObj(const fs::path& file) {
-  std::ifstream stream(file);
-  auto cloud = std::make_shared<Cloud>();
-  std::string line;
-  for (std::size_t number = 1; std::getline(stream, line); ++number) {
-    const std::vector<std::string> words = wordsOf(line);
-    if (words.empty() || words.front() != "v") continue;
-    pcl::PointXYZ point;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      char* end = nullptr;
-      if (axis + 1 < words.size()) point.data[axis] = std::strtof(words[axis + 1].c_str(), &end);
-      if (end == nullptr || *end != '\0')
-        fail(file, "line " + std::to_string(number) + " is no vertex of three coordinates");
-    }
-    cloud->push_back(point);
-  }
-  if (cloud->empty()) fail(file, "is damaged, truncated or no obj file");
-  return cloud;
-}
-
 Cloud::Ptr readByPcl(const fs::path& file, const std::string& ending, std::vector<std::uint32_t>* object_of) {
   // PCL's readers print what they think; this program says it once, in its own words.
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
@@ -447,12 +393,10 @@ Cloud::Ptr readCloudFile(const fs::path& file, std::vector<std::uint32_t>* objec
   const std::string ending = endingOf(file);
   if (ending == ".pcap" || ending == ".pcapng") fail(file, "is a capture of packets: give it to lisco_stream");
   if (std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end())
-    fail(file, "has an unknown ending (known: pcd, ply, obj, ifs, bin, csv)");
+    fail(file, "has an unknown ending (known: pcd, ply, bin, csv)");
   if (fs::file_size(file, error) == 0) fail(file, "is empty");
   if (ending == ".bin") return readKittiBin(file);
   if (ending == ".csv") return readAuthorsCsv(file);
-  if (ending == ".ifs") return readIfs(file);
-  if (ending == ".obj") return readObj(file);
   try {
     return readByPcl(file, ending, object_of);
   } catch (const std::bad_alloc&) {

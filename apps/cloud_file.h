@@ -14,7 +14,7 @@ namespace lisco_apps {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
-/// Reads a scan: any format PCL reads with x, y, z fields of float or double (PCD, PLY, OBJ, IFS), KITTI's `.bin`
+/// Reads a scan: any format PCL reads with x, y, z fields of float or double (PCD, PLY), KITTI's `.bin`
 /// (float32 x y z intensity, unorganized), or the paper authors' `.csv` (see readAuthorsCsv). Organized as the
 /// file is.
 /// \param object_of if not nullptr, receives the file's field `label` (an unsigned integer of 32 bits) per point, as

@@ -51,7 +51,7 @@ bool parse(int argc, char** argv, Options& options) {
   po::options_description shown(
       "Usage: lisco_cluster INPUT... --tolerance M [options]\n\n"
       "Finds the Euclidean clusters of LiDAR scans: the clusters of PCL's EuclideanClusterExtraction.\n"
-      "An input is a scan (.pcd .ply .obj .ifs, KITTI .bin, the paper authors' .csv) or a folder of "
+      "An input is a scan (.pcd .ply, KITTI .bin, the paper authors' .csv) or a folder of "
       "scans.\n\n"
       "Options");
   std::string tolerance;

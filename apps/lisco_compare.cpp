@@ -59,7 +59,7 @@ bool parse(int argc, char** argv, Options& options) {
   po::options_description shown(
       "Usage: lisco_compare INPUT... --tolerance M[,M...] [options]\n\n"
       "Clusters scans by PCL and by Lisco side by side, on the same returns: first whether the clusters are the same,\n"
-      "then how long each takes. An input is a scan (.pcd .ply .obj .ifs, KITTI .bin, the paper authors' .csv) or a\n"
+      "then how long each takes. An input is a scan (.pcd .ply, KITTI .bin, the paper authors' .csv) or a\n"
       "folder of scans. If a scan has a field 'label' (uint32, as lisco_simulate writes it), clusters are also scored\n"
       "against these true objects.\n\n"
       "Rivals: pcl (the reference: EuclideanClusterExtraction with KdTree (false)), pcl-tutorial (sorted KdTree),\n"
