@@ -19,11 +19,11 @@
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 #include <boost/program_options.hpp>
 
-#include "cloud_file.h"
-#include "clustering.h"
-#include "options.h"
-#include "progress_bar.h"
-#include "result_files.h"
+#include "io/cloud_file.h"
+#include "io/clusters.h"
+#include "io/options.h"
+#include "io/progress_bar.h"
+#include "io/result_files.h"
 
 namespace {
 

@@ -15,14 +15,15 @@
 
 #include <boost/program_options.hpp>
 
-#include "cloud_file.h"
 #include "compare/charts.h"
 #include "compare/comparison.h"
 #include "compare/report.h"
-#include "options.h"
-#include "output_file.h"
-#include "progress_bar.h"
-#include "text.h"
+#include "drawing/chart.h"
+#include "io/cloud_file.h"
+#include "io/options.h"
+#include "io/output_file.h"
+#include "io/progress_bar.h"
+#include "io/text.h"
 
 namespace {
 
@@ -193,7 +194,7 @@ int compare(const Options& options) {
   if (!options.csv.empty()) checkMayWrite(options.csv, kCsvSignature);
   const std::vector<std::string> charts = chartsOf(names, settings);
   if (!options.plot.empty()) {
-    checkCharts();
+    checkGnuplot();
     checkMayWriteInto(options.plot, charts);
   }
 

@@ -14,9 +14,10 @@
 
 #include <boost/program_options.hpp>
 
+#include "io/options.h"
+#include "io/output_file.h"
+#include "io/pcd_header.h"
 #include "lisco/version.h"
-#include "options.h"
-#include "output_file.h"
 #include "simulation/cases.h"
 #include "simulation/scanner.h"
 #include "simulation/scenes.h"
@@ -157,11 +158,7 @@ Sensor sensorFor(const Options& options) {
 /// The whole file.
 std::string pcdOf(const Scan& scan, const std::string& comment) {
   static_assert(sizeof(Cell) == 16, "cells are written as they are");
-  std::ostringstream header;
-  header << comment << "\n# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z label\nSIZE 4 4 4 4\n"
-         << "TYPE F F F U\nCOUNT 1 1 1 1\nWIDTH " << scan.steps << "\nHEIGHT " << scan.lasers
-         << "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << scan.cells.size() << "\nDATA binary\n";
-  std::string content = header.str();
+  std::string content = pcdHeader(comment, "x y z label", "F F F U", scan.steps, scan.lasers);
   content.append(reinterpret_cast<const char*>(scan.cells.data()), scan.cells.size() * sizeof(Cell));
   return content;
 }

@@ -19,7 +19,7 @@
 
 #include <boost/program_options.hpp>
 
-#include "options.h"
+#include "io/options.h"
 #include "sensors/capture_file.h"
 #include "sensors/decoder.h"
 #include "sensors/udp_receiver.h"

@@ -22,18 +22,18 @@
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 #include <pcl/segmentation/lisco_cluster_writer.h>
 
-#include "cloud_file.h"
+#include "io/cloud_file.h"
 #include "compare/comparison.h"
 #include "compare/report.h"
 #include "lisco/column_clusterer.h"
 #include "lisco/endless_clusterer.h"
 #include "lisco/scan_survey.h"
 #include "lisco/window_clusterer.h"
-#include "options.h"
+#include "io/options.h"
 #include "sensors/capture_file.h"
 #include "sensors/decoder.h"
 #include "sensors/rotation_cutter.h"
-#include "text.h"
+#include "io/text.h"
 
 namespace {
 

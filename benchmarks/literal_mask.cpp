@@ -13,10 +13,10 @@
 
 #include <pcl/search/kdtree.h>
 
-#include "cloud_file.h"
+#include "io/cloud_file.h"
 #include "compare/comparison.h"
-#include "options.h"
-#include "stagger.h"
+#include "io/options.h"
+#include "io/stagger.h"
 
 namespace {
 

@@ -21,12 +21,12 @@
 
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 
-#include "cloud_file.h"
+#include "io/cloud_file.h"
 #include "compare/comparison.h"
 #include "compare/report.h"
-#include "options.h"
-#include "output_file.h"
-#include "text.h"
+#include "io/options.h"
+#include "io/output_file.h"
+#include "io/text.h"
 
 extern "C" {
 // The C library's own ones, which it offers to those that replace malloc ().

@@ -23,16 +23,16 @@
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 #include <pcl/segmentation/lisco_cluster_writer.h>
 
-#include "cloud_file.h"
+#include "io/cloud_file.h"
 #include "compare/comparison.h"
 #include "compare/report.h"
 #include "lisco/column_clusterer.h"
 #include "lisco/parallel.h"
 #include "lisco/scan_survey.h"
 #include "lisco/simd.h"
-#include "options.h"
-#include "output_file.h"
-#include "text.h"
+#include "io/options.h"
+#include "io/output_file.h"
+#include "io/text.h"
 
 namespace {
 

@@ -22,6 +22,7 @@
 
 #include <pcl/segmentation/extract_clusters.h>
 
+#include "compare/charts.h"
 #include "compare/comparison.h"
 #include "compare/report.h"
 #include "oracle.h"

@@ -6,28 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "compare/comparison.h"
+
 namespace lisco_apps {
 
-/// A chart of lines with error bars; the y axis is logarithmic.
-struct Chart {
-  struct Point {
-    double x, y, error;  ///< error: half the bar, 0 or NaN: none
-  };
-  struct Line {
-    std::string title;
-    unsigned color;  ///< 0xRRGGBB
-    std::vector<Point> points;
-  };
-  std::string title, x_label, y_label;
-  bool log_x = false;
-  std::vector<Line> lines{};
-};
+/// The file names of the charts that drawCharts draws.
+std::vector<std::string> chartsOf(const std::vector<std::string>& input_names, const CompareSettings& settings);
 
-/// Looks whether gnuplot, which draws the charts, is there. \throws std::runtime_error with one line if not
-void checkCharts();
-
-/// Draws a chart as a PNG; one without lines is not drawn. \throws std::runtime_error with one line that says what went
-/// wrong
-void drawChart(const Chart& chart, const std::filesystem::path& png);
+/// Draws time over tolerance for each scan; of several scans also its mean, and time over the number of returns for each
+/// tolerance.
+void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& settings,
+                const std::filesystem::path& folder);
 
 }  // namespace lisco_apps

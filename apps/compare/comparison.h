@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "cloud_file.h"
 #include "compare/difference.h"
 #include "compare/rivals.h"
 #include "compare/timing.h"
+#include "io/cloud_file.h"
 
 namespace lisco_apps {
 

@@ -11,8 +11,8 @@
 
 #include <pcl/search/kdtree.h>
 
+#include "io/text.h"
 #include "lisco/tolerance.h"
-#include "text.h"
 
 namespace lisco_apps {
 namespace {
@@ -143,13 +143,6 @@ std::string neighboursOf(const Problem& problem, pcl::index_t point, const Label
 }
 
 }  // namespace
-
-std::vector<std::uint32_t> labelsOf(const Clusters& clusters, std::size_t points) {
-  Labels labels(points, 0);
-  for (std::size_t number = 0; number < clusters.size(); ++number)
-    for (const auto index : clusters[number].indices) labels[place(index)] = static_cast<std::uint32_t>(number + 1);
-  return labels;
-}
 
 Difference differenceOf(const Problem& problem, const Rival& reference, const Clusters& expected, const Rival& rival,
                         const Clusters& found) {

@@ -30,9 +30,6 @@ struct Difference {
 Difference differenceOf(const Problem& problem, const Rival& reference, const Clusters& expected, const Rival& rival,
                         const Clusters& found);
 
-/// Per point of the cloud: 0 = in no cluster, otherwise 1 + the number of its cluster.
-std::vector<std::uint32_t> labelsOf(const Clusters& clusters, std::size_t points);
-
 /// How clusters cover the true objects of a simulated scan. Objects count if they have at least min_size of the
 /// clustered returns.
 struct ObjectScore {

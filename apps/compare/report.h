@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -30,12 +29,5 @@ std::string csvOf(const std::vector<InputResult>& inputs, const CompareSettings&
 /// \param failures inputs that could not be read, and why
 std::string jsonOf(const std::vector<InputResult>& inputs, const CompareSettings& settings,
                    const std::vector<std::string>& failures);
-
-/// Names of the charts that drawCharts would draw.
-std::vector<std::string> chartsOf(const std::vector<std::string>& input_names, const CompareSettings& settings);
-/// Time over tolerance for each scan; of several scans also their mean, and time over the number of returns for each
-/// tolerance.
-void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& settings,
-                const std::filesystem::path& folder);
 
 }  // namespace lisco_apps

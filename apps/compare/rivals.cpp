@@ -13,14 +13,13 @@
 #include <pcl/segmentation/extract_clusters.h>
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 
+#include "io/point_geometry.h"
 #include "lisco/return.h"
 #include "reference/paper_lisco.h"
 #include "reference/voxel_grid.h"
 
 namespace lisco_apps {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 using Search = pcl::search::Search<RivalPoint>;
 
@@ -96,8 +95,7 @@ class ByVoxelGrid {
     returns_.clear();
     const RivalCloud& cloud = *problem.cloud;
     for (std::size_t i = 0; i < cloud.size(); ++i)
-      if (lisco::isReturn(cloud[i].x, cloud[i].y, cloud[i].z))
-        returns_.push_back({cloud[i].x, cloud[i].y, cloud[i].z, static_cast<std::uint32_t>(i)});
+      if (isReturn(cloud[i])) returns_.push_back(returnAt(problem, static_cast<pcl::index_t>(i)));
     const auto& component_of = grid_.cluster(returns_, static_cast<float>(problem.tolerance));
     output_.append(component_of, returns_.size(), problem, clusters);
   }
@@ -170,9 +168,7 @@ lisco_reference::NominalSensor nominalSensor(const RivalCloud& cloud) {
     std::vector<double> elevations;
     for (std::size_t column = 0; column < cloud.width; ++column) {
       const RivalPoint& p = cloud.at(static_cast<int>(column), static_cast<int>(row));
-      if (lisco::isReturn(p.x, p.y, p.z))
-        elevations.push_back(
-            std::atan2(static_cast<double>(p.z), std::hypot(static_cast<double>(p.x), static_cast<double>(p.y))));
+      if (isReturn(p)) elevations.push_back(elevationOf(p));
     }
     if (elevations.empty()) continue;
     const auto middle = elevations.begin() + static_cast<std::ptrdiff_t>(elevations.size() / 2);

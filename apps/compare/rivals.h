@@ -8,18 +8,17 @@
 #include <string>
 #include <vector>
 
-#include <pcl/PointIndices.h>
 #include <pcl/pcl_base.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
+#include "io/clusters.h"
 #include "reference/paper_lisco.h"
 
 namespace lisco_apps {
 
 using RivalPoint = pcl::PointXYZI;  ///< what drivers of LiDARs deliver
 using RivalCloud = pcl::PointCloud<RivalPoint>;
-using Clusters = std::vector<pcl::PointIndices>;
 
 /// What every rival is given: the same returns.
 struct Problem {

@@ -9,15 +9,12 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <stdexcept>
 #include <system_error>
+
+#include "io/file_error.h"
 
 namespace lisco_apps {
 namespace {
-
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
-  throw std::runtime_error(file.string() + ": " + what);
-}
 
 /// Bytes that are left of a frame. Numbers are big-endian, as everywhere on a network.
 struct Bytes {

@@ -13,6 +13,8 @@
 #include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
 
+#include "io/file_error.h"
+
 namespace lisco_apps {
 namespace {
 
@@ -91,7 +93,6 @@ SensorModel makeSensorModel(const std::string& name, const std::filesystem::path
 // where the file numbers a laser 64 or more.
 std::vector<Laser> readCalibration(const std::filesystem::path& file) {
   namespace tree = boost::property_tree;
-  const auto fail = [&](const std::string& what) { throw std::runtime_error(file.string() + ": " + what); };
   std::vector<std::optional<Laser>> found(kCalibratedLasers);
   try {
     tree::ptree document;
@@ -104,12 +105,12 @@ std::vector<Laser> readCalibration(const std::filesystem::path& file) {
         double read = 0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), read);
         if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(read))
-          fail(std::string(name) + " is no number: '" + text + "'");
+          fail(file, std::string(name) + " is no number: '" + text + "'");
         return read;
       };
       const double number = value("id_");
       if (!(number >= 0 && number < static_cast<double>(kCalibratedLasers)) || number != std::floor(number))
-        fail("there is no laser " + values.get_child("id_").data());
+        fail(file, "there is no laser " + values.get_child("id_").data());
       constexpr double kCentimetre = 0.01;
       Laser laser;
       laser.number = static_cast<std::size_t>(number);
@@ -121,13 +122,13 @@ std::vector<Laser> readCalibration(const std::filesystem::path& file) {
       found[laser.number] = laser;
     }
   } catch (const tree::xml_parser_error& error) {
-    fail("is no calibration file: " + error.message());
+    fail(file, "is no calibration file: " + error.message());
   } catch (const tree::ptree_error& error) {
-    fail(std::string("is no calibration file of an HDL-64E: ") + error.what());
+    fail(file, std::string("is no calibration file of an HDL-64E: ") + error.what());
   }
   std::vector<Laser> lasers;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (!found[i]) fail("says nothing of laser " + std::to_string(i));
+    if (!found[i]) fail(file, "says nothing of laser " + std::to_string(i));
     lasers.push_back(*found[i]);
   }
   return lasers;

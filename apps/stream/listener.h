@@ -6,11 +6,16 @@
 #include <optional>
 #include <vector>
 
-#include "found_cluster.h"
+#include "io/cluster_shape.h"
 #include "latency.h"
 #include "turn.h"
 
 namespace lisco_apps {
+
+/// A cluster and its number.
+struct FoundCluster : ClusterShape {
+  std::uint32_t id = 0;  ///< from 1
+};
 
 /// A cluster of a stream without end.
 struct DeliveredCluster {

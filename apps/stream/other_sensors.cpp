@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "text.h"
+#include "io/text.h"
 
 namespace lisco_apps {
 namespace {

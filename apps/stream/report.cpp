@@ -11,7 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "text.h"
+#include "io/text.h"
 
 namespace lisco_apps {
 namespace {

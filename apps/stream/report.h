@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "io/terminal_line.h"
 #include "labelled_pcd.h"
 #include "listener.h"
 #include "sensors/decoder.h"
 #include "sensors/packet_source.h"
 #include "stream.h"
-#include "terminal_line.h"
 
 namespace lisco_apps {
 

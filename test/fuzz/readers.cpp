@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bodies.h"
-#include "cloud_file.h"
+#include "io/cloud_file.h"
 #include "scratch_file.h"
 
 namespace lisco_test {

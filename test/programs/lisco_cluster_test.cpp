@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "cloud_file.h"
+#include "io/cloud_file.h"
 #include "lisco/version.h"
 #include "program_test.h"
 

@@ -13,7 +13,7 @@
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/io/pcd_io.h>
 
-#include "cloud_file.h"
+#include "io/cloud_file.h"
 #include "program_test.h"
 
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "output_file.h"
+#include "io/output_file.h"
 
 #include <signal.h>
 #include <unistd.h>
@@ -8,8 +8,9 @@
 #include <cerrno>
 #include <cstdlib>
 #include <fstream>
-#include <stdexcept>
 #include <system_error>
+
+#include "io/file_error.h"
 
 namespace lisco_apps {
 
@@ -17,11 +18,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What is made aside has this and the number of its process at the end of its name.
+// Names of files and folders made aside end with these and the number of the process that makes them.
 constexpr const char* kFilePartial = ".partial";
 constexpr const char* kFolderPartial = ".lisco_partial_";
+constexpr std::size_t kSignatureBytes = 1024;  ///< the beginning of a file, which holds its signature
 
-/// Removes what processes that were killed have left aside: things in a folder whose names are `prefix` and the number of no
+/// Removes the leftovers of killed processes: entries of a folder whose names are `prefix` and the number of no running
 /// process.
 void removeAbandoned(const fs::path& folder, const std::string& prefix) {
   std::error_code ignored;
@@ -35,7 +37,7 @@ void removeAbandoned(const fs::path& folder, const std::string& prefix) {
   }
 }
 
-/// A folder that disappears again unless it is kept.
+/// A folder that its destructor removes.
 class TemporaryFolder {
  public:
   explicit TemporaryFolder(fs::path path) : path_(std::move(path)) { fs::create_directory(path_); }
@@ -51,7 +53,7 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-/// Makes a folder and those above it; unless kept, removes the ones it made.
+/// Makes a folder and those above it. The destructor removes those it has made, unless keep () was called.
 class MadeFolder {
  public:
   explicit MadeFolder(const fs::path& path) {
@@ -73,11 +75,11 @@ class MadeFolder {
   bool kept_ = false;
 };
 
-/// Looks whether things can be made in a folder that is there.
+/// Checks that entries can be made in an existing folder.
 /// \param wanted named in the error
 void checkWritable(const fs::path& folder, const fs::path& wanted) {
   if (access(folder.c_str(), W_OK | X_OK) != 0)
-    throw std::runtime_error(wanted.string() + ": cannot be written: " + std::generic_category().message(errno));
+    fail(wanted, "cannot be written: " + std::generic_category().message(errno));
 }
 
 }  // namespace
@@ -86,19 +88,18 @@ void checkMayWrite(const fs::path& file, const std::string& signature) {
   std::error_code error;
   const fs::path folder = fs::absolute(file).parent_path();
   if (!fs::exists(file, error)) {
-    if (!fs::is_directory(folder, error))
-      throw std::runtime_error(file.string() + ": cannot be written: there is no folder " + folder.string());
+    if (!fs::is_directory(folder, error)) fail(file, "cannot be written: there is no folder " + folder.string());
     checkWritable(folder, file);
     return;
   }
-  if (!fs::is_regular_file(file, error)) throw std::runtime_error(file.string() + ": is no file");
+  if (!fs::is_regular_file(file, error)) fail(file, "is no file");
   checkWritable(folder, file);
-  std::string beginning(1024, '\0');
+  std::string beginning(kSignatureBytes, '\0');
   std::ifstream stream(file, std::ios::binary);
   stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
   beginning.resize(static_cast<std::size_t>(stream.gcount()));
   if (beginning.find(signature) == std::string::npos)
-    throw std::runtime_error(file.string() + ": exists and was not written by this program; choose another name");
+    fail(file, "exists and was not written by this program; choose another name");
 }
 
 void writeOwnFile(const fs::path& file, const std::string& content, const std::string& signature) {
@@ -114,22 +115,20 @@ void writeOwnFile(const fs::path& file, const std::string& content, const std::s
   if (!stream || error) {
     std::error_code ignored;
     fs::remove(aside, ignored);
-    throw std::runtime_error(file.string() + ": cannot be written" + (error ? ": " + error.message() : ""));
+    fail(file, "cannot be written" + (error ? ": " + error.message() : ""));
   }
 }
 
 void checkMayWriteInto(const fs::path& folder, const std::vector<std::string>& names) {
   std::error_code error;
-  fs::path there = fs::absolute(folder).lexically_normal();
-  while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
-  if (!fs::is_directory(there, error))
-    throw std::runtime_error(folder.string() + ": cannot be written: " + there.string() + " is no folder");
-  checkWritable(there, folder);
+  fs::path existing = fs::absolute(folder).lexically_normal();
+  while (!fs::exists(existing, error) && existing.has_relative_path()) existing = existing.parent_path();
+  if (!fs::is_directory(existing, error)) fail(folder, "cannot be written: " + existing.string() + " is no folder");
+  checkWritable(existing, folder);
   if (fs::exists(folder / kResultMarker)) return;
   for (const std::string& name : names)
     if (fs::exists(folder / name))
-      throw std::runtime_error((folder / name).string() +
-                               ": exists and was not written by this program; choose another folder");
+      fail(folder / name, "exists and was not written by this program; choose another folder");
 }
 
 void writeOwnFolder(const fs::path& folder, const std::vector<std::string>& names,
@@ -143,23 +142,31 @@ void writeOwnFolder(const fs::path& folder, const std::vector<std::string>& name
     std::ofstream marker(folder / kResultMarker);
     marker << "The results in this folder were written by lisco and may be replaced by it.\n";
     marker.close();
-    if (!marker) throw std::runtime_error((folder / kResultMarker).string() + ": cannot be written");
+    if (!marker) fail(folder / kResultMarker, "cannot be written");
     tidy();
     for (const std::string& name : names) {
       if (!fs::is_directory(aside.path() / name)) {
         if (fs::exists(aside.path() / name)) fs::rename(aside.path() / name, folder / name);
         continue;
       }
-      fs::create_directory(folder / name);  // it may be there, with things of somebody else
+      fs::create_directory(folder / name);  // may exist, with other files in it
       for (const auto& entry : fs::directory_iterator(aside.path() / name))
         fs::rename(entry.path(), folder / name / entry.path().filename());
     }
     made.keep();
   } catch (const fs::filesystem_error& error) {
     fs::path path = error.path2().empty() ? error.path1() : error.path2();
-    if (path.filename().string().rfind(kFolderPartial, 0) == 0) path = folder;  // nobody knows the name of that one
-    throw std::runtime_error(path.string() + ": cannot be written: " + error.code().message());
+    if (path.filename().string().rfind(kFolderPartial, 0) == 0) path = folder;  // the user's name for it
+    fail(path, "cannot be written: " + error.code().message());
   }
+}
+
+std::vector<fs::path> filesIn(const fs::path& folder, const std::string& prefix, const std::string& ending) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().filename().string().rfind(prefix, 0) == 0 && entry.path().extension() == ending)
+      files.push_back(entry.path());
+  return files;
 }
 
 }  // namespace lisco_apps

@@ -12,28 +12,28 @@
 
 namespace lisco_apps {
 
-/// A line on the terminal (stderr) that is shown again and again. Silent in a pipe.
+/// A line on the terminal (stderr) that each show () replaces. Shows nothing if stderr is no terminal.
 class TerminalLine {
  public:
-  /// \param worthwhile false: silent on a terminal too
-  explicit TerminalLine(bool worthwhile = true) : shown_(worthwhile && isatty(STDERR_FILENO) != 0) {}
+  /// \param enabled false: shows nothing on a terminal either
+  explicit TerminalLine(bool enabled = true) : shown_(enabled && isatty(STDERR_FILENO) != 0) {}
   ~TerminalLine() { clear(); }
   TerminalLine(const TerminalLine&) = delete;
   TerminalLine& operator=(const TerminalLine&) = delete;
 
   bool isShown() const { return shown_; }
 
-  /// \param line cut to the terminal's width
+  /// \param line cut to the terminal's width, as clear () empties one line only
   void show(std::string line) {
     if (!shown_) return;
     winsize size{};
     if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
-      line.resize(std::min<std::size_t>(line.size(), size.ws_col - 1U));  // a longer one could not be cleared
+      line.resize(std::min<std::size_t>(line.size(), size.ws_col - 1U));
     std::fprintf(stderr, "\r\033[K%s", line.c_str());
     std::fflush(stderr);
   }
 
-  /// Empties the line, before something else is printed.
+  /// Empties the line; to be called before anything else is printed.
   void clear() {
     if (shown_) std::fputs("\r\033[K", stderr);
   }

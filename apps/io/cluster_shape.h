@@ -6,20 +6,17 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
-
-#include "sensors/decoder.h"
 
 namespace lisco_apps {
 
-/// What is told of a cluster.
-class FoundCluster {
+/// Size, centroid, bounding box and nearest range of a cluster, point by point. Metres.
+class ClusterShape {
  public:
-  std::uint32_t id = 0;  ///< from 1
-
-  void add(const Cell& cell) {
-    const std::array<float, 3> point{cell.x, cell.y, cell.z};
+  /// \param p has finite x, y, z of type float
+  template <typename Point>
+  void add(const Point& p) {
+    const std::array<float, 3> point{p.x, p.y, p.z};
     double squared = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto value = static_cast<double>(point[axis]);
@@ -28,7 +25,7 @@ class FoundCluster {
       lo_[axis] = std::min(lo_[axis], point[axis]);
       hi_[axis] = std::max(hi_[axis], point[axis]);
     }
-    nearest_ = std::min(nearest_, squared);
+    nearest_squared_ = std::min(nearest_squared_, squared);
     ++size_;
   }
 
@@ -37,16 +34,16 @@ class FoundCluster {
     const auto size = static_cast<double>(size_);
     return {sum_[0] / size, sum_[1] / size, sum_[2] / size};
   }
-  const std::array<float, 3>& lo() const { return lo_; }  ///< of its box, metres
+  const std::array<float, 3>& lo() const { return lo_; }  ///< of the bounding box
   const std::array<float, 3>& hi() const { return hi_; }
-  double nearestRange() const { return std::sqrt(nearest_); }  ///< from the sensor, metres
+  double nearestRange() const { return std::sqrt(nearest_squared_); }  ///< from (0, 0, 0)
 
  private:
   static constexpr float kInfinity = std::numeric_limits<float>::infinity();
   std::size_t size_ = 0;
   std::array<double, 3> sum_{};
   std::array<float, 3> lo_{kInfinity, kInfinity, kInfinity}, hi_{-kInfinity, -kInfinity, -kInfinity};
-  double nearest_ = std::numeric_limits<double>::infinity();  ///< squared
+  double nearest_squared_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace lisco_apps

@@ -6,25 +6,25 @@
 #include <cstddef>
 #include <string>
 
-#include "terminal_line.h"
+#include "io/terminal_line.h"
 
 namespace lisco_apps {
 
-/// A line on the terminal (stderr) that shows which part of the work is done. Silent in a pipe.
+/// A TerminalLine with the share of the work that is done.
 class ProgressBar {
  public:
-  /// \param worthwhile false: silent on a terminal too
-  explicit ProgressBar(bool worthwhile = true) : line_(worthwhile) {}
+  /// \param enabled false: shows nothing
+  explicit ProgressBar(bool enabled = true) : line_(enabled) {}
 
-  /// Shows which share of the work is done, 0 to 1, and what is being worked on; cut to the terminal's width.
+  /// \param share of the work that is done, 0 to 1
+  /// \param what is being worked on
   void show(double share, const std::string& what) {
-    constexpr std::size_t kWidth = 20;
+    constexpr std::size_t kWidth = 20;  // characters
     const auto filled = static_cast<std::size_t>(kWidth * std::clamp(share, 0.0, 1.0));
     line_.show("[" + std::string(filled, '=') + std::string(kWidth - filled, ' ') + "] " +
                std::to_string(static_cast<int>(100 * share)) + "% " + what);
   }
 
-  /// Empties the line, before something else is printed.
   void clear() { line_.clear(); }
 
  private:

@@ -8,7 +8,7 @@
 
 namespace lisco_apps {
 
-/// printf into a string.
+/// printf to a string.
 __attribute__((format(printf, 1, 2))) inline std::string formatted(const char* format, ...) {
   va_list arguments, again;
   va_start(arguments, format);
