@@ -42,7 +42,7 @@ out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 
 simulate() { "$build/apps/lisco_simulate" "$@" >/dev/null; }
-compare=("$build/apps/lisco_compare" --rivals pcl,pcl-octree,grid,paper,lisco --must-agree grid,lisco --max-seconds 1000 "$@")
+compare=("$build/apps/lisco_compare" --baselines pcl,pcl-octree,grid,paper,lisco --must-agree grid,lisco --max-seconds 1000 "$@")
 
 # The paper's scenes: returns (its table I), time over tolerance (its figure 8), objects found.
 mkdir "$out/scenes"

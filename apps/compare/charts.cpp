@@ -1,36 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "compare/charts.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "compare/report.h"
 #include "drawing/chart.h"
 #include "io/text.h"
 
 namespace lisco_apps {
 namespace {
 
-Chart::Point pointOf(double x, const Times& times) {
-  return {x, times.mean(), times.confidence99()};
-}
-
-/// A line per rival that was timed.
-/// \param add_points adds the points of a rival to a line
+/// Draws a line per baseline that was timed.
+/// \param add_points (baseline, points) appends its points
 template <typename AddPoints>
-std::vector<Chart::Line> linesOf(const CompareSettings& settings, AddPoints&& add_points) {
-  std::vector<Chart::Line> lines;
-  for (const Rival& rival : settings.rivals) {
-    Chart::Line line{rival.title, rival.color, {}};
-    add_points(rival, line.points);
+void drawLines(const CompareSettings& settings, const std::string& title, const char* x_label, bool log_x,
+               const std::filesystem::path& png, AddPoints&& add_points) {
+  Chart chart{title, x_label, "milliseconds, mean with 99% confidence", log_x};
+  for (const Baseline& baseline : settings.baselines) {
+    Chart::Line line{baseline.title, baseline.color, {}};
+    add_points(baseline, line.points);
     std::sort(line.points.begin(), line.points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
-    if (!line.points.empty()) lines.push_back(std::move(line));
+    if (!line.points.empty()) chart.lines.push_back(std::move(line));
   }
-  return lines;
+  drawChart(chart, png);
 }
 
-constexpr const char* kTimeLabel = "milliseconds, mean with 99% confidence";
+/// Appends the times of a baseline, if it was timed.
+void addPoint(const CaseResult& result, const Baseline& baseline, double x, std::vector<Chart::Point>& points) {
+  const std::optional<Times>& times = result.find(baseline.key)->times;
+  if (times) points.push_back({x, times->mean(), times->confidence99()});
+}
+
+constexpr const char* kOverTolerance = "tolerance, metres";
 
 std::string overPoints(double tolerance) {
   return formatted("time_over_points_%g.png", tolerance);
@@ -53,47 +55,34 @@ std::vector<std::string> chartsOf(const std::vector<std::string>& input_names, c
 
 void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& settings,
                 const std::filesystem::path& folder) {
-  for (const InputResult& input : inputs) {
-    Chart chart{formatted("%s: %zu returns", input.name.c_str(), input.returns), "tolerance, metres", kTimeLabel};
-    chart.lines = linesOf(settings, [&](const Rival& rival, std::vector<Chart::Point>& points) {
-      for (const CaseResult& result : input.cases) {
-        const RivalResult* const entry = result.find(rival.key);
-        if (entry->times) points.push_back(pointOf(result.tolerance, *entry->times));
-      }
-    });
-    drawChart(chart, folder / overTolerance(input.name));
-  }
+  for (const InputResult& input : inputs)
+    drawLines(settings, formatted("%s: %zu returns", input.name.c_str(), input.returns), kOverTolerance, false,
+              folder / overTolerance(input.name), [&](const Baseline& baseline, auto& points) {
+                for (const CaseResult& result : input.cases) addPoint(result, baseline, result.tolerance, points);
+              });
   if (inputs.size() < 2) return;
 
-  Chart mean{formatted("arithmetic mean of %zu scans", inputs.size()), "tolerance, metres", kTimeLabel};
-  mean.lines = linesOf(settings, [&](const Rival& rival, std::vector<Chart::Point>& points) {
-    for (std::size_t at = 0; at < settings.tolerances.size(); ++at) {
-      Chart::Point point{settings.tolerances[at], 0, 0};
-      std::size_t timed = 0;
-      for (const InputResult& input : inputs) {
-        const RivalResult* const entry = input.cases[at].find(rival.key);
-        if (!entry->times) continue;
-        ++timed;
-        point.y += entry->times->mean() / static_cast<double>(inputs.size());
-        const double error = entry->times->confidence99() / static_cast<double>(inputs.size());
-        point.error = std::hypot(point.error, error);
-      }
-      if (timed == inputs.size()) points.push_back(point);
-    }
-  });
-  drawChart(mean, folder / kMeanChart);
+  drawLines(settings, formatted("arithmetic mean of %zu scans", inputs.size()), kOverTolerance, false,
+            folder / kMeanChart, [&](const Baseline& baseline, auto& points) {
+              for (std::size_t at = 0; at < settings.tolerances.size(); ++at) {
+                std::vector<Chart::Point> all;
+                for (const InputResult& input : inputs) addPoint(input.cases[at], baseline, 0, all);
+                if (all.size() != inputs.size()) continue;
+                Chart::Point mean{settings.tolerances[at], 0, 0};
+                for (const Chart::Point& point : all) {
+                  mean.y += point.y / static_cast<double>(inputs.size());
+                  mean.error = std::hypot(mean.error, point.error / static_cast<double>(inputs.size()));
+                }
+                points.push_back(mean);
+              }
+            });
 
-  for (std::size_t at = 0; at < settings.tolerances.size(); ++at) {
-    Chart chart{formatted("%zu scans, tolerance %g m", inputs.size(), settings.tolerances[at]), "returns", kTimeLabel,
-                true};
-    chart.lines = linesOf(settings, [&](const Rival& rival, std::vector<Chart::Point>& points) {
-      for (const InputResult& input : inputs) {
-        const RivalResult* const entry = input.cases[at].find(rival.key);
-        if (entry->times) points.push_back(pointOf(static_cast<double>(input.returns), *entry->times));
-      }
-    });
-    drawChart(chart, folder / overPoints(settings.tolerances[at]));
-  }
+  for (std::size_t at = 0; at < settings.tolerances.size(); ++at)
+    drawLines(settings, formatted("%zu scans, tolerance %g m", inputs.size(), settings.tolerances[at]), "returns", true,
+              folder / overPoints(settings.tolerances[at]), [&](const Baseline& baseline, auto& points) {
+                for (const InputResult& input : inputs)
+                  addPoint(input.cases[at], baseline, static_cast<double>(input.returns), points);
+              });
 }
 
 }  // namespace lisco_apps

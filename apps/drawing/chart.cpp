@@ -9,8 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "drawing/canvas.h"
-#include "io/file_error.h"
+#include "io/text.h"
 
 namespace lisco_apps {
 namespace {
@@ -39,7 +38,7 @@ void writeScript(const Chart& chart, const fs::path& png, std::ostream& script) 
       lowest = std::min(lowest, point.y);
       highest = std::max(highest, point.y);
     }
-  script << "set terminal pngcairo noenhanced font '" << kFont << ",11' size 900,620 background '#ffffff'\n"
+  script << "set terminal pngcairo noenhanced font ',11' size 900,620 background '#ffffff'\n"
          << "set output " << forGnuplot(png.string()) << '\n'
          << "set title " << forGnuplot(chart.title) << '\n'
          << "set xlabel " << forGnuplot(chart.x_label) << '\n'

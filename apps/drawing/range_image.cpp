@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "drawing/pictures.h"
-#include "drawing/scan_style.h"
+#include "drawing/scan_pictures.h"
 #include "io/point_geometry.h"
 #include "io/stagger.h"
 

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "drawing/pictures.h"
-#include "drawing/scan_style.h"
+#include "drawing/scan_pictures.h"
 #include "io/point_geometry.h"
 #include "io/text.h"
 
@@ -45,10 +44,6 @@ class Window {
   double extent_, center_right_, center_up_;
 };
 
-std::string metres(double length) {
-  return formatted("%g m", length);
-}
-
 void drawScaleBar(Canvas& canvas, double length, double pixels) {
   constexpr double kLeft = 32;
   constexpr double kY = kSize + kHeaderHeight - 28;
@@ -57,7 +52,7 @@ void drawScaleBar(Canvas& canvas, double length, double pixels) {
   canvas.setColor(kText);
   canvas.line(kLeft, kY, kLeft + pixels, kY, 2);
   for (const double end : {kLeft, kLeft + pixels}) canvas.line(end, kY - 5, end, kY + 5, 2);
-  canvas.text(kLeft + pixels / 2, kY - 8, 14, metres(length), Canvas::Align::kCenter);
+  canvas.text(kLeft + pixels / 2, kY - 8, 14, formatted("%g m", length), Canvas::Align::kCenter);
 }
 
 }  // namespace
@@ -102,7 +97,7 @@ void drawTopView(const ClusteredScan& scan, const std::filesystem::path& png) {
   for (int i = 1; i <= kRings; ++i) {
     const double y = sensor_y - i * ring_pixels;
     if (y < kHeaderHeight + 14) break;
-    canvas.text(sensor_x + 4, y - 4, kLabelSize, metres(i * ring));
+    canvas.text(sensor_x + 4, y - 4, kLabelSize, formatted("%g m", i * ring));
   }
   // The sensor: a circle with a line that points forward.
   canvas.setColor(kText);

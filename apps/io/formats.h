@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "io/cloud_file.h"
-#include "io/file_error.h"
+#include "io/text.h"
 
 namespace pcl {
 class FileReader;
@@ -27,10 +27,8 @@ std::string wholeContentOf(const std::filesystem::path& file);
 
 // --- PCD and PLY, which PCL parses once their header has been checked ----------------------------------------------
 
-/// A header that is longer is refused.
 inline constexpr int kMaxHeaderLines = 1000;
 
-/// The words of a header line.
 std::vector<std::string> wordsOf(const std::string& line);
 /// A count in a header; NaN if the word is missing or no count.
 double headerCount(const std::vector<std::string>& words, std::size_t at);

@@ -14,38 +14,44 @@ namespace lisco_apps {
 
 namespace po = boost::program_options;
 
-unsigned countOf(const std::string& text, const char* option, int least, int most) {
-  std::size_t end = 0;
-  long long value = -1;
+namespace {
+
+/// The value of a whole text by std::stod or the like; `invalid` if it has none.
+template <typename Value, typename Parse>
+Value parsed(const std::string& text, Value invalid, Parse&& parse) {
   try {
-    value = std::stoll(text, &end);
+    std::size_t end = 0;
+    const Value value = parse(text, &end);
+    return end == text.size() ? value : invalid;
   } catch (const std::exception&) {
+    return invalid;
   }
-  if (end != text.size() || value < least || value > most)
-    throw std::runtime_error(std::string(option) + " must be a whole number from " + std::to_string(least) + " to " +
-                             std::to_string(most) + ", not '" + text + "'");
+}
+
+double parsedNumber(const std::string& text) {
+  return parsed(text, std::nan(""), [](const std::string& t, std::size_t* end) { return std::stod(t, end); });
+}
+
+}  // namespace
+
+unsigned countOf(const std::string& text, const char* option, int min, int max) {
+  const long long value = parsed(text, -1LL, [](const std::string& t, std::size_t* end) { return std::stoll(t, end); });
+  if (value < min || value > max)
+    throw std::runtime_error(std::string(option) + " must be a whole number from " + std::to_string(min) + " to " +
+                             std::to_string(max) + ", not '" + text + "'");
   return static_cast<unsigned>(value);
 }
 
 double numberOf(const std::string& text, const char* option) {
-  std::size_t end = 0;
-  double value = std::numeric_limits<double>::quiet_NaN();
-  try {
-    value = std::stod(text, &end);
-  } catch (const std::exception&) {
-  }
-  if (end != text.size() || !std::isfinite(value))
-    throw std::runtime_error(std::string(option) + " must be a number, not '" + text + "'");
+  const double value = parsedNumber(text);
+  if (!std::isfinite(value)) throw std::runtime_error(std::string(option) + " must be a number, not '" + text + "'");
   return value;
 }
 
 double toleranceOf(const std::string& text) {
-  double tolerance = 0;
-  try {
-    tolerance = numberOf(text, "--tolerance");
-  } catch (const std::runtime_error&) {
-  }
-  if (!(tolerance > 0)) throw std::runtime_error("--tolerance must be a positive number of metres, not '" + text + "'");
+  const double tolerance = parsedNumber(text);
+  if (!(tolerance > 0) || !std::isfinite(tolerance))
+    throw std::runtime_error("--tolerance must be a positive number of metres, not '" + text + "'");
   return tolerance;
 }
 
@@ -65,17 +71,12 @@ std::vector<std::string> itemsOf(const std::string& text) {
   return items;
 }
 
-std::string listOf(const std::vector<std::string>& items) {
-  std::string list;
-  for (const std::string& item : items) list += (list.empty() ? "" : ", ") + item;
-  return list;
-}
-
 bool readCommandLine(int argc, char** argv, const char* program, po::options_description& shown,
-                     std::vector<std::string>* inputs, po::variables_map& given) {
+                     std::vector<std::string>* inputs, po::variables_map& given,
+                     const po::options_description& hidden) {
   shown.add_options()("help,h", "print this and exit")("version", "print the version and exit");
   po::options_description all;
-  all.add(shown);
+  all.add(shown).add(hidden);
   std::vector<std::string> others;
   all.add_options()("input", po::value<std::vector<std::string>>(inputs != nullptr ? inputs : &others));
   po::positional_options_description positional;
@@ -96,6 +97,27 @@ bool readCommandLine(int argc, char** argv, const char* program, po::options_des
   po::notify(given);
   if (!others.empty()) throw std::runtime_error("'" + others.front() + "' is no option; see --help");
   return true;
+}
+
+void ClusterOptions::addTo(po::options_description& shown) {
+  // clang-format off
+  shown.add_options()
+    ("tolerance,t", po::value<std::string>(&tolerance_)->value_name("M"),
+     "points nearer to each other than this many metres belong together")
+    ("min-size", po::value<std::string>(&min_size_)->value_name("N"), "least returns of a cluster (default 10)")
+    ("max-size", po::value<std::string>(&max_size_)->value_name("N"), "most returns of a cluster (default: no limit)")
+    ("ground-z", po::value<std::string>(&ground_z_)->value_name("M"),
+     "leave out returns below this height in metres, in the input's coordinates (default: none)");
+  // clang-format on
+}
+
+void ClusterOptions::check(const po::variables_map& given) {
+  if (given.count("tolerance") == 0) throw std::runtime_error("--tolerance is missing; see --help");
+  tolerance = toleranceOf(tolerance_);
+  if (given.count("ground-z") != 0) ground_z = heightOf(ground_z_);
+  min_size = countOf(min_size_, "--min-size", 1);
+  if (given.count("max-size") != 0) max_size = countOf(max_size_, "--max-size", 1);
+  if (max_size < min_size) throw std::runtime_error("--max-size is smaller than --min-size");
 }
 
 GroundHeights::GroundHeights(const std::vector<std::string>& items) {

@@ -13,51 +13,62 @@
 
 namespace lisco_apps {
 
-/// Reads a whole number from `least` to `most`; boost would also accept "-1" (as a huge one).
+// All of these throw std::runtime_error with one line that says what is wrong.
+
+/// Reads a whole number from `min` to `max`; boost would also accept "-1" (as a huge one).
 /// \param option named in the error
-/// \throws std::runtime_error with one line that says what is wrong
-unsigned countOf(const std::string& text, const char* option, int least, int most = std::numeric_limits<int>::max());
-
-/// Reads a finite number. \throws std::runtime_error with one line that says what is wrong
+unsigned countOf(const std::string& text, const char* option, int min, int max = std::numeric_limits<int>::max());
+/// Reads a finite number.
 double numberOf(const std::string& text, const char* option);
-
-/// Reads a --tolerance: a positive number. \throws std::runtime_error with one line that says what is wrong
+/// Reads a --tolerance: a positive number.
 double toleranceOf(const std::string& text);
-
-/// Reads a --ground-z: a finite number. \throws std::runtime_error with one line that says what is wrong
+/// Reads a --ground-z: a finite number.
 float heightOf(const std::string& text);
-
 /// Splits "a,b,c" at its commas.
 std::vector<std::string> itemsOf(const std::string& text);
-/// "a, b, c", for people.
-std::string listOf(const std::vector<std::string>& items);
 
-/// Reads a command line, and does what --help and --version ask for, which every program has.
-/// \param shown the options that --help shows, --help and --version excepted
-/// \param inputs receives what is no option; nullptr: there must be nothing else
-/// \return false if there is nothing left to do
-/// \throws std::runtime_error with one line that says what is wrong
+/// Reads a command line. Handles --help and --version, which every program has.
+/// \param shown the other options, as --help shows them
+/// \param inputs receives the positional arguments; nullptr: there must be none
+/// \param hidden options that --help does not show
+/// \return false if --help or --version was given
 bool readCommandLine(int argc, char** argv, const char* program, boost::program_options::options_description& shown,
-                     std::vector<std::string>* inputs, boost::program_options::variables_map& given);
+                     std::vector<std::string>* inputs, boost::program_options::variables_map& given,
+                     const boost::program_options::options_description& hidden = {});
 
-/// Heights below which the ground lies: of all inputs, or of each by its name.
+/// The options --tolerance, --min-size, --max-size and --ground-z.
+class ClusterOptions {
+ public:
+  void addTo(boost::program_options::options_description& shown);
+  /// To be called once the command line has been read.
+  void check(const boost::program_options::variables_map& given);
+
+  double tolerance = 0;  ///< metres
+  unsigned min_size = 10;
+  unsigned max_size = std::numeric_limits<int>::max();
+  float ground_z = -std::numeric_limits<float>::infinity();  ///< metres
+
+ private:
+  std::string tolerance_, min_size_ = "10", max_size_, ground_z_;
+};
+
+/// Heights of the ground: of all inputs, or of each by its name.
 class GroundHeights {
  public:
   /// \param items "M" for all inputs, "NAME=M" for the input of this name, metres
-  /// \throws std::runtime_error with one line that says what is wrong
   explicit GroundHeights(const std::vector<std::string>& items = {});
 
   /// \param name file name without ending
-  /// \return minus infinity if nothing was said of this input
+  /// \return minus infinity if no height applies
   float of(const std::string& name) const;
-  /// The names of which something was said and that are none of these.
+  /// The names given that are none of these.
   std::vector<std::string> namesNotIn(const std::vector<std::string>& names) const;
 
  private:
-  std::map<std::string, float> of_name_;  ///< "": of all others
+  std::map<std::string, float> of_name_;  ///< "": all others
 };
 
-/// The whole of a program: runs it, and turns an exception into one line on stderr and exit code 2.
+/// The body of main (): turns an exception into one line on stderr and exit code 2.
 template <typename Run>
 int runProgram(const char* name, Run&& run) {
   try {

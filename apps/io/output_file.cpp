@@ -5,12 +5,13 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <fstream>
 #include <system_error>
 
-#include "io/file_error.h"
+#include "io/text.h"
 
 namespace lisco_apps {
 
@@ -37,42 +38,16 @@ void removeAbandoned(const fs::path& folder, const std::string& prefix) {
   }
 }
 
-/// A folder that its destructor removes.
-class TemporaryFolder {
- public:
-  explicit TemporaryFolder(fs::path path) : path_(std::move(path)) { fs::create_directory(path_); }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const fs::path& path() const { return path_; }
+/// Runs an action at the end of its scope, unless its function is replaced by nullptr.
+struct AtEnd {
+  std::function<void()> run;
 
- private:
-  fs::path path_;
-};
-
-/// Makes a folder and those above it. The destructor removes those it has made, unless keep () was called.
-class MadeFolder {
- public:
-  explicit MadeFolder(const fs::path& path) {
-    for (fs::path p = fs::absolute(path).lexically_normal(); !p.empty() && !fs::exists(p); p = p.parent_path())
-      made_.push_back(p);
-    fs::create_directories(path);
+  explicit AtEnd(std::function<void()> action) : run(std::move(action)) {}
+  ~AtEnd() {
+    if (run) run();
   }
-  ~MadeFolder() {
-    std::error_code ignored;
-    if (!kept_)
-      for (const fs::path& p : made_) fs::remove(p, ignored);  // innermost first, only if empty
-  }
-  MadeFolder(const MadeFolder&) = delete;
-  MadeFolder& operator=(const MadeFolder&) = delete;
-  void keep() { kept_ = true; }
-
- private:
-  std::vector<fs::path> made_;
-  bool kept_ = false;
+  AtEnd(const AtEnd&) = delete;
+  AtEnd& operator=(const AtEnd&) = delete;
 };
 
 /// Checks that entries can be made in an existing folder.
@@ -134,26 +109,35 @@ void checkMayWriteInto(const fs::path& folder, const std::vector<std::string>& n
 void writeOwnFolder(const fs::path& folder, const std::vector<std::string>& names,
                     const std::function<void(const fs::path&)>& make, const std::function<void()>& tidy) {
   try {
-    MadeFolder made(folder);
+    std::error_code ignored;
+    std::vector<fs::path> made;  // innermost first
+    for (fs::path p = fs::absolute(folder).lexically_normal(); !p.empty() && !fs::exists(p); p = p.parent_path())
+      made.push_back(p);
+    AtEnd undo([&] {
+      for (const fs::path& p : made) fs::remove(p, ignored);  // only if empty
+    });
+    fs::create_directories(folder);
     checkMayWriteInto(folder, names);
     removeAbandoned(folder, kFolderPartial);
-    const TemporaryFolder aside(folder / (kFolderPartial + std::to_string(getpid())));
-    make(aside.path());
+    const fs::path aside = folder / (kFolderPartial + std::to_string(getpid()));
+    fs::create_directory(aside);
+    const AtEnd remove_aside([&] { fs::remove_all(aside, ignored); });
+    make(aside);
     std::ofstream marker(folder / kResultMarker);
     marker << "The results in this folder were written by lisco and may be replaced by it.\n";
     marker.close();
     if (!marker) fail(folder / kResultMarker, "cannot be written");
     tidy();
     for (const std::string& name : names) {
-      if (!fs::is_directory(aside.path() / name)) {
-        if (fs::exists(aside.path() / name)) fs::rename(aside.path() / name, folder / name);
+      if (!fs::is_directory(aside / name)) {
+        if (fs::exists(aside / name)) fs::rename(aside / name, folder / name);
         continue;
       }
       fs::create_directory(folder / name);  // may exist, with other files in it
-      for (const auto& entry : fs::directory_iterator(aside.path() / name))
+      for (const auto& entry : fs::directory_iterator(aside / name))
         fs::rename(entry.path(), folder / name / entry.path().filename());
     }
-    made.keep();
+    undo.run = nullptr;
   } catch (const fs::filesystem_error& error) {
     fs::path path = error.path2().empty() ? error.path1() : error.path2();
     if (path.filename().string().rfind(kFolderPartial, 0) == 0) path = folder;  // the user's name for it
@@ -167,6 +151,20 @@ std::vector<fs::path> filesIn(const fs::path& folder, const std::string& prefix,
     if (entry.path().filename().string().rfind(prefix, 0) == 0 && entry.path().extension() == ending)
       files.push_back(entry.path());
   return files;
+}
+
+std::string pcdHeader(const std::string& comment, const std::string& fields, const std::string& types,
+                      std::size_t columns, std::size_t rows) {
+  const auto per_field = [&](char value) {
+    std::string line = types;
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return c != ' '; }, value);
+    return line;
+  };
+  return comment + "\n# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS " + fields + "\nSIZE " +
+         per_field('4') + "\nTYPE " + types + "\nCOUNT " + per_field('1') + "\nWIDTH " + std::to_string(columns) +
+         "\nHEIGHT " + std::to_string(rows) + "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(columns * rows) +
+         "\nDATA binary\n";
 }
 
 }  // namespace lisco_apps

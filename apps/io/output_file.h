@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -29,8 +30,8 @@ void writeOwnFile(const std::filesystem::path& file, const std::string& content,
 /// \throws std::runtime_error with one line that names what would be overwritten, is no folder, or is not writable
 void checkMayWriteInto(const std::filesystem::path& folder, const std::vector<std::string>& names);
 
-/// Writes files and folders of files into a folder, all or nothing: they are made aside and moved into place at the end.
-/// Makes the folder and those above it, and removes them again on failure. Checks as checkMayWriteInto () does.
+/// Writes files and folders of files into a folder, all or nothing: they are made aside and moved into place at the
+/// end. Makes the folder and those above it, and removes them again on failure. Checks as checkMayWriteInto () does.
 /// \param make writes all, or some, of `names` into the folder it is given
 /// \param tidy called before the files are moved into place, to remove those of an earlier run
 /// \throws std::runtime_error with one line that says what cannot be written
@@ -42,5 +43,11 @@ void writeOwnFolder(
 /// \throws std::filesystem::filesystem_error if it cannot be read
 std::vector<std::filesystem::path> filesIn(const std::filesystem::path& folder, const std::string& prefix,
                                            const std::string& ending);
+
+/// The header of an organized binary PCD whose fields hold one value of four bytes each.
+/// \param comment first line, begins with '#'
+/// \param fields, types such as "x y z label" and "F F F U"
+std::string pcdHeader(const std::string& comment, const std::string& fields, const std::string& types,
+                      std::size_t columns, std::size_t rows);
 
 }  // namespace lisco_apps

@@ -27,8 +27,8 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kCopyBytes = std::size_t{1} << 20;  // copied at a time
 
-/// A private copy of a file. PCL maps files into memory: if the original were truncated meanwhile, reading it would end the
-/// program. Without memfd_create the original itself.
+/// A private copy of a file. PCL maps files into memory: if the original were truncated meanwhile, reading it would end
+/// the program. Without memfd_create the original itself.
 class Snapshot {
  public:
   explicit Snapshot(const fs::path& file) {
@@ -64,24 +64,24 @@ class Snapshot {
 };
 
 /// Copies one coordinate field, float or double, into the cloud.
-void copyField(const pcl::PCLPointCloud2& blob, const fs::path& file, const char* name, float pcl::PointXYZ::*member,
-               Cloud& cloud) {
-  const auto field = std::find_if(blob.fields.begin(), blob.fields.end(),
-                                  [name](const pcl::PCLPointField& f) { return f.name == name; });
-  if (field == blob.fields.end()) fail(file, std::string("has no field '") + name + "'");
+void copyField(const pcl::PCLPointCloud2& blob, const fs::path& file, std::size_t axis, Cloud& cloud) {
+  const std::string name(1, "xyz"[axis]);
+  const auto field =
+      std::find_if(blob.fields.begin(), blob.fields.end(), [&](const pcl::PCLPointField& f) { return f.name == name; });
+  if (field == blob.fields.end()) fail(file, "has no field '" + name + "'");
   const bool is_float = field->datatype == pcl::PCLPointField::FLOAT32;
   if (!is_float && field->datatype != pcl::PCLPointField::FLOAT64)
-    fail(file, std::string("field '") + name + "' is neither float nor double");
+    fail(file, "field '" + name + "' is neither float nor double");
   const std::size_t size = is_float ? sizeof(float) : sizeof(double);
   if (field->offset + size > blob.point_step) fail(file, "holds less data than its header says");
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const std::uint8_t* const value = blob.data.data() + i * blob.point_step + field->offset;
     if (is_float) {
-      std::memcpy(&(cloud[i].*member), value, sizeof(float));
+      std::memcpy(&cloud[i].data[axis], value, sizeof(float));
     } else {
       double wide;
       std::memcpy(&wide, value, sizeof wide);
-      cloud[i].*member = static_cast<float>(wide);
+      cloud[i].data[axis] = static_cast<float>(wide);
     }
   }
 }
@@ -142,9 +142,7 @@ Cloud::Ptr readByPcl(pcl::FileReader& reader, const fs::path& file, const std::s
   cloud->is_dense = blob.is_dense != 0;
   cloud->sensor_origin_ = origin;
   cloud->sensor_orientation_ = orientation;
-  copyField(blob, file, "x", &pcl::PointXYZ::x, *cloud);
-  copyField(blob, file, "y", &pcl::PointXYZ::y, *cloud);
-  copyField(blob, file, "z", &pcl::PointXYZ::z, *cloud);
+  for (std::size_t axis = 0; axis < 3; ++axis) copyField(blob, file, axis, *cloud);
   if (object_of != nullptr) *object_of = labelsIn(blob);
   return cloud;
 }

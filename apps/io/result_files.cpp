@@ -9,8 +9,7 @@
 #include <pcl/common/io.h>
 #include <pcl/io/pcd_io.h>
 
-#include "drawing/pictures.h"
-#include "io/file_error.h"
+#include "drawing/scan_pictures.h"
 #include "io/output_file.h"
 #include "io/text.h"
 

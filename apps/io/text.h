@@ -4,9 +4,24 @@
 
 #include <cstdarg>
 #include <cstdio>
+#include <filesystem>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace lisco_apps {
+
+/// Throws the one-line error of a file or folder.
+[[noreturn]] inline void fail(const std::filesystem::path& file, const std::string& what) {
+  throw std::runtime_error(file.string() + ": " + what);
+}
+
+/// "a, b, c"
+inline std::string listOf(const std::vector<std::string>& items, const char* separator = ", ") {
+  std::string list;
+  for (const std::string& item : items) list += (list.empty() ? "" : separator) + item;
+  return list;
+}
 
 /// printf to a string.
 __attribute__((format(printf, 1, 2))) inline std::string formatted(const char* format, ...) {

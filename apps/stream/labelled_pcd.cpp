@@ -7,9 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/file_error.h"
 #include "io/output_file.h"
-#include "io/pcd_header.h"
 #include "io/text.h"
 #include "lisco/version.h"
 
@@ -18,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// By what a file of this program is known.
+/// First words of every file of this program.
 constexpr const char* kSignature = "# made by lisco_stream ";
 constexpr const char* kPrefix = "rotation_";
 constexpr const char* kEnding = ".pcd";

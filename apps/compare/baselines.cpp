@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "compare/rivals.h"
+#include "compare/baselines.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,49 +15,52 @@
 
 #include "io/point_geometry.h"
 #include "lisco/return.h"
-#include "reference/paper_lisco.h"
 #include "reference/voxel_grid.h"
 
 namespace lisco_apps {
 namespace {
 
-using Search = pcl::search::Search<RivalPoint>;
+using Search = pcl::search::Search<ComparedPoint>;
 
-/// PCL with a search method, made anew for each problem as its tutorial does; nullptr: PCL's own choice.
+template <typename Extraction>
+void extractBy(Extraction& extraction, const Problem& problem, Clusters& clusters) {
+  extraction.setInputCloud(problem.cloud);
+  extraction.setClusterTolerance(problem.tolerance);
+  extraction.setMinClusterSize(problem.min_size);
+  extraction.setMaxClusterSize(problem.max_size);
+  extraction.extract(clusters);
+}
+
+/// PCL with a search method that is made for each problem, as its tutorial does; nullptr: PCL's own choice.
 template <typename MakeSearch>
 auto byPcl(MakeSearch make_search) {
   return [make_search](const Problem& problem, Clusters& clusters) {
-    pcl::EuclideanClusterExtraction<RivalPoint> extraction;
+    pcl::EuclideanClusterExtraction<ComparedPoint> extraction;
     const Search::Ptr search = make_search(problem);
     if (search != nullptr) extraction.setSearchMethod(search);
-    extraction.setInputCloud(problem.cloud);
     extraction.setIndices(problem.returns);
-    extraction.setClusterTolerance(problem.tolerance);
-    extraction.setMinClusterSize(problem.min_size);
-    extraction.setMaxClusterSize(problem.max_size);
-    extraction.extract(clusters);
+    extractBy(extraction, problem, clusters);
   };
 }
 
-/// PCL's octree ends the program if it would have too many levels, or if its cells are not above the float it takes for
-/// nothing (1.2e-7).
+/// Refuses problems at which PCL's octree ends the program: with too many levels, or cells of 1.2e-7 m or less.
 void checkOctreeHolds(const Problem& problem) {
-  constexpr float kLeast = 1e-5F;
-  constexpr float kMostCells = 1 << 28;  // from the origin to the farthest return
+  constexpr float kMinCell = 1e-5F;     // metres
+  constexpr float kMaxCells = 1 << 28;  // from the origin to the farthest return
   const auto cell = static_cast<float>(std::fabs(problem.tolerance));
-  if (!(cell >= kLeast)) throw std::runtime_error("the tolerance is too small for an octree");
+  if (!(cell >= kMinCell)) throw std::runtime_error("the tolerance is too small for an octree");
   for (const auto index : *problem.returns) {
-    const RivalPoint& p = (*problem.cloud)[static_cast<std::size_t>(index)];
-    if (std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) / cell > kMostCells)
+    const ComparedPoint& p = (*problem.cloud)[static_cast<std::size_t>(index)];
+    if (std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) / cell > kMaxCells)
       throw std::runtime_error("the scan has too many cells for an octree");
   }
 }
 
-/// Turns a component per return into PCL's vector: clusters by their first point, then sorted by PCL's call.
+/// Converts a component per return to PCL's vector: clusters in the order of first points, then sorted by PCL's call.
 class ComponentsToClusters {
  public:
   /// \param component_of the component of the i-th return
-  /// \param component_count more than any of its numbers
+  /// \param component_count above all component numbers
   void append(const std::vector<std::uint32_t>& component_of, std::size_t component_count, const Problem& problem,
               Clusters& clusters) {
     size_.assign(component_count, 0);
@@ -84,16 +87,16 @@ class ComponentsToClusters {
 };
 
 lisco::Return returnAt(const Problem& problem, pcl::index_t index) {
-  const RivalPoint& p = (*problem.cloud)[static_cast<std::size_t>(index)];
+  const ComparedPoint& p = (*problem.cloud)[static_cast<std::size_t>(index)];
   return {p.x, p.y, p.z, static_cast<std::uint32_t>(index)};
 }
 
 class ByVoxelGrid {
  public:
   void extract(const Problem& problem, Clusters& clusters) {
-    // Like Lisco, and unlike PCL, it is given the cloud as it is and looks for the returns itself.
+    // As Lisco does, it finds the returns in the cloud; the reference takes indices.
     returns_.clear();
-    const RivalCloud& cloud = *problem.cloud;
+    const ComparedCloud& cloud = *problem.cloud;
     for (std::size_t i = 0; i < cloud.size(); ++i)
       if (isReturn(cloud[i])) returns_.push_back(returnAt(problem, static_cast<pcl::index_t>(i)));
     const auto& component_of = grid_.cluster(returns_, static_cast<float>(problem.tolerance));
@@ -109,8 +112,8 @@ class ByVoxelGrid {
 class ByThePaper {
  public:
   void extract(const Problem& problem, Clusters& clusters) {
-    const RivalCloud& cloud = *problem.cloud;
-    if (cloud_ != problem.cloud) {  // what a user of the paper's method knows beforehand
+    const ComparedCloud& cloud = *problem.cloud;
+    if (cloud_ != problem.cloud) {  // the sensor is known beforehand
       sensor_ = nominalSensor(cloud);
       cloud_ = problem.cloud;
     }
@@ -130,7 +133,7 @@ class ByThePaper {
   }
 
  private:
-  RivalCloud::ConstPtr cloud_;
+  ComparedCloud::ConstPtr cloud_;
   lisco_reference::NominalSensor sensor_{};
   std::vector<lisco::Return> matrix_;
   std::vector<std::uint32_t> component_of_;
@@ -140,16 +143,10 @@ class ByThePaper {
 
 class ByLisco {
  public:
-  void extract(const Problem& problem, Clusters& clusters) {
-    extraction_.setInputCloud(problem.cloud);
-    extraction_.setClusterTolerance(problem.tolerance);
-    extraction_.setMinClusterSize(problem.min_size);
-    extraction_.setMaxClusterSize(problem.max_size);
-    extraction_.extract(clusters);
-  }
+  void extract(const Problem& problem, Clusters& clusters) { extractBy(extraction_, problem, clusters); }
 
  private:
-  pcl::LiscoClusterExtraction<RivalPoint> extraction_;
+  pcl::LiscoClusterExtraction<ComparedPoint> extraction_;
 };
 
 template <typename Method>
@@ -161,49 +158,44 @@ auto withOwnMemory() {
 
 }  // namespace
 
-lisco_reference::NominalSensor nominalSensor(const RivalCloud& cloud) {
-  double least = kPi;
+lisco_reference::NominalSensor nominalSensor(const ComparedCloud& cloud) {
+  double min_step = kPi;
   double before = std::nan("");
   for (std::size_t row = 0; row < cloud.height; ++row) {
     std::vector<double> elevations;
     for (std::size_t column = 0; column < cloud.width; ++column) {
-      const RivalPoint& p = cloud.at(static_cast<int>(column), static_cast<int>(row));
+      const ComparedPoint& p = cloud.at(static_cast<int>(column), static_cast<int>(row));
       if (isReturn(p)) elevations.push_back(elevationOf(p));
     }
     if (elevations.empty()) continue;
     const auto middle = elevations.begin() + static_cast<std::ptrdiff_t>(elevations.size() / 2);
     std::nth_element(elevations.begin(), middle, elevations.end());
-    if (std::isfinite(before)) least = std::min(least, std::fabs(*middle - before));
+    if (std::isfinite(before)) min_step = std::min(min_step, std::fabs(*middle - before));
     before = *middle;
   }
-  return {2 * kPi / cloud.width, least};
+  return {2 * kPi / cloud.width, min_step};
 }
 
-Rival referenceRival() {
+Baseline referenceBaseline() {
   return {kReferenceKey, "PCL, KdTree (false)",
-          byPcl([](const Problem&) { return std::make_shared<pcl::search::KdTree<RivalPoint>>(false); }), 0x000000};
+          byPcl([](const Problem&) { return std::make_shared<pcl::search::KdTree<ComparedPoint>>(false); }), 0x000000};
 }
 
-std::vector<Rival> allRivals() {
-  const auto sorted_tree = [](const Problem&) { return std::make_shared<pcl::search::KdTree<RivalPoint>>(); };
+std::vector<Baseline> allBaselines() {
+  const auto sorted_tree = [](const Problem&) { return std::make_shared<pcl::search::KdTree<ComparedPoint>>(); };
   const auto octree = [](const Problem& problem) {
     checkOctreeHolds(problem);
-    return std::make_shared<pcl::search::Octree<RivalPoint>>(std::fabs(problem.tolerance));
+    return std::make_shared<pcl::search::Octree<ComparedPoint>>(std::fabs(problem.tolerance));
   };
-  // Colours that colour-blind eyes tell apart too (Okabe and Ito).
-  std::vector<Rival> rivals{
-      referenceRival(),
-      {"pcl-tutorial", "PCL, KdTree as in its tutorial", byPcl(sorted_tree), 0x999999},
-      {"pcl-octree", "PCL, Octree", byPcl(octree), 0x56B4E9},
-      {"pcl-default", "PCL, no search method given", byPcl([](const Problem&) { return Search::Ptr(); }), 0xF0E442},
-      {"grid", "voxel grid", withOwnMemory<ByVoxelGrid>(), 0x0072B2},
-      {"paper", "Lisco as in the paper", withOwnMemory<ByThePaper>(), 0xE69F00},
-      {"lisco", "Lisco for PCL", withOwnMemory<ByLisco>(), 0xD55E00}};
-  for (Rival& rival : rivals) {
-    rival.timed = rival.key != "pcl-default";
-    rival.needs_rows = rival.key == "paper";
-  }
-  return rivals;
+  // Okabe and Ito's colours, distinct with colour blindness.
+  return {referenceBaseline(),
+          {"pcl-tutorial", "PCL, KdTree as in its tutorial", byPcl(sorted_tree), 0x999999},
+          {"pcl-octree", "PCL, Octree", byPcl(octree), 0x56B4E9},
+          {"pcl-default", "PCL, no search method given", byPcl([](const Problem&) { return Search::Ptr(); }), 0xF0E442,
+           false},
+          {"grid", "voxel grid", withOwnMemory<ByVoxelGrid>(), 0x0072B2},
+          {"paper", "Lisco as in the paper", withOwnMemory<ByThePaper>(), 0xE69F00, true, true},
+          {"lisco", "Lisco for PCL", withOwnMemory<ByLisco>(), 0xD55E00}};
 }
 
 }  // namespace lisco_apps

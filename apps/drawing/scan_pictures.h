@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <filesystem>
 #include <vector>
 
 #include "drawing/canvas.h"
@@ -11,7 +11,17 @@
 
 namespace lisco_apps {
 
-// What the pictures of a scan have in common. Lengths in pixels.
+/// The scan as the sensor sees it, one cell per laser and step (an unorganized scan is projected by azimuth and
+/// elevation): clusters in colours, noise grey, ground dark, no return black.
+/// \throws std::runtime_error if the file cannot be written
+void drawRangeImage(const ClusteredScan& scan, const std::filesystem::path& png);
+
+/// The scan from above, x (forward) up and y to the left, with the sensor, rings of equal range and a scale. A camera's
+/// cloud (all points ahead in +z) is shown with z up and x to the right.
+/// \throws std::runtime_error if the file cannot be written
+void drawTopView(const ClusteredScan& scan, const std::filesystem::path& png);
+
+// Shared by both pictures. Lengths in pixels.
 constexpr int kHeaderHeight = 44;
 constexpr double kHeaderBaseline = 28;
 constexpr double kTitleSize = 17;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "drawing/scan_style.h"
+#include "drawing/scan_pictures.h"
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -27,7 +29,7 @@ std::vector<Color> colorsOf(const ClusteredScan& scan) {
   std::vector<std::pair<ClusterShape, std::size_t>> placed;
   for (const auto& cluster : scan.clusters) {
     const ClusterShape shape = shapeOf(*scan.cloud, cluster);
-    std::array<double, kPalette.size()> nearest;
+    std::array<double, std::size(kPalette)> nearest;
     nearest.fill(std::numeric_limits<double>::infinity());
     for (const auto& [other, color] : placed) {
       double squared_gap = 0;
