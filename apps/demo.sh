@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs what is missing, builds the programs, simulates a scan (the paper's third scene), clusters it by PCL and by Lisco side by
-# side, and draws it. The results are in demo/ (or the folder given).
+# Installs missing dependencies, builds the programs, simulates a scan (the paper's third scene), clusters it by PCL and
+# by Lisco side by side, and draws it. The results are in demo/ (or the folder given).
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/cmake/script_tools.sh"
@@ -13,4 +13,4 @@ results=${1:-$root/demo}
 mkdir -p "$results"
 "$programs/lisco_simulate" --scene 3 -o "$results/scan.pcd"
 "$programs/lisco_cluster" "$results/scan.pcd" --tolerance 0.4 --ground-z -1.6 -o "$results"
-"$programs/lisco_compare" "$results/scan.pcd" --tolerance 0.4 --ground-z -1.6 --rivals pcl,grid,paper,lisco --runs 10
+"$programs/lisco_compare" "$results/scan.pcd" --tolerance 0.4 --ground-z -1.6 --baselines pcl,grid,paper,lisco --runs 10

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// Clusters scan files and writes what it found.
+// Clusters scan files and writes the clusters as tables, clouds and pictures.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -19,11 +19,11 @@
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 #include <boost/program_options.hpp>
 
-#include "cloud_file.h"
-#include "clustering.h"
-#include "options.h"
-#include "progress_bar.h"
-#include "result_files.h"
+#include "io/cloud_file.h"
+#include "io/clusters.h"
+#include "io/options.h"
+#include "io/result_files.h"
+#include "io/terminal_line.h"
 
 namespace {
 
@@ -33,56 +33,39 @@ using namespace lisco_apps;
 
 struct Options {
   std::vector<std::string> inputs;
-  double tolerance = 0;
-  unsigned min_size = 10;
-  unsigned max_size = std::numeric_limits<int>::max();
-  float ground_z = -std::numeric_limits<float>::infinity();
+  ClusterOptions clustering;
   fs::path output;
   bool cloud_per_cluster = false;
-  unsigned threads = 1;  ///< files worked on side by side
+  unsigned threads = 1;  ///< files clustered at the same time
 };
 
 double milliseconds(std::chrono::steady_clock::duration time) {
   return std::chrono::duration<double, std::milli>(time).count();
 }
 
-/// \return false if there is nothing to do but to print help or version, which has been done
+/// \return false if --help or --version was given
 bool parse(int argc, char** argv, Options& options) {
   po::options_description shown(
       "Usage: lisco_cluster INPUT... --tolerance M [options]\n\n"
       "Finds the Euclidean clusters of LiDAR scans: the clusters of PCL's EuclideanClusterExtraction.\n"
-      "An input is a scan (.pcd .ply .obj .ifs, KITTI .bin, the paper authors' .csv) or a folder of "
-      "scans.\n\n"
+      "An input is a scan (.pcd .ply, KITTI .bin, the paper authors' .csv) or a folder of scans.\n\n"
       "Options");
-  std::string tolerance;
-  std::string ground_z;
-  std::string min_size = "10";
-  std::string max_size;
   std::string threads = "1";
   std::string output;
+  options.clustering.addTo(shown);
   // clang-format off
   shown.add_options()
-    ("tolerance,t", po::value<std::string>(&tolerance)->value_name("M"),
-     "points nearer to each other than this many metres belong together")
-    ("min-size", po::value<std::string>(&min_size)->value_name("N"), "least returns of a cluster (default 10)")
-    ("max-size", po::value<std::string>(&max_size)->value_name("N"), "most returns of a cluster (default: no limit)")
-    ("ground-z", po::value<std::string>(&ground_z)->value_name("M"),
-     "leave out returns below this height in metres (default: none)")
     ("threads", po::value<std::string>(&threads)->value_name("N"),
-     "work on N files side by side (default 1; 0: as many as there are processors)")
+     "cluster N files at the same time (default 1; 0: one per processor)")
     ("output,o", po::value<std::string>(&output)->value_name("DIR"),
-     "folder for labels.pcd, clusters.csv, range_image.png and top_view.png; of several inputs, each has a folder in it")
+     "folder for labels.pcd, clusters.csv, range_image.png and top_view.png; with several inputs, a folder in it for "
+     "each")
     ("clouds", po::bool_switch(&options.cloud_per_cluster), "also write one cloud per cluster (needs --output)");
   // clang-format on
   po::variables_map given;
   if (!readCommandLine(argc, argv, "lisco_cluster", shown, &options.inputs, given)) return false;
   if (options.inputs.empty()) throw std::runtime_error("no input; see --help");
-  if (given.count("tolerance") == 0) throw std::runtime_error("--tolerance is missing; see --help");
-  options.tolerance = toleranceOf(tolerance);
-  if (given.count("ground-z") != 0) options.ground_z = heightOf(ground_z);
-  options.min_size = countOf(min_size, "--min-size", 1);
-  if (given.count("max-size") != 0) options.max_size = countOf(max_size, "--max-size", 1);
-  if (options.max_size < options.min_size) throw std::runtime_error("--max-size is smaller than --min-size");
+  options.clustering.check(given);
   options.threads = countOf(threads, "--threads", 0);
   if (options.threads == 0) options.threads = std::max(1U, std::thread::hardware_concurrency());
   if (given.count("output") != 0 && output.empty()) throw std::runtime_error("--output is empty");
@@ -91,7 +74,7 @@ bool parse(int argc, char** argv, Options& options) {
   return true;
 }
 
-/// What was found in one scan, for a person.
+/// Prints the result for one scan.
 void printSummary(const ClusteredScan& scan, const Options& options, double read_ms, double cluster_ms, double write_ms,
                   const fs::path& folder) {
   const Cloud& cloud = *scan.cloud;
@@ -104,10 +87,11 @@ void printSummary(const ClusteredScan& scan, const Options& options, double read
     std::printf("  scan      %u rows x %u columns, %zu returns", cloud.height, cloud.width, returns);
   else
     std::printf("  scan      unorganized, %zu points, %zu returns", cloud.size(), returns);
-  if (std::isfinite(options.ground_z))
-    std::printf(", %zu above the ground (z >= %g m)", scan.clustered.size(), static_cast<double>(options.ground_z));
+  if (std::isfinite(options.clustering.ground_z))
+    std::printf(", %zu above the ground (z >= %g m)", scan.clustered.size(),
+                static_cast<double>(options.clustering.ground_z));
   std::printf("\n  clusters  %zu of at least %u returns within %g m of each other; %zu returns are noise\n",
-              scan.clusters.size(), options.min_size, options.tolerance, scan.clustered.size() - in_clusters);
+              scan.clusters.size(), options.clustering.min_size, scan.tolerance, scan.clustered.size() - in_clusters);
   if (!scan.clusters.empty())  // sorted by size
     std::printf("  sizes     largest %zu, median %zu, smallest %zu\n", scan.clusters.front().indices.size(),
                 scan.clusters[scan.clusters.size() / 2].indices.size(), scan.clusters.back().indices.size());
@@ -120,13 +104,13 @@ void printSummary(const ClusteredScan& scan, const Options& options, double read
   std::printf("\n");
 }
 
-/// A file and where its results go (nowhere, if empty).
 struct Job {
-  fs::path file, folder;
+  fs::path file;
+  fs::path folder;  ///< of its results; empty: none are written
 };
 
-/// One job per input file; all_well tells whether there are files in all folders. Of several, each has a folder of its
-/// own, numbered where file names repeat.
+/// One job per input file. Results of several go to a folder each, numbered where file names repeat.
+/// \param all_well set to whether every input folder holds scans
 std::vector<Job> jobsOf(const Options& options, bool& all_well) {
   std::vector<std::string> failures;
   const std::vector<fs::path> files = expandInputs(options.inputs, failures);
@@ -140,13 +124,13 @@ std::vector<Job> jobsOf(const Options& options, bool& all_well) {
   return jobs;
 }
 
-/// Works off jobs one after the other; any number of workers may share them.
+/// Threads that share a list of jobs.
 class Workers {
  public:
   Workers(const Options& options, std::vector<Job> jobs)
       : options_(options), jobs_(std::move(jobs)), progress_(jobs_.size() > 1) {}
 
-  /// \return whether all went well
+  /// \return whether all jobs succeeded
   bool run() {
     std::vector<std::thread> others;
     for (std::size_t i = 1; i < std::min<std::size_t>(options_.threads, jobs_.size()); ++i)
@@ -159,9 +143,9 @@ class Workers {
  private:
   void work() {
     pcl::LiscoClusterExtraction<pcl::PointXYZ> extraction;
-    extraction.setClusterTolerance(options_.tolerance);
-    extraction.setMinClusterSize(options_.min_size);
-    extraction.setMaxClusterSize(options_.max_size);
+    extraction.setClusterTolerance(options_.clustering.tolerance);
+    extraction.setMinClusterSize(options_.clustering.min_size);
+    extraction.setMaxClusterSize(options_.clustering.max_size);
     for (std::size_t job = next_++; job < jobs_.size(); job = next_++) {
       {
         const std::lock_guard<std::mutex> lock(terminal_);
@@ -188,10 +172,10 @@ class Workers {
     const auto start = Clock::now();
     ClusteredScan scan;
     scan.name = job.file.filename().string();
-    scan.tolerance = options_.tolerance;
+    scan.tolerance = options_.clustering.tolerance;
     scan.cloud = readCloudFile(job.file);
     if (scan.cloud->empty()) throw std::runtime_error(job.file.string() + ": holds no points");
-    scan.clustered = returnsAbove(*scan.cloud, options_.ground_z);
+    scan.clustered = returnsAbove(*scan.cloud, options_.clustering.ground_z);
 
     const auto read = Clock::now();
     extraction.setInputCloud(scan.cloud);
@@ -211,7 +195,7 @@ class Workers {
   const Options& options_;
   const std::vector<Job> jobs_;
   std::atomic<std::size_t> next_{0};
-  std::mutex terminal_;  ///< guards what follows, and what is printed
+  std::mutex terminal_;  ///< guards the terminal and the members after it
   ProgressBar progress_;
   std::size_t done_ = 0;
   bool all_well_ = true;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// Clusters scans by PCL and by Lisco, side by side: whether the clusters are the same, and how long it took.
+// Clusters scans by PCL, Lisco and other baselines, side by side: compares the clusters, then the times.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -15,14 +15,14 @@
 
 #include <boost/program_options.hpp>
 
-#include "cloud_file.h"
-#include "compare/charts.h"
 #include "compare/comparison.h"
 #include "compare/report.h"
-#include "options.h"
-#include "output_file.h"
-#include "progress_bar.h"
-#include "text.h"
+#include "drawing/chart.h"
+#include "io/cloud_file.h"
+#include "io/options.h"
+#include "io/output_file.h"
+#include "io/terminal_line.h"
+#include "io/text.h"
 
 namespace {
 
@@ -37,46 +37,42 @@ struct Options {
   fs::path json, csv, plot;
 };
 
-/// The rivals with these keys, in the order of allRivals ().
-std::vector<Rival> rivalsNamed(const std::string& keys, const char* option) {
+/// The baselines with these keys, in the order of allBaselines ().
+std::vector<Baseline> baselinesNamed(const std::string& keys, const char* option) {
   std::vector<std::string> asked = itemsOf(keys);
-  std::vector<Rival> chosen;
+  std::vector<Baseline> chosen;
   std::vector<std::string> known;
-  for (Rival& rival : allRivals()) {
-    known.push_back(rival.key);
-    const auto found = std::find(asked.begin(), asked.end(), rival.key);
+  for (Baseline& baseline : allBaselines()) {
+    known.push_back(baseline.key);
+    const auto found = std::find(asked.begin(), asked.end(), baseline.key);
     if (found == asked.end()) continue;
-    asked.erase(std::remove(asked.begin(), asked.end(), rival.key), asked.end());
-    chosen.push_back(std::move(rival));
+    asked.erase(std::remove(asked.begin(), asked.end(), baseline.key), asked.end());
+    chosen.push_back(std::move(baseline));
   }
   if (!asked.empty())
     throw std::runtime_error(std::string(option) + " knows no '" + asked.front() + "' (but " + listOf(known) + ")");
   return chosen;
 }
 
-/// \return false if there is nothing to do but to print help or version, which has been done
+/// \return false if --help or --version was given
 bool parse(int argc, char** argv, Options& options) {
   po::options_description shown(
       "Usage: lisco_compare INPUT... --tolerance M[,M...] [options]\n\n"
-      "Clusters scans by PCL and by Lisco side by side, on the same returns: first whether the clusters are the same,\n"
-      "then how long each takes. An input is a scan (.pcd .ply .obj .ifs, KITTI .bin, the paper authors' .csv) or a\n"
-      "folder of scans. If a scan has a field 'label' (uint32, as lisco_simulate writes it), clusters are also scored\n"
-      "against these true objects.\n\n"
-      "Rivals: pcl (the reference: EuclideanClusterExtraction with KdTree (false)), pcl-tutorial (sorted KdTree),\n"
-      "pcl-octree (resolution = tolerance), grid (a voxel grid), paper (Lisco as published, but with PCL's "
-      "comparison),\n"
-      "lisco, and, only shown and not timed, pcl-default (no search method given, which breaks on rotating scans).\n\n"
-      "Exit code: 0 if the clusters of those that must agree are identical everywhere, 1 if not, 2 on bad input or\n"
-      "usage (1 goes before 2).\n\n"
+      "Clusters scans by PCL and by Lisco side by side, on the same returns: compares the clusters first, then the\n"
+      "times. An input is a scan (.pcd .ply, KITTI .bin, the paper authors' .csv) or a\n"
+      "folder of scans. Clusters are also scored against the true objects of scans with a field 'label' (uint32, as\n"
+      "lisco_simulate writes it).\n\n"
+      "Baselines: pcl (the reference: EuclideanClusterExtraction with KdTree (false)), pcl-tutorial (sorted KdTree),\n"
+      "pcl-octree (resolution = tolerance), grid (a voxel grid), paper (Lisco as published, with PCL's comparison),\n"
+      "lisco, and, shown without times, pcl-default (no search method given, which breaks on rotating scans).\n\n"
+      "Exit code: 0 if the clusters of those that must agree are identical everywhere, 1 if not, otherwise 2 on bad\n"
+      "input or usage.\n\n"
       "Options");
-  std::string tolerances;
-  std::string min_size = "10";
-  std::string runs = "20";
-  std::string max_seconds = "10";
-  std::string rivals = "pcl,pcl-tutorial,pcl-octree,grid,paper,lisco";
+  std::string tolerances, json, csv, plot;
+  std::string min_size = "10", runs = "20", max_seconds = "10";
+  std::string baselines = "pcl,pcl-tutorial,pcl-octree,grid,paper,lisco";
   std::string must_agree = "lisco";
   std::vector<std::string> ground;
-  std::string json, csv, plot;
   bool check_only = false;
   // clang-format off
   shown.add_options()
@@ -84,48 +80,44 @@ bool parse(int argc, char** argv, Options& options) {
      "points nearer to each other than this many metres belong together")
     ("min-size", po::value<std::string>(&min_size)->value_name("N"), "least returns of a cluster (default 10)")
     ("ground-z", po::value<std::vector<std::string>>(&ground)->value_name("M"),
-     "leave out returns below this height in metres (default: none); NAME=M: of the input of this name (its file "
-     "name without ending) only; may be given several times")
-    ("runs", po::value<std::string>(&runs)->value_name("N"), "timed runs of each rival (default 20)")
+     "leave out returns below this height in metres (default: none); NAME=M: of the input with this file name "
+     "(without ending) only; may be given several times")
+    ("runs", po::value<std::string>(&runs)->value_name("N"), "timed runs of each baseline (default 20)")
     ("max-seconds", po::value<std::string>(&max_seconds)->value_name("S"),
-     "fewer runs, but 3, for a rival that takes longer than this for all of them (default 10)")
-    ("check-only", po::bool_switch(&check_only), "compare the clusters and time nothing")
-    ("rivals", po::value<std::string>(&rivals)->value_name("A,B,..."),
-     "who takes part (default: all but pcl-default)")
+     "fewer runs, at least 3, for a baseline that would take longer than this for all of them (default 10)")
+    ("check-only", po::bool_switch(&check_only), "compare the clusters only, without times")
+    ("baselines", po::value<std::string>(&baselines)->value_name("A,B,..."),
+     "the methods to compare (default: all but pcl-default)")
     ("must-agree", po::value<std::string>(&must_agree)->value_name("A,B,..."),
-     "of these, whose clusters have to be PCL's (default lisco)")
+     "those of them that must find PCL's clusters (default lisco)")
     ("unorganized", po::bool_switch(&options.settings.unorganized), "cluster the returns as an unorganized cloud")
     ("json", po::value<std::string>(&json)->value_name("FILE"), "write everything, each run's time included")
-    ("csv", po::value<std::string>(&csv)->value_name("FILE"), "write a row per input, tolerance and rival")
+    ("csv", po::value<std::string>(&csv)->value_name("FILE"), "write a row per input, tolerance and baseline")
     ("plot", po::value<std::string>(&plot)->value_name("DIR"), "draw charts (PNG) into a folder; needs gnuplot");
   // clang-format on
+  po::options_description hidden;
+  hidden.add_options()("rivals", po::value<std::string>(&baselines));  // the former name of --baselines
   po::variables_map given;
-  if (!readCommandLine(argc, argv, "lisco_compare", shown, &options.inputs, given)) return false;
+  if (!readCommandLine(argc, argv, "lisco_compare", shown, &options.inputs, given, hidden)) return false;
   if (options.inputs.empty()) throw std::runtime_error("no input; see --help");
   if (given.count("tolerance") == 0) throw std::runtime_error("--tolerance is missing; see --help");
   CompareSettings& settings = options.settings;
-  for (const std::string& item : itemsOf(tolerances)) {
-    settings.tolerances.push_back(toleranceOf(item));
-  }
+  for (const std::string& item : itemsOf(tolerances)) settings.tolerances.push_back(toleranceOf(item));
   settings.min_size = countOf(min_size, "--min-size", 1);
   settings.runs = countOf(runs, "--runs", 1);
   if (check_only) settings.runs = 0;
   settings.max_seconds = numberOf(max_seconds, "--max-seconds");
   if (!(settings.max_seconds > 0)) throw std::runtime_error("--max-seconds must be positive");
   options.ground = GroundHeights(ground);
-  settings.rivals = rivalsNamed(rivals, "--rivals");
-  for (const Rival& rival : rivalsNamed(must_agree, "--must-agree")) {
-    settings.must_agree.push_back(rival.key);
-    const auto is_it = [&rival](const Rival& other) { return other.key == rival.key; };
-    if (given.count("must-agree") != 0 && std::none_of(settings.rivals.begin(), settings.rivals.end(), is_it))
-      throw std::runtime_error("--must-agree names " + rival.key + ", which --rivals does not");
+  settings.baselines = baselinesNamed(baselines, "--baselines");
+  for (const Baseline& baseline : baselinesNamed(must_agree, "--must-agree")) {
+    settings.must_agree.push_back(baseline.key);
+    const auto is_it = [&baseline](const Baseline& other) { return other.key == baseline.key; };
+    if (given.count("must-agree") != 0 && std::none_of(settings.baselines.begin(), settings.baselines.end(), is_it))
+      throw std::runtime_error("--must-agree names " + baseline.key + ", which --baselines does not");
   }
-  const auto empty = [&](const char* option, const std::string& value) {
+  for (const auto& [option, value] : {std::pair("json", json), std::pair("csv", csv), std::pair("plot", plot)})
     if (given.count(option) != 0 && value.empty()) throw std::runtime_error(std::string("--") + option + " is empty");
-  };
-  empty("json", json);
-  empty("csv", csv);
-  empty("plot", plot);
   options.json = json;
   options.csv = csv;
   options.plot = plot;
@@ -135,8 +127,8 @@ bool parse(int argc, char** argv, Options& options) {
   return true;
 }
 
-/// Everything for one scan, printed as it comes.
-/// \param cases_before, cases how many scans and tolerances have been compared, and are to be compared in all
+/// Compares one scan at all tolerances and prints the tables.
+/// \param cases_before, cases pairs of scan and tolerance compared so far, and in all
 InputResult compareFile(const fs::path& file, const std::string& name, const Options& options, std::size_t cases_before,
                         double cases, ProgressBar& progress) {
   const CompareSettings& settings = options.settings;
@@ -169,17 +161,19 @@ InputResult compareFile(const fs::path& file, const std::string& name, const Opt
   return input;
 }
 
-/// One line for each rival that must agree with PCL and does not.
-std::vector<std::string> disagreements(const std::vector<InputResult>& inputs, const CompareSettings& settings) {
-  std::vector<std::string> lines;
+/// Prints a line on stderr for each baseline that must agree with PCL and does not. \return whether all agree
+bool checkAgreement(const std::vector<InputResult>& inputs, const CompareSettings& settings) {
+  bool agree = true;
   for (const InputResult& input : inputs)
     for (const CaseResult& result : input.cases)
-      for (const RivalResult& entry : result.rivals)
-        if (settings.mustAgree(*entry.rival) && (!entry.failure.empty() || !entry.difference.identical))
-          lines.push_back(formatted("%s at %g m: the clusters of %s are not PCL's%s", input.file.c_str(),
-                                    result.tolerance, entry.rival->title.c_str(),
-                                    entry.difference.missed_by_reference ? ": PCL's tree missed a pair" : ""));
-  return lines;
+      for (const BaselineResult& entry : result.baselines) {
+        if (!settings.mustAgree(*entry.baseline) || (entry.failure.empty() && entry.difference.identical)) continue;
+        agree = false;
+        std::fprintf(stderr, "lisco_compare: %s at %g m: the clusters of %s are not PCL's%s\n", input.file.c_str(),
+                     result.tolerance, entry.baseline->title.c_str(),
+                     entry.difference.missed_by_reference ? ": PCL's tree missed a pair" : "");
+      }
+  return agree;
 }
 
 int compare(const Options& options) {
@@ -189,12 +183,12 @@ int compare(const Options& options) {
   for (const std::string& failure : failures) std::fprintf(stderr, "lisco_compare: %s\n", failure.c_str());
   if (files.empty()) return 2;
   const std::vector<std::string> names = namesOf(files);
-  // What cannot be written is found out before, not after, the time has been spent.
+  // Checked before the work.
   if (!options.json.empty()) checkMayWrite(options.json, kJsonSignature);
   if (!options.csv.empty()) checkMayWrite(options.csv, kCsvSignature);
   const std::vector<std::string> charts = chartsOf(names, settings);
   if (!options.plot.empty()) {
-    checkCharts();
+    checkGnuplot();
     checkMayWriteInto(options.plot, charts);
   }
 
@@ -221,21 +215,20 @@ int compare(const Options& options) {
   if (results.empty()) return 2;
   std::fputs(summaryOf(results, settings).c_str(), stdout);
   std::fflush(stdout);
-  const std::vector<std::string> disagreeing = disagreements(results, settings);
-  for (const std::string& line : disagreeing) std::fprintf(stderr, "lisco_compare: %s\n", line.c_str());
+  const bool agree = checkAgreement(results, settings);
 
   if (!options.json.empty()) writeOwnFile(options.json, jsonOf(results, settings, failures), kJsonSignature);
   if (!options.csv.empty()) writeOwnFile(options.csv, csvOf(results, settings), kCsvSignature);
   if (!options.plot.empty())
     writeOwnFolder(options.plot, charts, [&](const fs::path& aside) { drawCharts(results, settings, aside); });
-  if (!disagreeing.empty()) return 1;
+  if (!agree) return 1;
   return failures.empty() ? 0 : 2;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  omp_set_num_threads(1);  // PCL's kd-tree would wake threads that spin on while its rivals run
+  omp_set_num_threads(1);  // threads of PCL's kd-tree would go on spinning while the others are timed
   return runProgram("lisco_compare", [&] {
     Options options;
     return parse(argc, argv, options) ? compare(options) : 0;

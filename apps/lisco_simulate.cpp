@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// Writes a simulated scan of one of the scenes on which Lisco's paper was evaluated, or one of the worst cases.
+// Writes a simulated scan of one of the scenes of the paper's evaluation, or of a worst case.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -14,9 +14,10 @@
 
 #include <boost/program_options.hpp>
 
+#include "io/options.h"
+#include "io/output_file.h"
+#include "io/text.h"
 #include "lisco/version.h"
-#include "options.h"
-#include "output_file.h"
 #include "simulation/cases.h"
 #include "simulation/scanner.h"
 #include "simulation/scenes.h"
@@ -29,17 +30,18 @@ namespace po = boost::program_options;
 using namespace lisco_apps;
 using namespace lisco_simulation;
 
-/// By what a file of this program is known.
+/// First words of every file of this program.
 constexpr const char* kSignature = "# made by lisco_simulate ";
 
-constexpr double kLeastGap = 0.001;  // metres
-constexpr double kMostGap = 100;
+constexpr double kMinGap = 0.001;  // metres
+constexpr double kMaxGap = 100;
+constexpr std::size_t kMaxCells = 20'000'000;  // about a gigabyte of memory
 
 struct Options {
-  int scene = 0;  ///< 0: a case
+  int scene = 0;  ///< 0: a worst case
   bool vehicle = false;
-  std::string worst_case;  ///< its name; empty: a scene
-  double gap = 0.41;       ///< of some cases, metres
+  std::string worst_case;
+  double gap = 0.41;  ///< of some cases, metres
   std::string sensor = sensorNames().front();
   std::size_t lasers = 0;  ///< 0: the sensor's own number
   std::size_t steps = 0;
@@ -48,36 +50,35 @@ struct Options {
   fs::path output;
 };
 
-/// \return false if there is nothing to do but to print help or version, which has been done
+void checkKnown(const std::string& name, const std::vector<std::string>& names, const std::string& what) {
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    throw std::runtime_error("there is no " + what + " '" + name + "'; known are " + listOf(names));
+}
+
+/// \return false if --help or --version was given
 bool parse(int argc, char** argv, Options& options) {
   po::options_description shown(
       "Usage: lisco_simulate --scene N -o SCAN.pcd [options]\n"
       "       lisco_simulate --case NAME -o SCAN.pcd [options]\n\n"
-      "Simulates one rotation of a LiDAR in one of the five scenes on which Lisco's paper was evaluated:\n"
+      "Simulates one rotation of a LiDAR in one of the five scenes of the evaluation of Lisco's paper:\n"
       "  1  a few objects near the sensor: cars, people, trees, lamp posts, houses\n"
       "  2  the same objects far away\n"
       "  3  many objects near, among them a row of parked cars on each side\n"
       "  4  the same objects far away\n"
       "  5  a closed, crowded room\n"
-      "or one of these cases, each of which makes clustering hard in one way:\n"
+      "or one of these cases, each a worst case of clustering in one way:\n"
       "  room        a closed, empty room: one cluster\n"
       "  wall        a round wall 1 m away on all sides\n"
       "  random      each return at a random range between 1 and 60 m\n"
-      "  sheets      two sheets a gap apart, which neighbouring cells see in turn\n"
+      "  sheets      two sheets a gap apart, hit alternately by neighbouring cells\n"
       "  singletons  as many returns as possible that are farther than a gap from each other\n"
-      "  blocked     something on the sensor's cover: all returns within 0.3 m\n"
+      "  blocked     an obstacle on the sensor's cover: all returns within 0.3 m\n"
       "  poles       a comb of thin vertical poles\n"
       "Writes an organized cloud, a row per laser and a column per step, with fields x y z label; the label\n"
       "is the number of the object that was hit, 0 the ground. Cells without return are NaN. Cases have no ground.\n\n"
       "Options");
-  std::string scene;
-  std::string seed = "1";
-  std::string lasers;
-  std::string steps;
-  std::string noise = "0.02";
-  std::string drop_outs = "0.005";
-  std::string gap = "0.41";
-  std::string output;
+  std::string scene, lasers, steps, output;
+  std::string seed = "1", noise = "0.02", drop_outs = "0.005", gap = "0.41";
   const std::string cases = listOf(caseNames());
   const std::string sensors = listOf(sensorNames()) + " (default " + options.sensor + ")";
   // clang-format off
@@ -85,13 +86,13 @@ bool parse(int argc, char** argv, Options& options) {
     ("scene", po::value<std::string>(&scene)->value_name("N"), "1 to 5")
     ("case", po::value<std::string>(&options.worst_case)->value_name("NAME"), cases.c_str())
     ("vehicle", po::bool_switch(&options.vehicle),
-     "the sensor also sees the vehicle below it, one more object (scenes 1 to 4): roof, rack, mast and mirrors nearer "
-     "than 1.5 m, from which a default hdl64e has a quarter of its returns")
+     "adds the vehicle below the sensor as one more object (scenes 1 to 4): roof, rack, mast and mirrors nearer than "
+     "1.5 m, with a quarter of the returns of a default hdl64e")
     ("gap", po::value<std::string>(&gap)->value_name("M"),
      "between the two sheets, or between singletons, in metres (default 0.41)")
-    ("output,o", po::value<std::string>(&output)->value_name("FILE"), "the scan to be written (PCD)")
+    ("output,o", po::value<std::string>(&output)->value_name("FILE"), "the scan to write (PCD)")
     ("seed", po::value<std::string>(&seed)->value_name("N"),
-     "what stands where, noise and drop-outs are drawn from it (default 1)")
+     "seed of the layout, noise and drop-outs (default 1)")
     ("sensor", po::value<std::string>(&options.sensor)->value_name("NAME"), sensors.c_str())
     ("lasers", po::value<std::string>(&lasers)->value_name("N"),
      "another number of lasers, between the sensor's highest and lowest")
@@ -112,14 +113,12 @@ bool parse(int argc, char** argv, Options& options) {
       throw std::runtime_error("--scene must be 1, 2, 3, 4 or 5, not '" + scene + "'");
     options.scene = scene[0] - '0';
   } else {
-    const std::vector<std::string> names = caseNames();
-    if (std::find(names.begin(), names.end(), options.worst_case) == names.end())
-      throw std::runtime_error("there is no case '" + options.worst_case + "'; known are " + cases);
+    checkKnown(options.worst_case, caseNames(), "case");
   }
   if (options.vehicle && (options.scene < 1 || options.scene > 4))
-    throw std::runtime_error("--vehicle needs a street to drive on: --scene 1, 2, 3 or 4");
+    throw std::runtime_error("--vehicle needs a street: --scene 1, 2, 3 or 4");
   options.gap = numberOf(gap, "--gap");
-  if (options.gap < kLeastGap || options.gap > kMostGap)
+  if (options.gap < kMinGap || options.gap > kMaxGap)
     throw std::runtime_error("--gap must be from 0.001 to 100 metres, not '" + gap + "'");
   if (given.count("gap") != 0 && (options.scene != 0 || !caseHasGap(options.worst_case)))
     throw std::runtime_error("--gap is of --case sheets and --case singletons only");
@@ -139,34 +138,27 @@ bool parse(int argc, char** argv, Options& options) {
   return true;
 }
 
-/// The sensor that was asked for.
 Sensor sensorFor(const Options& options) {
-  constexpr std::size_t kMostCells = 20'000'000;  // about a gigabyte of memory
-  const std::vector<std::string> names = sensorNames();
-  if (std::find(names.begin(), names.end(), options.sensor) == names.end())
-    throw std::runtime_error("there is no sensor '" + options.sensor + "'; known are " + listOf(names));
-  // Checked before so many lasers are made.
-  if (std::max<std::size_t>(options.lasers, 1) > kMostCells / std::max<std::size_t>(options.steps, 1))
-    throw std::runtime_error("more than " + std::to_string(kMostCells) + " cells: fewer --lasers or --steps");
+  checkKnown(options.sensor, sensorNames(), "sensor");
+  const auto check = [](std::size_t lasers, std::size_t steps) {
+    if (std::max<std::size_t>(lasers, 1) > kMaxCells / std::max<std::size_t>(steps, 1))
+      throw std::runtime_error("more than " + std::to_string(kMaxCells) + " cells: fewer --lasers or --steps");
+  };
+  check(options.lasers, options.steps);  // before memory is allocated
   Sensor sensor = makeSensor(options.sensor, options.lasers, options.steps);
-  if (sensor.lasers() > kMostCells / sensor.steps)
-    throw std::runtime_error("more than " + std::to_string(kMostCells) + " cells: fewer --lasers or --steps");
+  check(sensor.lasers(), sensor.steps);
   return sensor;
 }
 
-/// The whole file.
+/// The content of the file.
 std::string pcdOf(const Scan& scan, const std::string& comment) {
   static_assert(sizeof(Cell) == 16, "cells are written as they are");
-  std::ostringstream header;
-  header << comment << "\n# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z label\nSIZE 4 4 4 4\n"
-         << "TYPE F F F U\nCOUNT 1 1 1 1\nWIDTH " << scan.steps << "\nHEIGHT " << scan.lasers
-         << "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << scan.cells.size() << "\nDATA binary\n";
-  std::string content = header.str();
+  std::string content = pcdHeader(comment, "x y z label", "F F F U", scan.steps, scan.lasers);
   content.append(reinterpret_cast<const char*>(scan.cells.data()), scan.cells.size() * sizeof(Cell));
   return content;
 }
 
-/// The arguments that give the same scan again, but for the name of the file.
+/// The arguments that give the same scan again, without the name of the file.
 std::string argumentsOf(const Options& options, const Sensor& sensor) {
   std::ostringstream arguments;
   if (options.scene != 0)
@@ -180,16 +172,14 @@ std::string argumentsOf(const Options& options, const Sensor& sensor) {
   return arguments.str();
 }
 
-/// "3 cars, 2 trees"; in the order of their first appearance.
+/// "3 x car, 2 x tree", in the order of first appearance.
 std::string kindsOf(const Scene& scene) {
   std::vector<std::string> kinds;
   std::map<std::string, int> counts;
   for (const Object& object : scene.objects)
     if (counts[object.kind]++ == 0) kinds.push_back(object.kind);
-  std::string list;
-  for (const std::string& kind : kinds)
-    list += (list.empty() ? "" : ", ") + std::to_string(counts[kind]) + " x " + kind;
-  return list;
+  for (std::string& kind : kinds) kind = std::to_string(counts[kind]) + " x " + kind;
+  return listOf(kinds);
 }
 
 void printSensor(const Options& options, const Scan& scan) {
@@ -216,7 +206,7 @@ void printScene(const Options& options, const Sensor& sensor, const Scene& scene
 }
 
 int simulate(const Options& options) {
-  checkMayWrite(options.output, kSignature);  // before the work
+  checkMayWrite(options.output, kSignature);
   const Sensor sensor = sensorFor(options);
   std::ostringstream comment;
   comment << kSignature << LISCO_VERSION << ": " << argumentsOf(options, sensor);

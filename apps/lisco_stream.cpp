@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// Clusters a sensor's packets while it turns: from a capture, or as they come.
+// Clusters a sensor's packets while it turns: of a capture, or live by UDP.
 #include <signal.h>
 
 #include <algorithm>
@@ -19,7 +19,8 @@
 
 #include <boost/program_options.hpp>
 
-#include "options.h"
+#include "io/options.h"
+#include "io/text.h"
 #include "sensors/capture_file.h"
 #include "sensors/decoder.h"
 #include "sensors/udp_receiver.h"
@@ -37,7 +38,7 @@ namespace fs = std::filesystem;
 namespace po = boost::program_options;
 using namespace lisco_apps;
 
-constexpr std::uint16_t kUsualPort = 2368;
+constexpr std::uint16_t kDefaultPort = 2368;  // of Velodyne's sensors
 
 struct Options {
   fs::path capture;                   ///< empty: live
@@ -52,7 +53,7 @@ struct Options {
   bool statistics = false;
 };
 
-/// Set by Ctrl-C; a second one ends the program at once.
+/// Set by the first SIGINT or SIGTERM; the second ends the program at once.
 volatile sig_atomic_t interrupted = 0;
 
 void listenToSignals() {
@@ -63,23 +64,19 @@ void listenToSignals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-std::uint16_t portOf(const std::string& text) {
-  return static_cast<std::uint16_t>(countOf(text, "--port", 0, std::numeric_limits<std::uint16_t>::max()));
-}
-
-/// \return false if there is nothing to do but to print help or version, which has been done
+/// \return false if --help or --version was given
 bool parse(int argc, char** argv, Options& options) {
   po::options_description shown(
       "Usage: lisco_stream CAPTURE.pcap --sensor NAME --tolerance M [options]\n"
       "       lisco_stream --port N --sensor NAME --tolerance M [options]\n\n"
-      "Finds the Euclidean clusters in a rotating LiDAR's packets while the sensor turns: packets of a capture\n"
-      "(pcap or pcapng), or as they come by UDP. There are two modes:\n"
+      "Finds the Euclidean clusters in a rotating LiDAR's packets while the sensor turns. The packets are those of\n"
+      "a capture (pcap or pcapng), or come by UDP. There are two modes:\n"
       "  rotation  The clusters of each rotation, as soon as its last column is in: those of PCL's\n"
       "            EuclideanClusterExtraction on the rotation as an organized cloud, in the same order.\n"
       "            Rotations begin at the azimuth of the first column.\n"
-      "  endless   Rotations have no borders: each cluster is delivered once, as soon as no later column can\n"
-      "            reach it. One that lasts a whole turn is cut there, and others continue it.\n"
-      "Ctrl-C ends it, after all that has come was clustered and told; a second one ends it at once.\n\n"
+      "  endless   Clusters cross the borders of rotations: each is delivered once, as soon as no later column can\n"
+      "            reach it. A cluster of a whole turn is cut there, and continued by others.\n"
+      "Ctrl-C ends the program after the packets received so far; a second one ends it at once.\n\n"
       "With --json, each line of the output is an object. Metres; azimuths in degrees clockwise, 0 ahead;\n"
       "time is when the last packet came, in seconds since 1970.\n"
       "  rotation  one line per rotation: rotation (from 1), time, azimuth (where it begins), columns, returns\n"
@@ -91,35 +88,30 @@ bool parse(int argc, char** argv, Options& options) {
       "            box, nearest_range, cut, continued, and latency_ms (from the first column that cannot reach\n"
       "            it to its delivery; null if the end of the packets delivered it).\n\n"
       "Exit code 0; 2 on wrong usage, if no packet is one of the sensor's, or if the capture breaks off (after\n"
-      "what came before has been clustered).\n\n"
+      "the packets before it have been clustered).\n\n"
       "Options");
   const std::string sensors = listOf(sensorModelNames());
   std::vector<std::string> inputs;
   std::string port, mode, calibration, output, rotations;
-  std::string min_size = "10", max_size;
-  std::string tolerance, ground_z;
+  ClusterOptions clustering;
   // clang-format off
   shown.add_options()
-    ("sensor", po::value<std::string>(&options.sensor)->value_name("NAME"), sensors.c_str())
-    ("tolerance,t", po::value<std::string>(&tolerance)->value_name("M"),
-     "points nearer to each other than this many metres belong together")
-    ("port", po::value<std::string>(&port)->value_name("N")->implicit_value(std::to_string(kUsualPort)),
-     "UDP port to receive from (without a number: 2368; 0: any that is free); of a capture, take only packets to it")
+    ("sensor", po::value<std::string>(&options.sensor)->value_name("NAME"), sensors.c_str());
+  clustering.addTo(shown);
+  shown.add_options()
+    ("port", po::value<std::string>(&port)->value_name("N")->implicit_value(std::to_string(kDefaultPort)),
+     "UDP port to receive from (without a number: 2368; 0: any that is free); with a capture, take only packets to it")
     ("mode", po::value<std::string>(&mode)->value_name("NAME"), "rotation or endless (default rotation)")
-    ("min-size", po::value<std::string>(&min_size)->value_name("N"), "least returns of a cluster (default 10)")
-    ("max-size", po::value<std::string>(&max_size)->value_name("N"), "most returns of a cluster (default: no limit)")
-    ("ground-z", po::value<std::string>(&ground_z)->value_name("M"),
-     "leave out returns below this height in metres, the sensor is at 0 (default: none)")
     ("calibration", po::value<std::string>(&calibration)->value_name("FILE"),
-     "the hdl64e's own calibration (its maker's db.xml), which it needs")
+     "the calibration (db.xml) of the hdl64e, each of which has its own")
     ("rotations", po::value<std::string>(&rotations)->value_name("N"), "end after N rotations")
     ("realtime", po::bool_switch(&options.realtime),
-     "a capture's packets as they were recorded, but for breaks of more than ten seconds (default: as fast as "
+     "read a capture at the pace of its recording, without breaks of more than ten seconds (default: as fast as "
      "possible)")
     ("output,o", po::value<std::string>(&output)->value_name("DIR"),
-     "folder for rotation_000001.pcd and so on: each rotation as an organized cloud of x y z intensity label, where the "
-     "label is the cluster's id, 0 for none; of mode endless, once all its returns' clusters have been delivered. Those "
-     "of an earlier run are removed")
+     "folder for rotation_000001.pcd and so on: each rotation as an organized cloud of x y z intensity label, where "
+     "the label is the cluster's id, 0 for none; in mode endless, written once all its clusters have been delivered. "
+     "Removes those of an earlier run")
     ("json", po::bool_switch(&options.json), "print JSON lines instead of text")
     ("stats", po::bool_switch(&options.statistics),
      "print a table of packets, columns, clusters and latencies at the end (with --json, on stderr)");
@@ -130,18 +122,17 @@ bool parse(int argc, char** argv, Options& options) {
   if (inputs.empty() && given.count("port") == 0) throw std::runtime_error("no capture and no --port; see --help");
   if (!inputs.empty()) options.capture = inputs.front();
   if (!inputs.empty() && inputs.front().empty()) throw std::runtime_error("the capture's name is empty");
-  if (given.count("port") != 0) options.port = portOf(port);
+  if (given.count("port") != 0)
+    options.port = static_cast<std::uint16_t>(countOf(port, "--port", 0, std::numeric_limits<std::uint16_t>::max()));
   if (options.realtime && options.capture.empty()) throw std::runtime_error("--realtime is for captures only");
   if (options.sensor.empty()) throw std::runtime_error("--sensor is missing (" + sensors + "); see --help");
   options.calibration = calibration;
 
-  if (given.count("tolerance") == 0) throw std::runtime_error("--tolerance is missing; see --help");
-  options.stream.tolerance = static_cast<float>(toleranceOf(tolerance));
-  if (given.count("ground-z") != 0) options.stream.ground_z = heightOf(ground_z);
-  options.stream.min_size = countOf(min_size, "--min-size", 1);
-  if (given.count("max-size") != 0) options.stream.max_size = countOf(max_size, "--max-size", 1);
-  if (options.stream.max_size < options.stream.min_size)
-    throw std::runtime_error("--max-size is smaller than --min-size");
+  clustering.check(given);
+  options.stream.tolerance = static_cast<float>(clustering.tolerance);
+  options.stream.ground_z = clustering.ground_z;
+  options.stream.min_size = clustering.min_size;
+  options.stream.max_size = clustering.max_size;
   if (given.count("rotations") != 0) options.stream.rotations = countOf(rotations, "--rotations", 1);
   if (!mode.empty() && mode != "rotation" && mode != "endless")
     throw std::runtime_error("--mode must be rotation or endless, not '" + mode + "'");
@@ -151,7 +142,7 @@ bool parse(int argc, char** argv, Options& options) {
   return true;
 }
 
-/// A source that ends when the program is to end.
+/// A source that ends on a signal.
 class UntilInterrupted : public PacketSource {
  public:
   explicit UntilInterrupted(PacketSource& source) : source_(source) {}
@@ -161,10 +152,9 @@ class UntilInterrupted : public PacketSource {
   PacketSource& source_;
 };
 
-/// Where the packets come from.
 struct Input {
   std::unique_ptr<PacketSource> source;
-  PacketQueue* queue = nullptr;  ///< the source, if it is live
+  PacketQueue* queue = nullptr;  ///< the source, if live
 };
 
 Input open(const Options& options, Report& report) {
@@ -180,18 +170,18 @@ Input open(const Options& options, Report& report) {
   return {std::move(capture)};
 }
 
-/// When a packet was at hand: live ones may have waited in the queue.
+/// When a packet was at hand; live ones wait in the queue after that.
 Clock::time_point receivedAt(const Packet& packet, bool is_live) {
   const auto now = Clock::now();
   if (!is_live) return now;
   const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
-  const std::chrono::microseconds came(packet.time_us);
-  return now - std::max(Clock::duration::zero(), std::chrono::duration_cast<Clock::duration>(since_1970 - came));
+  const std::chrono::microseconds arrival(packet.time_us);
+  return now - std::max(Clock::duration::zero(), std::chrono::duration_cast<Clock::duration>(since_1970 - arrival));
 }
 
-/// Sets how far the sensor turns from column to column, as the whole capture has it: more exact than what can be known
-/// while it is read. A pipe can be read only once.
-void lookAhead(const Options& options, Decoder& decoder) {
+/// Measures the step from column to column on the whole capture, which is more exact than while decoding. Does nothing
+/// for live packets and for pipes, which can be read only once.
+void measureStep(const Options& options, Decoder& decoder) {
   std::error_code unknown;
   const fs::file_type type = fs::status(options.capture, unknown).type();
   if (options.capture.empty() || type == fs::file_type::fifo || type == fs::file_type::character) return;
@@ -200,24 +190,24 @@ void lookAhead(const Options& options, Decoder& decoder) {
   if (const double step = stepIn(source, decoder.model()); step > 0) decoder.setStep(step);
 }
 
-/// Takes all packets that are wanted.
+/// Clusters packets until the source ends, a signal comes, or the stream has the wanted rotations.
 void takePackets(const Input& input, Decoder& decoder, OtherSensors& others, Stream& stream, Report& report) {
-  bool wants_more = true;
+  bool is_open = true;
   Packet packet;
   Origin origin;
   const std::function<void(const Column&)> take = [&](const Column& column) {
-    wants_more = wants_more && stream.add(column, origin);
+    is_open = is_open && stream.add(column, origin);
   };
-  while (wants_more) {
+  while (is_open) {
     if (interrupted != 0 && input.queue == nullptr) return;
-    if (interrupted != 0) input.queue->stop();  // what has come already is clustered
+    if (interrupted != 0) input.queue->stop();  // packets received so far are still clustered
     const PacketSource::Arrival arrival = input.source->next(packet);
     if (arrival == PacketSource::Arrival::kEnd) return;
     if (arrival == PacketSource::Arrival::kNothing) {
       stream.wait();
     } else {
       origin = {packet.time_us, receivedAt(packet, input.queue != nullptr)};
-      others.look(packet, decoder.decode(packet, take), decoder);
+      others.inspect(packet, decoder.decode(packet, take), decoder);
       if (const std::string warning = others.paceWarning(decoder); !warning.empty()) report.warn(warning);
     }
     report.flush();
@@ -228,26 +218,23 @@ void takePackets(const Input& input, Decoder& decoder, OtherSensors& others, Str
 int run(const Options& options) {
   Decoder decoder(makeSensorModel(options.sensor, options.calibration));
   listenToSignals();
-  lookAhead(options, decoder);
+  measureStep(options, decoder);
   std::optional<LabelledClouds> clouds;
   if (!options.output.empty()) clouds.emplace(options.output);
   Report report(options.json ? Report::Format::kJson : Report::Format::kText, clouds ? &*clouds : nullptr);
   const Input input = open(options, report);
 
-  std::unique_ptr<RotationStream> rotations;
-  std::unique_ptr<EndlessStream> endless;
+  std::unique_ptr<Stream> stream;
   if (options.endless)
-    endless = std::make_unique<EndlessStream>(options.stream, decoder, report);
+    stream = std::make_unique<EndlessStream>(options.stream, decoder, report);
   else
-    rotations = std::make_unique<RotationStream>(options.stream, decoder, report);
-  Stream& stream = endless ? static_cast<Stream&>(*endless) : *rotations;
+    stream = std::make_unique<RotationStream>(options.stream, decoder, report);
 
   OtherSensors others;
-  takePackets(input, decoder, others, stream, report);
-  stream.finish();
+  takePackets(input, decoder, others, *stream, report);
+  stream->finish();
   report.flush();
-  if (options.statistics)
-    report.printStatistics(*input.source, decoder, stream, endless ? std::optional(endless->strays()) : std::nullopt);
+  if (options.statistics) report.printStatistics(*input.source, decoder, *stream);
 
   const std::string& error = input.source->error();
   if (!error.empty()) report.warn(error);

@@ -42,15 +42,15 @@ out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 
 simulate() { "$build/apps/lisco_simulate" "$@" >/dev/null; }
-compare=("$build/apps/lisco_compare" --rivals pcl,pcl-octree,grid,paper,lisco --must-agree grid,lisco --max-seconds 1000 "$@")
+compare=("$build/apps/lisco_compare" --baselines pcl,pcl-octree,grid,paper,lisco --must-agree grid,lisco --max-seconds 1000 "$@")
 
-# The paper's scenes: returns (its table I), time over tolerance (its figure 8), objects found.
+# The paper's scenes: returns (its table I), time over tolerance (its figure 7), objects found.
 mkdir "$out/scenes"
 for scene in 1 2 3 4 5; do simulate --scene "$scene" -o "$out/scenes/SCEN$scene.pcd"; done
 report "$out/scenes.txt" "${compare[@]}" --tolerance 0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9,1 --ground-z -1.6 \
   --csv "$out/scenes.csv" --plot "$out/scene_charts" "$out/scenes"
 
-# Time over the number of points (its figure 9): one scene, turned through in more and more steps.
+# Time over the number of points (its figure 8): one scene, turned through in more and more steps.
 mkdir "$out/growth"
 for steps in 0282 0563 1125 2250 4500; do
   simulate --scene 3 --steps "$((10#$steps))" -o "$out/growth/SCEN3_$steps.pcd"
@@ -58,7 +58,7 @@ done
 report "$out/growth.txt" "${compare[@]}" --tolerance 0.4 --ground-z -1.6 --csv "$out/growth.csv" --plot "$out/growth_charts" \
   "$out/growth"
 
-# Real scans (its figure 10), and what the paper's mask misses there.
+# Real scans (its figure 9), and what the paper's mask misses there.
 report "$out/real.txt" "${compare[@]}" --tolerance 0.3,0.4,0.7 "${ground[@]}" --csv "$out/real.csv" --plot "$out/real_charts" \
   "${rotating[@]}"
 "$build/benchmarks/literal_mask" "${ground[@]}" "${rotating[@]}" >"$out/mask.csv"

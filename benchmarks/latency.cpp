@@ -22,18 +22,18 @@
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 #include <pcl/segmentation/lisco_cluster_writer.h>
 
-#include "cloud_file.h"
 #include "compare/comparison.h"
 #include "compare/report.h"
+#include "io/cloud_file.h"
+#include "io/options.h"
+#include "io/text.h"
 #include "lisco/column_clusterer.h"
 #include "lisco/endless_clusterer.h"
 #include "lisco/sensor_hints.h"
 #include "lisco/window_clusterer.h"
-#include "options.h"
 #include "sensors/capture_file.h"
 #include "sensors/decoder.h"
 #include "sensors/rotation_cutter.h"
-#include "text.h"
 
 namespace {
 
@@ -185,7 +185,7 @@ Rotation makeRotation(const Cloud& cloud, float ground_z) {
   rotation.lasers = scan.cloud->height;
   rotation.columns.resize(scan.cloud->width);
   for (std::size_t i = 0; i < scan.cloud->size(); ++i) {
-    const RivalPoint& point = scan.cloud->points[i];
+    const ComparedPoint& point = scan.cloud->points[i];
     rotation.columns[i % scan.cloud->width].push_back({point.x, point.y, point.z, static_cast<std::uint32_t>(i)});
   }
   return rotation;
@@ -202,16 +202,17 @@ struct Case {
       rotation.problem.tolerance = tolerance;
       rotation.problem.min_size = min_size;
       rotation.expected.clear();
-      referenceRival().extract(rotation.problem, rotation.expected);
+      referenceBaseline().extract(rotation.problem, rotation.expected);
     }
   }
 };
 
 /// \return whether they are PCL's clusters; says on stderr where not
 bool isRight(const Case& one, const Rotation& rotation, const std::string& whose, const Clusters& clusters) {
-  Rival rival;
-  rival.title = whose;
-  const Difference difference = differenceOf(rotation.problem, referenceRival(), rotation.expected, rival, clusters);
+  Baseline baseline;
+  baseline.title = whose;
+  const Difference difference =
+      differenceOf(rotation.problem, referenceBaseline(), rotation.expected, baseline, clusters);
   if (!difference.identical)
     std::fprintf(stderr, "%s at %g m: %s differs from PCL\n%s", one.name.c_str(), rotation.problem.tolerance,
                  whose.c_str(), difference.details.c_str());
@@ -253,18 +254,18 @@ class ColumnsTable {
 
   bool measure(const Case& one, unsigned runs) {
     std::vector<double> columns, ends, pcls, grids;
-    const std::vector<Rival> rivals = allRivals();
-    const auto grid =
-        std::find_if(rivals.begin(), rivals.end(), [](const Rival& rival) { return rival.key == "grid"; });
-    const Rival pcl = referenceRival();
+    const std::vector<Baseline> baselines = allBaselines();
+    const auto grid = std::find_if(baselines.begin(), baselines.end(),
+                                   [](const Baseline& baseline) { return baseline.key == "grid"; });
+    const Baseline pcl = referenceBaseline();
     lisco::ColumnClusterer clusterer;
     for (unsigned run = 0; run <= runs; ++run)  // the first is not timed
       for (const Rotation& rotation : one.rotations) {
         if (!feed(rotation, clusterer, run > 0 ? &columns : nullptr, run > 0 ? &ends : nullptr, one)) return false;
-        const auto timeOf = [&](const Rival& rival) {
+        const auto timeOf = [&](const Baseline& baseline) {
           return millisecondsOf([&] {
             Clusters clusters;
-            rival.extract(rotation.problem, clusters);
+            baseline.extract(rotation.problem, clusters);
           });
         };
         if (run == 0) continue;
@@ -420,18 +421,18 @@ class TimelineTable {
         print("Lisco", static_cast<double>(turn * kTurnMs + ms), 1, work[ms] / 1000);
       print("Lisco", static_cast<double>((turn + 1) * kTurnMs), median(ends), 1);
     }
-    for (const Rival& rival : allRivals()) {
-      if (rival.key != kReferenceKey && rival.key != "grid") continue;
+    for (const Baseline& baseline : allBaselines()) {
+      if (baseline.key != kReferenceKey && baseline.key != "grid") continue;
       std::vector<double> times;
       for (unsigned run = 0; run < runs; ++run)
         times.push_back(millisecondsOf([&] {
           Clusters clusters;
-          rival.extract(rotation.problem, clusters);
+          baseline.extract(rotation.problem, clusters);
         }));
       double free_from = 0;
       for (std::size_t turn = 1; turn <= 2; ++turn) {
         const double begin = std::max(free_from, static_cast<double>(turn * kTurnMs));
-        print(rival.key.c_str(), begin, median(times), 1);
+        print(baseline.key.c_str(), begin, median(times), 1);
         free_from = begin + median(times);
       }
     }
@@ -464,7 +465,7 @@ class WindowsTable {
       const std::size_t hop = rotation.columns.size() / kParts[k];
       lisco::WindowClusterer clusterer;
       clusterer.begin({static_cast<float>(rotation.problem.tolerance), hop * kParts[k], hop, rotation.lasers});
-      pcl::LiscoClusterExtraction<RivalPoint> extraction;
+      pcl::LiscoClusterExtraction<ComparedPoint> extraction;
       std::vector<double> hops, anew;
       std::size_t column = 0;
       for (unsigned window = 0; window < (runs + 1) * kParts[k]; ++window) {
@@ -480,7 +481,7 @@ class WindowsTable {
         }
         if (window < kParts[k]) continue;
         hops.push_back(time);
-        const RivalCloud::Ptr cloud = windowOf(rotation, column - width, width);
+        const ComparedCloud::Ptr cloud = windowOf(rotation, column - width, width);
         Clusters expected;
         anew.push_back(millisecondsOf([&] {
           extraction.setInputCloud(cloud);
@@ -514,14 +515,14 @@ class WindowsTable {
   static constexpr std::array<std::size_t, 4> kParts{4, 8, 16, 32};
 
   /// The cloud of the columns of a window, which begins somewhere in the rotation and goes on around it.
-  static RivalCloud::Ptr windowOf(const Rotation& rotation, std::size_t first, std::size_t width) {
+  static ComparedCloud::Ptr windowOf(const Rotation& rotation, std::size_t first, std::size_t width) {
     const auto cloud =
-        std::make_shared<RivalCloud>(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(rotation.lasers));
+        std::make_shared<ComparedCloud>(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(rotation.lasers));
     cloud->is_dense = false;
     for (std::size_t laser = 0; laser < rotation.lasers; ++laser)
       for (std::size_t i = 0; i < width; ++i) {
         const lisco::Return& cell = rotation.columns[(first + i) % width][laser];
-        RivalPoint& point = cloud->points[laser * width + i];
+        ComparedPoint& point = cloud->points[laser * width + i];
         point.x = cell.x;
         point.y = cell.y;
         point.z = cell.z;

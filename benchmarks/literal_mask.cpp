@@ -13,10 +13,10 @@
 
 #include <pcl/search/kdtree.h>
 
-#include "cloud_file.h"
 #include "compare/comparison.h"
-#include "options.h"
-#include "stagger.h"
+#include "io/cloud_file.h"
+#include "io/options.h"
+#include "io/stagger.h"
 
 namespace {
 
@@ -31,9 +31,9 @@ struct Pairs {
 };
 
 Pairs pairsOf(const ComparedScan& scan, double tolerance, const lisco_reference::NominalSensor& sensor) {
-  const RivalCloud& cloud = *scan.cloud;
+  const ComparedCloud& cloud = *scan.cloud;
   const std::size_t steps = cloud.width;
-  pcl::search::KdTree<RivalPoint> tree(false);
+  pcl::search::KdTree<ComparedPoint> tree(false);
   tree.setInputCloud(scan.cloud, scan.returns);
   const auto farther = [&cloud](std::size_t a, std::size_t b) {
     const float range_a = cloud[a].getVector3fMap().squaredNorm();
@@ -84,8 +84,8 @@ Cloud::Ptr destaggered(const Cloud& cloud) {
 int run(const std::vector<std::string>& inputs, const GroundHeights& ground, const std::vector<double>& tolerances) {
   CompareSettings settings;
   settings.runs = 0;
-  for (Rival& rival : allRivals())
-    if (rival.key == "paper") settings.rivals.push_back(std::move(rival));
+  for (Baseline& baseline : allBaselines())
+    if (baseline.key == "paper") settings.baselines.push_back(std::move(baseline));
   std::vector<std::string> failures;
   const auto files = expandInputs(inputs, failures);
   std::printf(
@@ -105,8 +105,8 @@ int run(const std::vector<std::string>& inputs, const GroundHeights& ground, con
         const CaseResult as_read = compared(scan);
         const Pairs pairs = pairsOf(scan, tolerance, nominalSensor(*scan.cloud));
         std::printf("%s,%zu,%g,%zu,%zu,%zu,%zu,%zu,%zu,%zu\n", name.c_str(), scan.returns->size(), tolerance,
-                    as_read.clusters, as_read.rivals.front().difference.mislabelled,
-                    compared(straight).rivals.front().difference.mislabelled, pairs.all, pairs.lasers, pairs.horizon,
+                    as_read.clusters, as_read.baselines.front().difference.mislabelled,
+                    compared(straight).baselines.front().difference.mislabelled, pairs.all, pairs.lasers, pairs.horizon,
                     pairs.columns);
         std::fflush(stdout);
       }

@@ -21,12 +21,12 @@
 
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 
-#include "cloud_file.h"
 #include "compare/comparison.h"
 #include "compare/report.h"
-#include "options.h"
-#include "output_file.h"
-#include "text.h"
+#include "io/cloud_file.h"
+#include "io/options.h"
+#include "io/output_file.h"
+#include "io/text.h"
 
 extern "C" {
 // The C library's own ones, which it offers to those that replace malloc ().
@@ -137,9 +137,9 @@ std::size_t allocationsOf(const Clusters& clusters) {
 }
 
 /// What every class of PCL does before its own work: pcl::PCLBase lists the numbers of all points if it is given none.
-class BaseAlone : public pcl::PCLBase<RivalPoint> {
+class BaseAlone : public pcl::PCLBase<ComparedPoint> {
  public:
-  void run(const RivalCloud::ConstPtr& cloud) {
+  void run(const ComparedCloud::ConstPtr& cloud) {
     setInputCloud(cloud);
     initCompute();
     deinitCompute();
@@ -168,12 +168,12 @@ MemoryResult measure(const ComparedScan& scan, double tolerance, unsigned min_si
   problem.tolerance = tolerance;
   problem.min_size = min_size;
   Clusters expected;
-  referenceRival().extract(problem, expected);
+  referenceBaseline().extract(problem, expected);
 
   MemoryResult result;
   result.tolerance = tolerance;
   result.clusters = expected.size();
-  std::unique_ptr<pcl::LiscoClusterExtraction<RivalPoint>> extraction;
+  std::unique_ptr<pcl::LiscoClusterExtraction<ComparedPoint>> extraction;
   const auto extract = [&](Clusters& clusters) {
     extraction->setInputCloud(problem.cloud);
     extraction->setClusterTolerance(tolerance);
@@ -183,7 +183,7 @@ MemoryResult measure(const ComparedScan& scan, double tolerance, unsigned min_si
   Clusters first, second, again;
   // The old arrays of a vector that grows are to be no part of the peak.
   first.reserve(expected.size());
-  const Use creation = useOf([&] { extraction = std::make_unique<pcl::LiscoClusterExtraction<RivalPoint>>(); });
+  const Use creation = useOf([&] { extraction = std::make_unique<pcl::LiscoClusterExtraction<ComparedPoint>>(); });
   const Use first_use = useOf([&] { extract(first); });
   const Use second_use = useOf([&] { extract(second); });
   again = second;

@@ -11,7 +11,7 @@ out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 
 [ $# -gt 0 ] || set -- --runs 5
-compare=("$build/apps/lisco_compare" --rivals pcl,grid,lisco --must-agree grid,lisco "$@")
+compare=("$build/apps/lisco_compare" --baselines pcl,grid,lisco --must-agree grid,lisco "$@")
 report "$out/rotating.txt" "${compare[@]}" --tolerance 0.1,0.3,0.4,0.7,1 "${ground[@]}" --csv "$out/rotating.csv" "${rotating[@]}"
 # A camera's cloud is dense: PCL takes minutes at the tolerances above.
 report "$out/camera.txt" "${compare[@]}" --tolerance 0.01,0.02,0.05,0.1 --csv "$out/camera.csv" "$data"/scans/rgbd_*.pcd

@@ -23,15 +23,15 @@
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 #include <pcl/segmentation/lisco_cluster_writer.h>
 
-#include "cloud_file.h"
 #include "compare/comparison.h"
 #include "compare/report.h"
+#include "io/cloud_file.h"
+#include "io/options.h"
+#include "io/output_file.h"
+#include "io/text.h"
 #include "lisco/column_clusterer.h"
 #include "lisco/sensor_hints.h"
 #include "lisco/simd.h"
-#include "options.h"
-#include "output_file.h"
-#include "text.h"
 
 namespace {
 
@@ -48,11 +48,11 @@ constexpr std::array<const char*, kStages> kStageNames{"sensor", "read", "update
 class StagedExtraction {
  public:
   void extract(const Problem& problem, Clusters& clusters) {
-    const RivalCloud& cloud = *problem.cloud;
+    const ComparedCloud& cloud = *problem.cloud;
     const std::size_t lasers = std::max<std::size_t>(1, cloud.height);
     const std::size_t columns = cloud.size() / lasers;
     const std::array<float, 3> sensor{cloud.sensor_origin_[0], cloud.sensor_origin_[1], cloud.sensor_origin_[2]};
-    const RivalPoint* const points = cloud.points.data();
+    const ComparedPoint* const points = cloud.points.data();
     const auto cell_at = [points, columns](std::size_t laser, std::size_t column) {
       const std::size_t point = laser * columns + column;
       return lisco::Return{points[point].x, points[point].y, points[point].z, static_cast<std::uint32_t>(point)};
@@ -109,13 +109,13 @@ class StagedExtraction {
 };
 
 /// The whole extraction at a level of vector instructions ("": the best) with so many threads.
-Rival variantOf(const std::string& level, unsigned threads) {
-  Rival rival;
-  rival.key = level + "," + std::to_string(threads);
-  rival.title = level + " with " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
-  const auto extraction = std::make_shared<pcl::LiscoClusterExtraction<RivalPoint>>();
+Baseline variantOf(const std::string& level, unsigned threads) {
+  Baseline baseline;
+  baseline.key = level + "," + std::to_string(threads);
+  baseline.title = level + " with " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+  const auto extraction = std::make_shared<pcl::LiscoClusterExtraction<ComparedPoint>>();
   extraction->setNumberOfThreads(threads);
-  rival.extract = [extraction, level](const Problem& problem, Clusters& clusters) {
+  baseline.extract = [extraction, level](const Problem& problem, Clusters& clusters) {
     lisco::useSimdLevel(level);
     extraction->setInputCloud(problem.cloud);
     extraction->setClusterTolerance(problem.tolerance);
@@ -123,7 +123,7 @@ Rival variantOf(const std::string& level, unsigned threads) {
     extraction->setMaxClusterSize(problem.max_size);
     extraction->extract(clusters);
   };
-  return rival;
+  return baseline;
 }
 
 struct Options {
@@ -208,14 +208,14 @@ struct Case {
   }
   static std::string titles() { return formatted("%-20s %8s %5s %8s", "scan", "returns", "eps", "clusters"); }
 
-  /// Whether a rival finds PCL's clusters; says on stderr where it does not.
-  bool agrees(const Rival& rival) const {
+  /// Whether a baseline finds PCL's clusters; says on stderr where it does not.
+  bool agrees(const Baseline& baseline) const {
     Clusters found;
-    rival.extract(problem, found);
-    const Difference difference = differenceOf(problem, referenceRival(), expected, rival, found);
+    baseline.extract(problem, found);
+    const Difference difference = differenceOf(problem, referenceBaseline(), expected, baseline, found);
     if (!difference.identical)
-      std::fprintf(stderr, "%s at %g m: %s differs from PCL\n%s", name.c_str(), problem.tolerance, rival.title.c_str(),
-                   difference.details.c_str());
+      std::fprintf(stderr, "%s at %g m: %s differs from PCL\n%s", name.c_str(), problem.tolerance,
+                   baseline.title.c_str(), difference.details.c_str());
     return difference.identical;
   }
 
@@ -250,7 +250,7 @@ class StagesTable : public Table {
   }
 
   bool measure(const Case& one, unsigned runs, std::string& csv) override {
-    Rival staged;
+    Baseline staged;
     staged.key = staged.title = "stages";
     staged.extract = [this](const Problem& problem, Clusters& clusters) { stages_.extract(problem, clusters); };
     // Both, even if the first is wrong.
@@ -297,7 +297,7 @@ class StagesTable : public Table {
 
  private:
   std::string best_;
-  Rival whole_;
+  Baseline whole_;
   StagedExtraction stages_;
   std::array<double, kStages> shares_{};
   std::size_t cases_ = 0;
@@ -322,14 +322,14 @@ class ThreadsTable : public Table {
 
   bool measure(const Case& one, unsigned runs, std::string& csv) override {
     bool agree = true;
-    for (const Variant& variant : variants_) agree = one.agrees(variant.rival) && agree;
+    for (const Variant& variant : variants_) agree = one.agrees(variant.baseline) && agree;
     if (!agree) return false;
 
     std::vector<Contestant> contestants;
     for (const Variant& variant : variants_)
       contestants.push_back({[&one, &variant] {
                                Clusters clusters;
-                               variant.rival.extract(one.problem, clusters);
+                               variant.baseline.extract(one.problem, clusters);
                              },
                              0, runs});
     // OpenMP's threads spin for some milliseconds before they sleep.
@@ -368,7 +368,7 @@ class ThreadsTable : public Table {
   struct Variant {
     std::string level;
     unsigned threads = 1;
-    Rival rival{};
+    Baseline baseline{};
     std::vector<double> ratios{};  ///< of each case, to the first variant
   };
 
@@ -410,7 +410,7 @@ bool measureFile(const fs::path& file, const std::string& name, const Options& o
   for (const double tolerance : options.tolerances) {
     one.problem.tolerance = tolerance;
     one.expected.clear();
-    referenceRival().extract(one.problem, one.expected);
+    referenceBaseline().extract(one.problem, one.expected);
     if (!table.measure(one, options.runs, csv)) {
       std::printf("%s  NOT PCL's clusters\n", one.head().c_str());
       good = false;

@@ -4,7 +4,7 @@
 # README.md too). A section that fails, as by clusters that are not PCL's, keeps its old table; the others go on, and the
 # suite exits with 1. Takes about a quarter of an hour on two cores.
 #
-#   benchmarks/suite.sh [--runs N] [SECTION...]     --runs: timed runs of each rival (default 5)
+#   benchmarks/suite.sh [--runs N] [SECTION...]     --runs: timed runs of each baseline (default 5)
 #
 # Sections: real vehicle worst growth memory threads stages, and latency, whose tables and picture are in doc/streaming.md
 set -euo pipefail
@@ -60,7 +60,7 @@ publish() {
 
 # Each of these measures one section. They run as a condition, in which bash ignores `set -e`: hence the && all over.
 
-rivals=(--rivals "pcl,grid,lisco" --must-agree "grid,lisco")
+baselines=(--baselines "pcl,grid,lisco" --must-agree "grid,lisco")
 
 measure_real() {
   "$root/benchmarks/real_scans.sh" --runs "$runs"
@@ -79,7 +79,7 @@ simulate_vehicle() {
 
 measure_vehicle() {
   simulate_vehicle &&
-    compare vehicle "${rivals[@]}" --runs "$runs" --tolerance 0.1,0.3,0.4,0.7,1 --ground-z -1.6 "$out/vehicle" &&
+    compare vehicle "${baselines[@]}" --runs "$runs" --tolerance 0.1,0.3,0.4,0.7,1 --ground-z -1.6 "$out/vehicle" &&
     publish benchmarks "vehicle" vehicle
 }
 
@@ -98,7 +98,7 @@ simulate_worst() {
 }
 
 measure_worst() {
-  simulate_worst && compare worst "${rivals[@]}" --runs "$runs" --tolerance 0.1,0.4,1 "$out/worst" &&
+  simulate_worst && compare worst "${baselines[@]}" --runs "$runs" --tolerance 0.1,0.4,1 "$out/worst" &&
     publish benchmarks "worst cases" worst
 }
 
@@ -121,7 +121,7 @@ measure_growth() {
   done
   local pass
   for pass in 1 2; do
-    compare "growth$pass" --rivals lisco --runs $((20 * runs)) --tolerance 0.4 --ground-z -1.6 "$out/growth" || return 1
+    compare "growth$pass" --baselines lisco --runs $((20 * runs)) --tolerance 0.4 --ground-z -1.6 "$out/growth" || return 1
   done
   publish growth "growth" growth1 growth2
 }

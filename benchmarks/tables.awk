@@ -6,22 +6,22 @@ FNR == 1 { for (i = 1; i <= NF; ++i) column[$i] = i; next }
 { gsub(/"/, "", $1) }
 
 function field(name) { return $column[name] }
-function key(rival) { return $1 SUBSEP field("tolerance") SUBSEP rival }
+function key(baseline) { return $1 SUBSEP field("tolerance") SUBSEP baseline }
 
 table != "mask" {
-  scan = $1; tolerance = field("tolerance"); rival = field("rival")
+  scan = $1; tolerance = field("tolerance"); baseline = field("baseline")
   if (!(scan in returns)) { returns[scan] = field("returns"); scans[++scan_count] = scan }
   if (!((scan, tolerance) in clusters)) { ++cases; case_scan[cases] = scan; case_tolerance[cases] = tolerance }
   if (!(tolerance in seen)) { seen[tolerance] = 1; tolerances[++tolerance_count] = tolerance }
   clusters[scan, tolerance] = field("reference_clusters")
   # Of a case that was measured more than once, the quietest time counts: what disturbs a machine only makes it slower.
-  if (!(key(rival) in least) || field("min_ms") < least[key(rival)]) least[key(rival)] = field("min_ms")
-  if ((key(rival) in median) && median[key(rival)] <= field("median_ms")) next
-  mean[key(rival)] = field("mean_ms"); error[key(rival)] = field("confidence99_ms")
-  median[key(rival)] = field("median_ms"); cold[key(rival)] = field("cold_median_ms")
-  lower[key(rival)] = field("lower_quartile_ms"); upper[key(rival)] = field("upper_quartile_ms")
+  if (!(key(baseline) in least) || field("min_ms") < least[key(baseline)]) least[key(baseline)] = field("min_ms")
+  if ((key(baseline) in median) && median[key(baseline)] <= field("median_ms")) next
+  mean[key(baseline)] = field("mean_ms"); error[key(baseline)] = field("confidence99_ms")
+  median[key(baseline)] = field("median_ms"); cold[key(baseline)] = field("cold_median_ms")
+  lower[key(baseline)] = field("lower_quartile_ms"); upper[key(baseline)] = field("upper_quartile_ms")
   cells[scan] = field("rows") * field("columns")
-  identical[key(rival)] = field("identical")
+  identical[key(baseline)] = field("identical")
   objects[scan, tolerance] = field("objects"); whole[scan, tolerance] = field("whole")
   split_[scan, tolerance] = field("split"); merged[scan, tolerance] = field("merged"); missed[scan, tolerance] = field("missed")
 }
@@ -42,7 +42,7 @@ function summary(slow, fast,   i, sum, cold_sum, r, lowest) {
 }
 
 # Half the distance between the quartiles, in percent of the median.
-function spread(s, t, rival) { return sprintf("%.0f%%", 50 * (upper[s, t, rival] - lower[s, t, rival]) / median[s, t, rival]) }
+function spread(s, t, baseline) { return sprintf("%.0f%%", 50 * (upper[s, t, baseline] - lower[s, t, baseline]) / median[s, t, baseline]) }
 
 function benchmarks(   i, s, t) {
   printf "%-20s %8s %5s %8s %9s %4s %9s %4s %9s %4s %10s %10s  %s\n", "scan", "returns", "eps", "clusters", "PCL ms", "+-", "grid ms", "+-", "Lisco ms", "+-", "PCL/Lisco", "grid/Lisco", "identical"
@@ -94,7 +94,7 @@ function readme(   i, j, s, t) {
 }
 function wanted(tolerance) { return tolerance == 0.1 || tolerance == 0.4 || tolerance == 1 }
 
-# Mean time of each rival with its confidence, and how many times as fast as PCL with KdTree (false) it is, by means.
+# Mean time of each baseline with its confidence, and how many times as fast as PCL with KdTree (false) it is, by means.
 function times(   i, s, t) {
   print "| scan | returns | ε | clusters | PCL | PCL, octree | paper's Lisco | grid | Lisco | PCL / octree | PCL / paper's | PCL / grid | PCL / Lisco |"
   print "|---|---|---|---|---|---|---|---|---|---|---|---|---|"
@@ -104,16 +104,16 @@ function times(   i, s, t) {
   }
   printf "\nGeometric means of the ratios to PCL: octree %s, paper's Lisco %s, grid %s, Lisco %s; lowest: %s, %s, %s, %s.\n", overall("pcl-octree"), overall("paper"), overall("grid"), overall("lisco"), lowest_of("pcl-octree"), lowest_of("paper"), lowest_of("grid"), lowest_of("lisco")
 }
-function overall(rival,   i, sum) {
-  for (i = 1; i <= cases; ++i) sum += log(ratio(mean, case_scan[i], case_tolerance[i], "pcl", rival))
+function overall(baseline,   i, sum) {
+  for (i = 1; i <= cases; ++i) sum += log(ratio(mean, case_scan[i], case_tolerance[i], "pcl", baseline))
   return short(exp(sum / cases))
 }
-function lowest_of(rival,   i, r, lowest) {
+function lowest_of(baseline,   i, r, lowest) {
   lowest = 1e30
-  for (i = 1; i <= cases; ++i) { r = ratio(mean, case_scan[i], case_tolerance[i], "pcl", rival); if (r < lowest) lowest = r }
+  for (i = 1; i <= cases; ++i) { r = ratio(mean, case_scan[i], case_tolerance[i], "pcl", baseline); if (r < lowest) lowest = r }
   return short(lowest)
 }
-function timed(s, t, rival) { return short(mean[s, t, rival]) " ± " short(error[s, t, rival]) }
+function timed(s, t, baseline) { return short(mean[s, t, baseline]) " ± " short(error[s, t, baseline]) }
 
 # How clusters cover the true objects.
 function scored(   i, j, s, t) {

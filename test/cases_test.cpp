@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// The worst cases: whether each is what it is named after, by all pairs of its returns.
+// The properties of the worst cases, by all pairs of returns.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -82,7 +82,7 @@ TEST(Cases, RoomIsOneClusterOnAllSides) {
     EXPECT_NEAR(static_cast<double>(returns.size()), 32 * 180, 0.02 * 32 * 180);
     EXPECT_EQ(objectsOfClusters(returns, 0.4), (std::vector<std::set<std::uint32_t>>{{1}}));
     for (const Cell& cell : returns) {
-      // On one of six sides, but for the noise.
+      // On one of six sides, up to the noise.
       const double inside =
           std::min({4 - std::fabs(static_cast<double>(cell.x)), 3 - std::fabs(static_cast<double>(cell.y)),
                     static_cast<double>(cell.z) + 1.8, 1.2 - static_cast<double>(cell.z)});
@@ -122,7 +122,7 @@ TEST(Cases, SheetsAreAGapApart) {
       const std::vector<Cell> returns = returnsOf(rotation);
       const double least = leastDistance(returns, true);
       EXPECT_GE(least, gap - 1e-5);
-      EXPECT_LE(least, gap + 0.5) << "but not farther, so that the boxes are near";
+      EXPECT_LE(least, gap + 0.5) << "near enough for neighbouring boxes";
       for (std::size_t laser = 0; laser < rotation.lasers; ++laser)
         for (std::size_t step = 0; step < rotation.steps; ++step) {
           const Cell& cell = rotation.at(laser, step);
@@ -143,14 +143,14 @@ TEST(Cases, SingletonsAreFartherThanTheGapFromEachOther) {
       EXPECT_GT(leastDistance(returns, false), gap) << sensor;
       EXPECT_GT(returns.size(), rotation.cells.size() * 19 / 20) << sensor;
     }
-  // Where there is no room for all of them.
+  // More cells than positions.
   const Scan rotation = scanOf("singletons", 32, 150, "hdl64e", 20);
   EXPECT_GT(leastDistance(returnsOf(rotation), false), 20);
   EXPECT_GT(rotation.returns(), 100U);
   EXPECT_LT(rotation.returns(), rotation.cells.size() / 2);
 }
 
-TEST(Cases, BlockedSensorSeesNothingBeyond30Centimetres) {
+TEST(Cases, BlockedSensorHasReturnsWithin30Centimetres) {
   for (const double noise : {0.0, 0.02, 1.0}) {
     const Scan rotation = scanCase("blocked", makeSensor("hdl64e"), {1, noise, 0.005}, kGap);
     const std::vector<Cell> returns = returnsOf(rotation);
@@ -159,7 +159,7 @@ TEST(Cases, BlockedSensorSeesNothingBeyond30Centimetres) {
   }
 }
 
-TEST(Cases, PolesAreClustersOfTheirOwn) {
+TEST(Cases, PolesAreSeparateClusters) {
   const Scan rotation = scanOf("poles", 64, 1125);
   std::vector<Cell> returns;
   for (std::size_t laser = 8; laser < 40; laser += 2)  // two neighbours of one pole are within 0.4 m even so
@@ -176,7 +176,7 @@ TEST(Cases, PolesAreClustersOfTheirOwn) {
   EXPECT_EQ(seen.count(0), 0U);
 }
 
-TEST(Cases, AreTheSameForTheSameSeedOnly) {
+TEST(Cases, AreEqualForEqualSeedsOnly) {
   const auto bytes = [](const std::string& name, std::uint64_t seed) {
     const Scan rotation = scanCase(name, makeSensor("vlp16"), {seed}, kGap);
     return std::string(reinterpret_cast<const char*>(rotation.cells.data()), rotation.cells.size() * sizeof(Cell));
@@ -187,7 +187,7 @@ TEST(Cases, AreTheSameForTheSameSeedOnly) {
   }
 }
 
-TEST(Cases, LoseReturnsAndHaveTheSizeOfTheirSensor) {
+TEST(Cases, HaveDropOutsAndTheSizeOfTheirSensor) {
   for (const std::string& name : caseNames()) {
     SCOPED_TRACE(name);
     const Sensor sensor = makeSensor("os1-128", 20, 500);

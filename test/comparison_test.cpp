@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// What lisco_compare says of rivals: that it notices every way of being wrong and names the points that prove it, that
-// it times fairly, and that its files hold what it has found.
+// The comparison behind lisco_compare: every kind of difference, the points that prove it, timing, and output files.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,7 +43,7 @@ pcl::PointIndices clusterOf(const pcl::Indices& indices) {
   return cluster;
 }
 
-Problem problemOf(const RivalCloud::Ptr& cloud, double tolerance, unsigned min_size) {
+Problem problemOf(const ComparedCloud::Ptr& cloud, double tolerance, unsigned min_size) {
   auto returns = std::make_shared<pcl::Indices>();
   for (std::size_t i = 0; i < cloud->size(); ++i)
     if (lisco::isReturn((*cloud)[i].x, (*cloud)[i].y, (*cloud)[i].z)) returns->push_back(static_cast<pcl::index_t>(i));
@@ -63,7 +62,7 @@ Problem problemOf(const RivalCloud::Ptr& cloud, double tolerance, unsigned min_s
 ///   y  0      0 --- 1 --- 2        3 --- 4        5
 ///      0.3    6     .     8        9 -- 10        .
 Problem twoClusters() {
-  auto cloud = std::make_shared<RivalCloud>(6, 2);
+  auto cloud = std::make_shared<ComparedCloud>(6, 2);
   const std::vector<Point> points{{1, 0, 0},       {1.4F, 0, 0}, {1.8F, 0, 0},    {5, 0, 0},
                                   {5.4F, 0, 0},    {9, 0, 0},    {1, 0.3F, 0},    {kNan, kNan, 0},
                                   {1.8F, 0.3F, 0}, {5, 0.3F, 0}, {5.4F, 0.3F, 0}, {0, 0, 0}};
@@ -78,14 +77,14 @@ Problem twoClusters() {
   return problemOf(cloud, 0.5, 2);
 }
 
-/// A rival that finds PCL's clusters of any size, spoils them, and goes on as PCL does.
-Rival spoilt(std::function<void(Clusters&)> spoil) {
-  return {"spoilt", "somebody", [spoil = std::move(spoil)](const Problem& problem, Clusters& clusters) {
+/// A baseline that changes PCL's clusters of any size, then filters and sorts as PCL does.
+Baseline spoilt(std::function<void(Clusters&)> spoil) {
+  return {"spoilt", "a spoilt one", [spoil = std::move(spoil)](const Problem& problem, Clusters& clusters) {
             Problem any_size = problem;
             any_size.min_size = 1;
             any_size.max_size = Problem().max_size;
             Clusters all;
-            referenceRival().extract(any_size, all);
+            referenceBaseline().extract(any_size, all);
             spoil(all);
             for (pcl::PointIndices& cluster : all) {
               if (cluster.indices.size() < problem.min_size || cluster.indices.size() > problem.max_size) continue;
@@ -108,9 +107,9 @@ void moveAll(pcl::Indices& from, pcl::Indices& to) {
   from.clear();
 }
 
-Clusters extracted(const Rival& rival, const Problem& problem) {
+Clusters extracted(const Baseline& baseline, const Problem& problem) {
   Clusters clusters;
-  rival.extract(problem, clusters);
+  baseline.extract(problem, clusters);
   return clusters;
 }
 
@@ -124,7 +123,7 @@ struct NamedPair {
 std::optional<NamedPair> pairNamedIn(const std::string& details) {
   static const std::regex pattern(
       "the pair that decides: point ([0-9]+) \\([^)]*\\)[^:]* and point ([0-9]+) \\([^)]*\\)[^:]*, d2 = ([^,]*), "
-      "r2 = ([^:]*): (neighbours, which the rival keeps apart|not connected, which the rival joins)\n");
+      "r2 = ([^:]*): (neighbours, which the method keeps apart|not connected, which the method joins)\n");
   std::smatch match;
   if (!std::regex_search(details, match, pattern)) return std::nullopt;
   return NamedPair{std::stoul(match[1]), std::stoul(match[2]), std::stof(match[3]), std::stof(match[4]),
@@ -132,12 +131,12 @@ std::optional<NamedPair> pairNamedIn(const std::string& details) {
 }
 
 Point pointOf(const Problem& problem, std::size_t index) {
-  const RivalPoint& p = (*problem.cloud)[index];
+  const ComparedPoint& p = (*problem.cloud)[index];
   return {p.x, p.y, p.z};
 }
 
-/// Holds the pair that the details name against the oracle and against what the rival says.
-void expectPairDecides(const Problem& problem, const Rival& rival, const std::string& details) {
+/// Checks the pair in the details against the oracle and against the baseline's clusters.
+void expectPairDecides(const Problem& problem, const Baseline& baseline, const std::string& details) {
   SCOPED_TRACE(details);
   const std::optional<NamedPair> pair = pairNamedIn(details);
   ASSERT_TRUE(pair.has_value());
@@ -152,7 +151,7 @@ void expectPairDecides(const Problem& problem, const Rival& rival, const std::st
 
   Problem any_size = problem;
   any_size.min_size = 1;
-  const std::vector<std::uint32_t> label = labelsOf(extracted(rival, any_size), points.size());
+  const std::vector<std::uint32_t> label = labelsOf(extracted(baseline, any_size), points.size());
   const bool together = label[pair->a] != 0 && label[pair->a] == label[pair->b];
   const Point a = points[pair->a];
   const Point b = points[pair->b];
@@ -173,9 +172,9 @@ void expectPairDecides(const Problem& problem, const Rival& rival, const std::st
                  std::count(cluster.members.begin(), cluster.members.end(), pair->b) > 0);
 }
 
-Difference differenceFrom(const Problem& problem, const Rival& rival) {
-  return differenceOf(problem, referenceRival(), extracted(referenceRival(), problem), rival,
-                      extracted(rival, problem));
+Difference differenceFrom(const Problem& problem, const Baseline& baseline) {
+  return differenceOf(problem, referenceBaseline(), extracted(referenceBaseline(), problem), baseline,
+                      extracted(baseline, problem));
 }
 
 void expectSaid(const Difference& difference, const std::vector<std::string>& lines) {
@@ -185,9 +184,9 @@ void expectSaid(const Difference& difference, const std::vector<std::string>& li
 
 TEST(Difference, OfTheReferenceIsNone) {
   const Problem problem = twoClusters();
-  ASSERT_EQ(extracted(referenceRival(), problem).size(), 2U);
-  ASSERT_EQ(extracted(referenceRival(), problem)[0].indices, pcl::Indices({0, 1, 2, 6, 8}));
-  ASSERT_EQ(extracted(referenceRival(), problem)[1].indices, pcl::Indices({3, 4, 9, 10}));
+  ASSERT_EQ(extracted(referenceBaseline(), problem).size(), 2U);
+  ASSERT_EQ(extracted(referenceBaseline(), problem)[0].indices, pcl::Indices({0, 1, 2, 6, 8}));
+  ASSERT_EQ(extracted(referenceBaseline(), problem)[1].indices, pcl::Indices({3, 4, 9, 10}));
   const Difference difference = differenceFrom(problem, spoilt([](Clusters&) {}));
   EXPECT_TRUE(difference.identical);
   EXPECT_TRUE(difference.same_sets);
@@ -198,68 +197,67 @@ TEST(Difference, OfTheReferenceIsNone) {
 
 TEST(Difference, NoticesASplitCluster) {
   const Problem problem = twoClusters();
-  const Rival rival = spoilt([](Clusters& clusters) {
+  const Baseline baseline = spoilt([](Clusters& clusters) {
     withPoint(clusters, 0).indices = {1, 2, 8};
     clusters.push_back(clusterOf({0, 6}));
   });
-  const Difference difference = differenceFrom(problem, rival);
+  const Difference difference = differenceFrom(problem, baseline);
   EXPECT_FALSE(difference.identical);
   EXPECT_FALSE(difference.same_sets);
   EXPECT_EQ(difference.clusters, 1U);
-  EXPECT_EQ(difference.mislabelled, 2U);  // 0 and 6: the larger part keeps its name
+  EXPECT_EQ(difference.mislabelled, 2U);  // 0 and 6: the larger part keeps its label
   expectSaid(difference,
-             {"PCL finds 2 clusters, the rival 3; 1 of PCL's are not among them; 2 of 10 points differ\n",
-              "first: point 0 (1, 0, 0) row 0 column 0: by PCL in cluster 1 (5 points), by the rival in cluster 3 (2 "
+             {"PCL finds 2 clusters, the method 3; 1 of PCL's are not among them; 2 of 10 points differ\n",
+              "first: point 0 (1, 0, 0) row 0 column 0: by PCL in cluster 1 (5 points), by the method in cluster 3 (2 "
               "points)\n",
-              "its 2 neighbours within 0.5 m, with their distances, clusters by PCL and clusters by the rival: 6 "
+              "its 2 neighbours within 0.5 m, with their distances, clusters by PCL and clusters by the method: 6 "
               "(0.3000 m, 1, 3) "
               "1 (0.4000 m, 1, 2)\n",
               "the pair that decides: point 0 (1, 0, 0) row 0 column 0 and point 1 (1.4, 0, 0) row 0 column 1, "
-              "d2 = 0.159999982, r2 = 0.25: neighbours, which the rival keeps apart\n"});
-  expectPairDecides(problem, rival, difference.details);
+              "d2 = 0.159999982, r2 = 0.25: neighbours, which the method keeps apart\n"});
+  expectPairDecides(problem, baseline, difference.details);
 }
 
 TEST(Difference, NoticesJoinedClusters) {
   const Problem problem = twoClusters();
-  const Rival rival =
+  const Baseline baseline =
       spoilt([](Clusters& clusters) { moveAll(withPoint(clusters, 3).indices, withPoint(clusters, 0).indices); });
-  const Difference difference = differenceFrom(problem, rival);
+  const Difference difference = differenceFrom(problem, baseline);
   EXPECT_FALSE(difference.same_sets);
   EXPECT_EQ(difference.clusters, 2U);
-  EXPECT_EQ(difference.mislabelled, 4U);  // B: A is larger and keeps the name
+  EXPECT_EQ(difference.mislabelled, 4U);  // B: A is larger and keeps its label
   expectSaid(
       difference,
-      {"first: point 3 (5, 0, 0) row 0 column 3: by PCL in cluster 2 (4 points), by the rival in cluster 1 (9 points)",
-       "not connected, which the rival joins"});
-  expectPairDecides(problem, rival, difference.details);
+      {"first: point 3 (5, 0, 0) row 0 column 3: by PCL in cluster 2 (4 points), by the method in cluster 1 (9 points)",
+       "not connected, which the method joins"});
+  expectPairDecides(problem, baseline, difference.details);
   // The nearest two of them are 3.2 m apart.
   EXPECT_NEAR(pairNamedIn(difference.details)->d2, 10.24F, 1e-5F);
 }
 
-// The nearest two of what is joined, wherever in their rows they are.
 TEST(Difference, NamesTheNearestOfWhatIsJoined) {
   const Problem problem = twoClusters();
-  auto mirrored = std::make_shared<RivalCloud>(*problem.cloud);
+  auto mirrored = std::make_shared<ComparedCloud>(*problem.cloud);
   for (std::size_t row = 0; row < 12; row += 6)
     std::reverse(mirrored->begin() + static_cast<long>(row), mirrored->begin() + static_cast<long>(row) + 6);
   const Problem reversed = problemOf(mirrored, 0.5, 2);
-  const Rival rival =
+  const Baseline baseline =
       spoilt([](Clusters& clusters) { moveAll(withPoint(clusters, 1).indices, withPoint(clusters, 5).indices); });
-  const Difference difference = differenceFrom(reversed, rival);
+  const Difference difference = differenceFrom(reversed, baseline);
   expectSaid(difference, {"first: point 1 (5.4, 0, 0) row 0 column 1: by PCL in cluster 2 (4 points)"});
-  expectPairDecides(reversed, rival, difference.details);
+  expectPairDecides(reversed, baseline, difference.details);
   EXPECT_NEAR(pairNamedIn(difference.details)->d2, 10.24F, 1e-5F);
 }
 
-// The rival is right, and PCL is not: doc/contract.md.
+// The method is right, and PCL's tree is not: doc/contract.md.
 TEST(Difference, NamesThePairThatPclsTreeMisses) {
-  auto cloud = std::make_shared<RivalCloud>();
+  auto cloud = std::make_shared<ComparedCloud>();
   pcl::copyPointCloud(*cloudWithAMissedPair(), *cloud);
   const Problem problem = problemOf(cloud, kMissingTolerance, 1);
-  const std::vector<Rival> rivals = allRivals();
-  const auto lisco =
-      std::find_if(rivals.begin(), rivals.end(), [](const Rival& rival) { return rival.key == "lisco"; });
-  ASSERT_NE(lisco, rivals.end());
+  const std::vector<Baseline> baselines = allBaselines();
+  const auto lisco = std::find_if(baselines.begin(), baselines.end(),
+                                  [](const Baseline& baseline) { return baseline.key == "lisco"; });
+  ASSERT_NE(lisco, baselines.end());
   const Difference difference = differenceFrom(problem, *lisco);
   EXPECT_FALSE(difference.identical);
   EXPECT_TRUE(difference.missed_by_reference);
@@ -268,38 +266,38 @@ TEST(Difference, NamesThePairThatPclsTreeMisses) {
 
 TEST(Difference, NoticesNoiseThatJoins) {
   const Problem problem = twoClusters();
-  const Rival rival =
+  const Baseline baseline =
       spoilt([](Clusters& clusters) { moveAll(withPoint(clusters, 5).indices, withPoint(clusters, 3).indices); });
-  const Difference difference = differenceFrom(problem, rival);
+  const Difference difference = differenceFrom(problem, baseline);
   EXPECT_EQ(difference.clusters, 1U);
   EXPECT_EQ(difference.mislabelled, 1U);
-  expectSaid(difference, {"first: point 5 (9, 0, 0) row 0 column 5: by PCL in noise, by the rival in cluster",
+  expectSaid(difference, {"first: point 5 (9, 0, 0) row 0 column 5: by PCL in noise, by the method in cluster",
                           "its 0 neighbours within 0.5 m\n"});
-  expectPairDecides(problem, rival, difference.details);
+  expectPairDecides(problem, baseline, difference.details);
   EXPECT_NEAR(pairNamedIn(difference.details)->d2, 12.96F, 1e-5F);
 }
 
 TEST(Difference, NoticesADroppedCluster) {
   const Problem problem = twoClusters();
-  const Rival rival = spoilt([](Clusters& clusters) { withPoint(clusters, 3).indices.clear(); });
-  const Difference difference = differenceFrom(problem, rival);
+  const Baseline baseline = spoilt([](Clusters& clusters) { withPoint(clusters, 3).indices.clear(); });
+  const Difference difference = differenceFrom(problem, baseline);
   EXPECT_FALSE(difference.same_sets);
   EXPECT_EQ(difference.clusters, 1U);
   EXPECT_EQ(difference.mislabelled, 4U);
   expectSaid(difference,
-             {"PCL finds 2 clusters, the rival 1",
-              "first: point 3 (5, 0, 0) row 0 column 3: by PCL in cluster 2 (4 points), by the rival in noise"});
-  expectPairDecides(problem, rival, difference.details);
+             {"PCL finds 2 clusters, the method 1",
+              "first: point 3 (5, 0, 0) row 0 column 3: by PCL in cluster 2 (4 points), by the method in noise"});
+  expectPairDecides(problem, baseline, difference.details);
 }
 
-// What is in no cluster of any size is with nobody, and not with all else that is in none.
-TEST(Difference, DoesNotTakeDroppedClustersForJoinedOnes) {
+// Points in no cluster of any size are not joined with each other.
+TEST(Difference, TellsDroppedClustersFromJoinedOnes) {
   const Problem problem = twoClusters();
-  const Rival rival = spoilt([](Clusters& clusters) { clusters.clear(); });
-  const Difference difference = differenceFrom(problem, rival);
+  const Baseline baseline = spoilt([](Clusters& clusters) { clusters.clear(); });
+  const Difference difference = differenceFrom(problem, baseline);
   EXPECT_EQ(difference.clusters, 2U);
   EXPECT_EQ(difference.mislabelled, 9U);
-  expectPairDecides(problem, rival, difference.details);
+  expectPairDecides(problem, baseline, difference.details);
   EXPECT_TRUE(pairNamedIn(difference.details)->kept_apart);
 }
 
@@ -311,15 +309,15 @@ TEST(Difference, NamesNoPairForADroppedSingleton) {
   EXPECT_EQ(difference.clusters, 1U);
   EXPECT_EQ(difference.mislabelled, 1U);
   expectSaid(difference,
-             {"first: point 5 (9, 0, 0) row 0 column 5: by PCL in cluster 3 (1 points), by the rival in noise"});
+             {"first: point 5 (9, 0, 0) row 0 column 5: by PCL in cluster 3 (1 points), by the method in noise"});
   EXPECT_FALSE(pairNamedIn(difference.details).has_value()) << difference.details;
 }
 
 TEST(Difference, NoticesAnotherOrder) {
   const Problem problem = twoClusters();
-  const Clusters expected = extracted(referenceRival(), problem);
+  const Clusters expected = extracted(referenceBaseline(), problem);
   const Clusters reversed(expected.rbegin(), expected.rend());
-  const Difference difference = differenceOf(problem, referenceRival(), expected, referenceRival(), reversed);
+  const Difference difference = differenceOf(problem, referenceBaseline(), expected, referenceBaseline(), reversed);
   EXPECT_FALSE(difference.identical);
   EXPECT_TRUE(difference.same_sets);
   EXPECT_EQ(difference.clusters, 0U);
@@ -329,7 +327,7 @@ TEST(Difference, NoticesAnotherOrder) {
 
 TEST(Difference, NoticesEveryFieldOfTheHeader) {
   const Problem problem = twoClusters();
-  const Clusters expected = extracted(referenceRival(), problem);
+  const Clusters expected = extracted(referenceBaseline(), problem);
   ASSERT_EQ(expected[1].header.frame_id, "lidar");
   const std::vector<std::function<void(pcl::PCLHeader&)>> changes{[](auto& header) { header.frame_id = "base"; },
                                                                   [](auto& header) { ++header.stamp; },
@@ -337,7 +335,7 @@ TEST(Difference, NoticesEveryFieldOfTheHeader) {
   for (const auto& change : changes) {
     Clusters found = expected;
     change(found[1].header);
-    const Difference difference = differenceOf(problem, referenceRival(), expected, referenceRival(), found);
+    const Difference difference = differenceOf(problem, referenceBaseline(), expected, referenceBaseline(), found);
     EXPECT_FALSE(difference.identical);
     EXPECT_TRUE(difference.same_sets);
   }
@@ -345,43 +343,43 @@ TEST(Difference, NoticesEveryFieldOfTheHeader) {
 
 TEST(Difference, NoticesAnotherOrderOfIndices) {
   const Problem problem = twoClusters();
-  const Clusters expected = extracted(referenceRival(), problem);
+  const Clusters expected = extracted(referenceBaseline(), problem);
   Clusters found = expected;
   std::swap(found[0].indices[0], found[0].indices[1]);
-  EXPECT_FALSE(differenceOf(problem, referenceRival(), expected, referenceRival(), found).identical);
+  EXPECT_FALSE(differenceOf(problem, referenceBaseline(), expected, referenceBaseline(), found).identical);
 }
 
 TEST(Difference, NoticesAPointListedTwice) {
   const Problem problem = twoClusters();
-  const Clusters expected = extracted(referenceRival(), problem);
+  const Clusters expected = extracted(referenceBaseline(), problem);
   Clusters found = expected;
   found[0].indices.push_back(8);
-  Difference difference = differenceOf(problem, referenceRival(), expected, referenceRival(), found);
+  Difference difference = differenceOf(problem, referenceBaseline(), expected, referenceBaseline(), found);
   EXPECT_FALSE(difference.identical);
   EXPECT_FALSE(difference.same_sets);
   EXPECT_EQ(difference.clusters, 1U);
   EXPECT_EQ(difference.mislabelled, 0U);
-  expectSaid(difference, {"the rival lists points twice, or points that are no returns\n"});
+  expectSaid(difference, {"the method lists points twice, or points that are no returns\n"});
   // A whole cluster.
   found = expected;
   found.push_back(found[1]);
-  difference = differenceOf(problem, referenceRival(), expected, referenceRival(), found);
+  difference = differenceOf(problem, referenceBaseline(), expected, referenceBaseline(), found);
   EXPECT_FALSE(difference.identical);
   EXPECT_FALSE(difference.same_sets);
 }
 
-TEST(Difference, NoticesAClaimedNoReturn) {
+TEST(Difference, NoticesANoReturnInACluster) {
   const Problem problem = twoClusters();
-  const Clusters expected = extracted(referenceRival(), problem);
+  const Clusters expected = extracted(referenceBaseline(), problem);
   for (const pcl::index_t no_return : {7, 11}) {
     Clusters found = expected;
     found[1].indices.push_back(no_return);
-    const Difference difference = differenceOf(problem, referenceRival(), expected, referenceRival(), found);
+    const Difference difference = differenceOf(problem, referenceBaseline(), expected, referenceBaseline(), found);
     EXPECT_FALSE(difference.identical);
     EXPECT_FALSE(difference.same_sets);
     EXPECT_EQ(difference.clusters, 1U);
     EXPECT_EQ(difference.mislabelled, 0U);
-    expectSaid(difference, {"the rival lists points twice, or points that are no returns\n"});
+    expectSaid(difference, {"the method lists points twice, or points that are no returns\n"});
   }
 }
 
@@ -393,12 +391,13 @@ TEST(Difference, NamesTheRightPairOnRandomScans) {
     Random random(seed);
     float spacing = 0;
     const Scan scan = seed % 2 == 0 ? boxesAround(random, 60, 4) : latticeScan(random, spacing);
-    const Problem problem = problemOf(cloudOf<RivalPoint>(scan), static_cast<double>(criticalTolerance(random, scan)),
-                                      1 + static_cast<unsigned>(random.below(3)));
+    const Problem problem =
+        problemOf(cloudOf<ComparedPoint>(scan), static_cast<double>(criticalTolerance(random, scan)),
+                  1 + static_cast<unsigned>(random.below(3)));
     if (problem.returns->empty()) continue;
     const std::uint64_t way = random.below(3);
     const std::uint64_t choice = random.below(1000);
-    const Rival rival = spoilt([way, choice](Clusters& clusters) {
+    const Baseline baseline = spoilt([way, choice](Clusters& clusters) {
       pcl::Indices& one = clusters[choice % clusters.size()].indices;
       pcl::Indices& other = clusters[(choice * 7 + 1) % clusters.size()].indices;
       if (way == 0 && one.size() > 1) {  // every other point to a new one
@@ -413,9 +412,9 @@ TEST(Difference, NamesTheRightPairOnRandomScans) {
         moveAll(one, other);
       }
     });
-    const Difference difference = differenceFrom(problem, rival);
+    const Difference difference = differenceFrom(problem, baseline);
     if (difference.identical || difference.same_sets) continue;
-    expectPairDecides(problem, rival, difference.details);
+    expectPairDecides(problem, baseline, difference.details);
     if (testing::Test::HasFailure()) return;
     (pairNamedIn(difference.details)->kept_apart ? kept_apart : joined) += 1;
   }
@@ -432,7 +431,7 @@ TEST(Labels, CountFromOne) {
 
 /// Scores clusters of twelve points, of which 0 to 9 are returns, for objects of at least 2.
 ObjectScore scoreOf(const std::vector<pcl::Indices>& clusters, const std::vector<std::uint32_t>& object_of) {
-  auto cloud = std::make_shared<RivalCloud>(12, 1);
+  auto cloud = std::make_shared<ComparedCloud>(12, 1);
   for (std::size_t i = 0; i < 12; ++i) (*cloud)[i].x = i < 10 ? 1.0F : kNan;
   Clusters all;
   for (const pcl::Indices& cluster : clusters) all.push_back(clusterOf(cluster));
@@ -445,7 +444,7 @@ void expectScore(const ObjectScore& score, const std::vector<std::size_t>& expec
 
 TEST(Objects, AreWhole) {
   expectScore(scoreOf({{0, 1, 2}, {3, 4, 5}}, {7, 7, 7, 9, 9, 9, 0, 0, 0, 0, 0, 0}), {2, 2, 0, 0, 0});
-  // Whatever is nobody's, or in no cluster, does no harm.
+  // Returns without an object do not matter.
   expectScore(scoreOf({{0, 1, 8}, {3, 4, 9}}, {7, 7, 7, 9, 9, 9, 0, 0, 0, 0, 0, 0}), {2, 2, 0, 0, 0});
 }
 
@@ -478,7 +477,7 @@ Times timesOf(const std::vector<double>& runs) {
   return times;
 }
 
-TEST(Timing, MeanMedianLeastMost) {
+TEST(Timing, MeanMedianMinMax) {
   EXPECT_DOUBLE_EQ(timesOf({1, 2, 6}).mean(), 3);
   EXPECT_DOUBLE_EQ(median({6, 1, 2}), 2);
   EXPECT_DOUBLE_EQ(median({6, 1, 2, 4}), 3);
@@ -488,8 +487,8 @@ TEST(Timing, MeanMedianLeastMost) {
   EXPECT_DOUBLE_EQ(quantile({2, 1}, 0.25), 1.25);
   EXPECT_DOUBLE_EQ(quantile({2, 1}, 1), 2);
   EXPECT_DOUBLE_EQ(quantile({7}, 0.75), 7);
-  EXPECT_DOUBLE_EQ(timesOf({4, 1, 2}).least(), 1);
-  EXPECT_DOUBLE_EQ(timesOf({1, 4, 2}).most(), 4);
+  EXPECT_DOUBLE_EQ(timesOf({4, 1, 2}).min(), 1);
+  EXPECT_DOUBLE_EQ(timesOf({1, 4, 2}).max(), 4);
 }
 
 TEST(Timing, ConfidenceIsStudents) {
@@ -509,7 +508,7 @@ TEST(Timing, GeometricMeanOfRatios) {
   EXPECT_NEAR(geometricMean({7}), 7, 1e-12);
 }
 
-/// Runs contestants named A, B, ...; what was called, in order, and "|" between rounds.
+/// Runs contestants A, B, ... \return the calls in order, with "|" before each round
 std::string turnsOf(const std::vector<std::size_t>& runs, double tried_ms, std::vector<Times>* times = nullptr) {
   std::string log;
   std::vector<Contestant> contestants;
@@ -531,7 +530,7 @@ std::string turnsOf(const std::vector<std::size_t>& runs, double tried_ms, std::
   return log;
 }
 
-TEST(Timing, TakesTurns) {
+TEST(Timing, RunsRoundByRound) {
   EXPECT_EQ(turnsOf({3, 3}, 1000), "|AB|AB|AB");
   EXPECT_EQ(turnsOf({}, 1000), "");
 }
@@ -563,15 +562,15 @@ TEST(Timing, CountsTheSecondOfTwoRuns) {
   };
   const std::vector<Times> times = timeInTurn({{slow_first, 1, 3}}, [](std::size_t, std::size_t) {});
   EXPECT_GE(*std::min_element(times[0].cold.begin(), times[0].cold.end()), 20);
-  EXPECT_LT(times[0].least(), 15);
+  EXPECT_LT(times[0].min(), 15);
   EXPECT_EQ(calls, 6);
-  // A long one's only run counts as both.
+  // The only run of a long one counts as both.
   calls = 0;
   const std::vector<Times> once = timeInTurn({{slow_first, 1000, 2}}, [](std::size_t, std::size_t) {});
   EXPECT_EQ(once[0].cold, once[0].runs);
 }
 
-TEST(Timing, TakesAsLongAsItTakes) {
+TEST(Timing, MeasuresTheDurationOfACall) {
   const double milliseconds = millisecondsOf([] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); });
   EXPECT_GE(milliseconds, 20);
   EXPECT_LT(milliseconds, 2000);
@@ -604,12 +603,12 @@ TEST(PrepareScan, KeepsTheOrganizationAndBlanksTheGround) {
   EXPECT_EQ(scan.object_of, std::vector<std::uint32_t>({1, 1, 1, 2, 0, 1, 1, 1, 2, 0}));
 }
 
-TEST(PrepareScan, KeepsTheGroundIfNotToldOtherwise) {
+TEST(PrepareScan, KeepsTheGroundByDefault) {
   const ComparedScan scan = prepareScan(smallCloud(), {}, -std::numeric_limits<float>::infinity(), false);
   EXPECT_EQ(*scan.returns, pcl::Indices({0, 1, 2, 3, 5, 6, 7, 8}));
   EXPECT_EQ((*scan.cloud)[3].z, -1.7F);
   EXPECT_TRUE(scan.object_of.empty());
-  // At the height of a return, this is no ground.
+  // A return at this height is above the ground.
   const ComparedScan at_its_height = prepareScan(smallCloud(), {}, -1.7F, false);
   EXPECT_EQ(at_its_height.returns->size(), 7U);
   EXPECT_EQ((*at_its_height.cloud)[3].z, -1.7F);
@@ -637,15 +636,15 @@ TEST(PrepareScan, RefusesAScanWithoutReturns) {
 ComparedScan boxes(std::uint64_t seed) {
   Random random(seed);
   ComparedScan scan;
-  const Problem problem = problemOf(cloudOf<RivalPoint>(boxesAround(random, 120, 6)), 1, 1);
-  scan.cloud = std::make_shared<RivalCloud>(*problem.cloud);
+  const Problem problem = problemOf(cloudOf<ComparedPoint>(boxesAround(random, 120, 6)), 1, 1);
+  scan.cloud = std::make_shared<ComparedCloud>(*problem.cloud);
   scan.returns = std::make_shared<pcl::Indices>(*problem.returns);
   return scan;
 }
 
-CompareSettings settingsOf(std::vector<Rival> rivals, std::size_t runs) {
+CompareSettings settingsOf(std::vector<Baseline> baselines, std::size_t runs) {
   CompareSettings settings;
-  settings.rivals = std::move(rivals);
+  settings.baselines = std::move(baselines);
   settings.must_agree = {"lisco"};
   settings.runs = runs;
   return settings;
@@ -653,24 +652,24 @@ CompareSettings settingsOf(std::vector<Rival> rivals, std::size_t runs) {
 
 const auto kNoProgress = [](const std::string&, double) {};
 
-TEST(Compare, OnlyComparesWithoutRuns) {
-  const CompareSettings settings = settingsOf(allRivals(), 0);
+TEST(Compare, ComparesClustersWithoutRuns) {
+  const CompareSettings settings = settingsOf(allBaselines(), 0);
   const CaseResult result = compareAt(boxes(1), 0.4, settings, kNoProgress);
-  ASSERT_EQ(result.rivals.size(), settings.rivals.size());
+  ASSERT_EQ(result.baselines.size(), settings.baselines.size());
   EXPECT_GT(result.clusters, 2U);
   EXPECT_FALSE(result.objects.has_value());
-  for (const RivalResult& entry : result.rivals) {
+  for (const BaselineResult& entry : result.baselines) {
     EXPECT_FALSE(entry.times.has_value());
     EXPECT_EQ(entry.failure, "");
-    if (entry.rival->key != "pcl-default" && entry.rival->key != "paper") {
-      EXPECT_TRUE(entry.difference.identical) << entry.rival->key << "\n" << entry.difference.details;
+    if (entry.baseline->key != "pcl-default" && entry.baseline->key != "paper") {
+      EXPECT_TRUE(entry.difference.identical) << entry.baseline->key << "\n" << entry.difference.details;
       EXPECT_EQ(entry.clusters, result.clusters);
     }
   }
 }
 
-TEST(Compare, TimesAllButTheOneThatIsOnlyShown) {
-  const CompareSettings settings = settingsOf(allRivals(), 2);
+TEST(Compare, TimesAllButPclsDefault) {
+  const CompareSettings settings = settingsOf(allBaselines(), 2);
   double last = 0;
   const CaseResult result = compareAt(boxes(1), 0.4, settings, [&](const std::string& what, double share) {
     EXPECT_FALSE(what.empty());
@@ -679,56 +678,56 @@ TEST(Compare, TimesAllButTheOneThatIsOnlyShown) {
     last = share;
   });
   EXPECT_GT(last, 0);
-  for (const RivalResult& entry : result.rivals) {
-    ASSERT_EQ(entry.times.has_value(), entry.rival->key != "pcl-default") << entry.rival->key;
+  for (const BaselineResult& entry : result.baselines) {
+    ASSERT_EQ(entry.times.has_value(), entry.baseline->key != "pcl-default") << entry.baseline->key;
     EXPECT_EQ(entry.times.value_or(timesOf({0, 0})).runs.size(), 2U);
   }
   EXPECT_DOUBLE_EQ(*result.ratio(*result.find("pcl")), 1);
   EXPECT_FALSE(result.ratio(*result.find("pcl-default")).has_value());
-  EXPECT_EQ(result.find("nobody"), nullptr);
+  EXPECT_EQ(result.find("unknown"), nullptr);
 }
 
-TEST(Compare, NeverTimesAWrongAnswerThatMustBeRight) {
+TEST(Compare, DoesNotTimeAMismatchThatMustAgree) {
   std::size_t calls = 0;
-  Rival wrong = spoilt([&calls](Clusters& clusters) {
+  Baseline wrong = spoilt([&calls](Clusters& clusters) {
     ++calls;
     clusters.erase(clusters.begin());  // the largest
   });
-  CompareSettings settings = settingsOf({referenceRival(), wrong}, 2);
-  EXPECT_TRUE(compareAt(boxes(1), 0.4, settings, kNoProgress).rivals[1].times.has_value());
+  CompareSettings settings = settingsOf({referenceBaseline(), wrong}, 2);
+  EXPECT_TRUE(compareAt(boxes(1), 0.4, settings, kNoProgress).baselines[1].times.has_value());
   settings.must_agree.emplace_back("spoilt");
   calls = 0;
   const CaseResult result = compareAt(boxes(1), 0.4, settings, kNoProgress);
-  EXPECT_FALSE(result.rivals[1].times.has_value());
-  EXPECT_TRUE(result.rivals[0].times.has_value());
-  EXPECT_FALSE(result.rivals[1].difference.identical);
-  EXPECT_EQ(calls, 2U);  // its answer, and that of any size for the details
+  EXPECT_FALSE(result.baselines[1].times.has_value());
+  EXPECT_TRUE(result.baselines[0].times.has_value());
+  EXPECT_FALSE(result.baselines[1].difference.identical);
+  EXPECT_EQ(calls, 2U);  // its clusters, and those of any size for the details
 }
 
-TEST(Compare, SaysWhyARivalCannot) {
-  Rival unable{"unable", "unable", [](const Problem&, Clusters&) { throw std::runtime_error("too many cells"); }};
-  Rival rows = referenceRival();
+TEST(Compare, ReportsWhyABaselineFailed) {
+  Baseline unable{"unable", "unable", [](const Problem&, Clusters&) { throw std::runtime_error("too many cells"); }};
+  Baseline rows = referenceBaseline();
   rows.needs_rows = true;
   const CompareSettings settings = settingsOf({unable, rows}, 2);
   ComparedScan scan = boxes(1);
   CaseResult result = compareAt(scan, 0.4, settings, kNoProgress);
-  EXPECT_EQ(result.rivals[0].failure, "too many cells");
-  EXPECT_FALSE(result.rivals[0].times.has_value());
-  EXPECT_EQ(result.rivals[1].failure, "");
+  EXPECT_EQ(result.baselines[0].failure, "too many cells");
+  EXPECT_FALSE(result.baselines[0].times.has_value());
+  EXPECT_EQ(result.baselines[1].failure, "");
   scan.cloud->width = static_cast<std::uint32_t>(scan.cloud->size());
   scan.cloud->height = 1;
   result = compareAt(scan, 0.4, settings, kNoProgress);
-  EXPECT_EQ(result.rivals[1].failure, "needs an organized cloud");
-  EXPECT_FALSE(result.rivals[1].times.has_value());
+  EXPECT_EQ(result.baselines[1].failure, "needs an organized cloud");
+  EXPECT_FALSE(result.baselines[1].times.has_value());
 }
 
-TEST(Compare, GivesSlowRivalsFewerRuns) {
-  Rival slow = spoilt([](Clusters&) { std::this_thread::sleep_for(std::chrono::milliseconds(20)); });
-  CompareSettings settings = settingsOf({referenceRival(), slow}, 6);
+TEST(Compare, GivesSlowBaselinesFewerRuns) {
+  Baseline slow = spoilt([](Clusters&) { std::this_thread::sleep_for(std::chrono::milliseconds(20)); });
+  CompareSettings settings = settingsOf({referenceBaseline(), slow}, 6);
   const auto runs = [&](double max_seconds, std::size_t wanted) {
     settings.max_seconds = max_seconds;
     settings.runs = wanted;
-    return compareAt(boxes(1), 0.4, settings, kNoProgress).rivals[1].times->runs.size();
+    return compareAt(boxes(1), 0.4, settings, kNoProgress).baselines[1].times->runs.size();
   };
   EXPECT_EQ(runs(0.001, 6), 3U);
   EXPECT_EQ(runs(0.001, 2), 2U);
@@ -737,7 +736,7 @@ TEST(Compare, GivesSlowRivalsFewerRuns) {
 
 TEST(Compare, ScoresObjectsIfTheyAreKnown) {
   ComparedScan scan = prepareScan(smallCloud(), {1, 1, 1, 2, 0, 1, 1, 1, 2, 0}, -1.5F, false);
-  CompareSettings settings = settingsOf({referenceRival()}, 0);
+  CompareSettings settings = settingsOf({referenceBaseline()}, 0);
   settings.min_size = 3;
   const CaseResult result = compareAt(scan, 0.3, settings, kNoProgress);
   ASSERT_TRUE(result.objects.has_value());
@@ -745,10 +744,10 @@ TEST(Compare, ScoresObjectsIfTheyAreKnown) {
   EXPECT_EQ(result.objects->whole, 1U);
 }
 
-// Lisco and the grid everywhere; PCL's other trees where their own arithmetic decides nothing.
-TEST(Rivals, FindPclsClusters) {
-  const std::vector<Rival> rivals = allRivals();
-  EXPECT_EQ(rivals.front().key, kReferenceKey);
+// Lisco and the grid on all scans; PCL's other trees where no distance is near the tolerance.
+TEST(Baselines, FindPclsClusters) {
+  const std::vector<Baseline> baselines = allBaselines();
+  EXPECT_EQ(baselines.front().key, kReferenceKey);
   std::size_t compared = 0;
   std::size_t refused = 0;
   for (std::uint64_t seed = 0; seed < 120; ++seed) {
@@ -757,22 +756,23 @@ TEST(Rivals, FindPclsClusters) {
     const bool tidy = seed % 4 == 0;
     const Scan scan = tidy ? boxesAround(random, 90, 5) : randomScan(random, 300);
     const double tolerance = tidy ? random.between(0.1, 1.0) : static_cast<double>(criticalTolerance(random, scan));
-    const Problem problem = problemOf(cloudOf<RivalPoint>(scan), tolerance, 1 + static_cast<unsigned>(random.below(8)));
+    const Problem problem =
+        problemOf(cloudOf<ComparedPoint>(scan), tolerance, 1 + static_cast<unsigned>(random.below(8)));
     if (problem.returns->empty()) continue;
-    const Clusters expected = extracted(referenceRival(), problem);
-    for (const Rival& rival : rivals) {
-      if (rival.key == "pcl-default" || rival.key == "paper") continue;
-      if (rival.key == "pcl-octree" && !tidy) continue;
-      SCOPED_TRACE(rival.key);
+    const Clusters expected = extracted(referenceBaseline(), problem);
+    for (const Baseline& baseline : baselines) {
+      if (baseline.key == "pcl-default" || baseline.key == "paper") continue;
+      if (baseline.key == "pcl-octree" && !tidy) continue;
+      SCOPED_TRACE(baseline.key);
       Clusters found;
       try {
-        found = extracted(rival, problem);
+        found = extracted(baseline, problem);
       } catch (const std::runtime_error& error) {
-        EXPECT_EQ(rival.key, "grid") << error.what();
+        EXPECT_EQ(baseline.key, "grid") << error.what();
         ++refused;
         continue;
       }
-      const Difference difference = differenceOf(problem, referenceRival(), expected, rival, found);
+      const Difference difference = differenceOf(problem, referenceBaseline(), expected, baseline, found);
       EXPECT_TRUE(difference.identical) << difference.details;
       ++compared;
     }
@@ -782,8 +782,8 @@ TEST(Rivals, FindPclsClusters) {
   EXPECT_LT(refused, 20U);
 }
 
-TEST(Rivals, ThePaperFindsPclsClustersOnARegularScan) {
-  RivalCloud::Ptr cloud = std::make_shared<RivalCloud>(72, 3);
+TEST(Baselines, ThePaperFindsPclsClustersOnARegularScan) {
+  ComparedCloud::Ptr cloud = std::make_shared<ComparedCloud>(72, 3);
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 72; ++column) {
       const double azimuth = 5 * kDegree * column;
@@ -799,18 +799,18 @@ TEST(Rivals, ThePaperFindsPclsClustersOnARegularScan) {
   EXPECT_NEAR(sensor.delta_theta, 1 * kDegree, 1e-6);
   for (const double tolerance : {0.1, 0.3, 0.5, 0.9, 2.0}) {
     const Problem problem = problemOf(cloud, tolerance, 2);
-    for (const Rival& rival : allRivals())
-      if (rival.key == "paper" || rival.key == "lisco") {
-        EXPECT_EQ(differenceFrom(problem, rival).details, "") << rival.key << ' ' << tolerance;
+    for (const Baseline& baseline : allBaselines())
+      if (baseline.key == "paper" || baseline.key == "lisco") {
+        EXPECT_EQ(differenceFrom(problem, baseline).details, "") << baseline.key << ' ' << tolerance;
       }
   }
 }
 
-// Distances far below and above those of any sensor: who cannot, says so.
-TEST(Rivals, SurviveAnyScale) {
+// Distances far below and above those of sensors: identical clusters, or a reason.
+TEST(Baselines, AcceptAnyScale) {
   for (const double scale : {1e-30, 1e-24, 1e-15, 1e-10, 1e-7, 1e15, 1e30, -1e-30, -1e-10, -1e-7}) {
     SCOPED_TRACE(scale);
-    auto cloud = std::make_shared<RivalCloud>(4, 3);
+    auto cloud = std::make_shared<ComparedCloud>(4, 3);
     for (std::size_t i = 0; i < 12; ++i) {
       (*cloud)[i].x = static_cast<float>(scale * (1 + 0.5 * static_cast<double>(i % 6)));
       (*cloud)[i].y = static_cast<float>(scale * (i < 6 ? 1 : 2));
@@ -820,13 +820,13 @@ TEST(Rivals, SurviveAnyScale) {
     ComparedScan scan;
     scan.cloud = cloud;
     scan.returns = std::make_shared<pcl::Indices>(*problemOf(cloud, 1, 1).returns);
-    CompareSettings settings = settingsOf(allRivals(), 0);
+    CompareSettings settings = settingsOf(allBaselines(), 0);
     settings.min_size = 1;
     for (const double tolerance : {1.2 * std::fabs(scale), 1e-60, 1e-6, 1.0, 1e60}) {
       const CaseResult result = compareAt(scan, tolerance, settings, kNoProgress);
       for (const char* key : {"pcl-octree", "grid", "lisco"}) {
-        const RivalResult& entry = *result.find(key);
-        if (entry.rival->key == "pcl-octree" && tolerance > 1e18) continue;  // its squares overflow
+        const BaselineResult& entry = *result.find(key);
+        if (entry.baseline->key == "pcl-octree" && tolerance > 1e18) continue;  // its squares overflow
         EXPECT_TRUE(entry.difference.identical || !entry.failure.empty()) << key << " at " << tolerance << "\n"
                                                                           << entry.difference.details;
       }
@@ -860,16 +860,16 @@ std::vector<std::vector<std::string>> cellsOf(const std::string& csv) {
   return rows;
 }
 
-/// One input by two tolerances, as if three rivals had been timed.
+/// One input at two tolerances with times of three baselines.
 struct Example {
-  CompareSettings settings = settingsOf({referenceRival(), {}, {}}, 2);
+  CompareSettings settings = settingsOf({referenceBaseline(), {}, {}}, 2);
   std::vector<InputResult> inputs{1};
 
   Example() {
     settings.min_size = 5;
     settings.tolerances = {0.1, 0.25};
-    settings.rivals[1] = {"fast", "a fast one", {}};
-    settings.rivals[2] = {"wrong", "a wrong one", {}};
+    settings.baselines[1] = {"fast", "a fast one", {}};
+    settings.baselines[2] = {"wrong", "a wrong one", {}};
     settings.must_agree = {"fast"};
     InputResult& input = inputs[0];
     input.name = "my \"best\" scan, of all";
@@ -882,25 +882,25 @@ struct Example {
       CaseResult& result = input.cases.emplace_back();
       result.tolerance = tolerance;
       result.clusters = 7;
-      for (const Rival& rival : settings.rivals) {
-        RivalResult& entry = result.rivals.emplace_back();
-        entry.rival = &rival;
+      for (const Baseline& baseline : settings.baselines) {
+        BaselineResult& entry = result.baselines.emplace_back();
+        entry.baseline = &baseline;
         entry.clusters = 7;
       }
-      result.rivals[0].times = timesOf({10, 30, 20});
-      result.rivals[0].times->cold = {30, 50, 40};
-      result.rivals[1].times = timesOf({2, 4});
-      result.rivals[1].times->cold = {4, 6};
-      result.rivals[2].clusters = 8;
-      result.rivals[2].difference = {false, false, 1, 12, false, "a \"quoted\"\nsecond line\n"};
+      result.baselines[0].times = timesOf({10, 30, 20});
+      result.baselines[0].times->cold = {30, 50, 40};
+      result.baselines[1].times = timesOf({2, 4});
+      result.baselines[1].times->cold = {4, 6};
+      result.baselines[2].clusters = 8;
+      result.baselines[2].difference = {false, false, 1, 12, false, "a \"quoted\"\nsecond line\n"};
     }
     input.cases[1].objects = ObjectScore{9, 5, 2, 1, 3};
-    input.cases[1].rivals[2].failure = "needs an organized cloud";
+    input.cases[1].baselines[2].failure = "needs an organized cloud";
   }
   Example(const Example&) = delete;
 };
 
-TEST(Report, CsvHoldsWhatWasFound) {
+TEST(Report, CsvHoldsAllResults) {
   const Example example;
   const std::string csv = csvOf(example.inputs, example.settings);
   EXPECT_EQ(csv.rfind(kCsvSignature, 0), 0U);
@@ -923,7 +923,7 @@ TEST(Report, CsvHoldsWhatWasFound) {
                  {"ground_z", "-1.5"},
                  {"min_size", "5"},
                  {"reference_clusters", "7"}});
-  expect(1, {{"rival", "pcl"},
+  expect(1, {{"baseline", "pcl"},
              {"tolerance", "0.1"},
              {"identical", "yes"},
              {"runs", "3"},
@@ -938,7 +938,7 @@ TEST(Report, CsvHoldsWhatWasFound) {
              {"ratio", "1"},
              {"objects", ""},
              {"missed", ""}});
-  expect(2, {{"rival", "fast"},
+  expect(2, {{"baseline", "fast"},
              {"identical", "yes"},
              {"mislabelled", "0"},
              {"runs", "2"},
@@ -948,7 +948,7 @@ TEST(Report, CsvHoldsWhatWasFound) {
              {"min_ms", "2"},
              {"max_ms", "4"},
              {"ratio", "6.66667"}});
-  expect(3, {{"rival", "wrong"},
+  expect(3, {{"baseline", "wrong"},
              {"clusters", "8"},
              {"identical", "no"},
              {"mislabelled", "12"},
@@ -956,7 +956,7 @@ TEST(Report, CsvHoldsWhatWasFound) {
              {"mean_ms", ""},
              {"max_ms", ""},
              {"ratio", ""}});
-  expect(5, {{"rival", "fast"},
+  expect(5, {{"baseline", "fast"},
              {"tolerance", "0.25"},
              {"objects", "9"},
              {"whole", "5"},
@@ -971,7 +971,7 @@ TEST(Report, CsvHoldsWhatWasFound) {
   expect(5, {{"failure", ""}});
 }
 
-TEST(Report, JsonHoldsWhatWasFound) {
+TEST(Report, JsonHoldsAllResults) {
   const Example example;
   const std::string text = jsonOf(example.inputs, example.settings, {"other.pcd: does not exist"});
   EXPECT_LT(text.find(kJsonSignature), 1000U);
@@ -993,8 +993,8 @@ TEST(Report, JsonHoldsWhatWasFound) {
   EXPECT_EQ(first["tolerance"], 0.1);
   EXPECT_EQ(first["clusters"], 7);
   EXPECT_FALSE(first.contains("objects"));
-  const auto& fast = first["rivals"][1];
-  EXPECT_EQ(fast["rival"], "fast");
+  const auto& fast = first["baselines"][1];
+  EXPECT_EQ(fast["baseline"], "fast");
   EXPECT_EQ(fast["title"], "a fast one");
   EXPECT_EQ(fast["must_agree"], true);
   EXPECT_EQ(fast["identical"], true);
@@ -1006,7 +1006,7 @@ TEST(Report, JsonHoldsWhatWasFound) {
   EXPECT_EQ(fast["cold_median_ms"], 5.0);
   EXPECT_NEAR(fast["ratio"].get<double>(), 20.0 / 3, 1e-9);
   EXPECT_NEAR(fast["confidence99_ms"].get<double>(), 63.657, 1e-3);
-  const auto& wrong = first["rivals"][2];
+  const auto& wrong = first["baselines"][2];
   EXPECT_EQ(wrong["must_agree"], false);
   EXPECT_EQ(wrong["identical"], false);
   EXPECT_EQ(wrong["clusters"], 8);
@@ -1018,17 +1018,17 @@ TEST(Report, JsonHoldsWhatWasFound) {
   const auto& second = input["cases"][1];
   EXPECT_EQ(second["objects"],
             nlohmann::json({{"count", 9}, {"whole", 5}, {"split", 2}, {"merged", 1}, {"missed", 3}}));
-  EXPECT_EQ(second["rivals"][2]["failure"], "needs an organized cloud");
+  EXPECT_EQ(second["baselines"][2]["failure"], "needs an organized cloud");
 }
 
 TEST(Report, FilesHoldNoNan) {
   Example example;
   example.inputs[0].ground_z = -std::numeric_limits<float>::infinity();
   example.inputs[0].name = "no \xff UTF-8";
-  for (RivalResult& entry : example.inputs[0].cases[0].rivals) entry.times = timesOf({1});
+  for (BaselineResult& entry : example.inputs[0].cases[0].baselines) entry.times = timesOf({1});
   const auto json = nlohmann::json::parse(jsonOf(example.inputs, example.settings, {}));
   EXPECT_TRUE(json["inputs"][0]["ground_z"].is_null());
-  EXPECT_TRUE(json["inputs"][0]["cases"][0]["rivals"][0]["confidence99_ms"].is_null());
+  EXPECT_TRUE(json["inputs"][0]["cases"][0]["baselines"][0]["confidence99_ms"].is_null());
   const std::string csv = csvOf(example.inputs, example.settings);
   EXPECT_EQ(csv.find("nan"), std::string::npos) << csv;
   EXPECT_EQ(csv.find("inf"), std::string::npos) << csv;
@@ -1037,13 +1037,13 @@ TEST(Report, FilesHoldNoNan) {
 TEST(Report, RatiosAreOfMedians) {
   const Example example;
   const CaseResult& result = example.inputs[0].cases[0];
-  EXPECT_NEAR(*result.ratio(result.rivals[1]), 20.0 / 3, 1e-12);
-  EXPECT_NEAR(*result.coldRatio(result.rivals[1]), 40.0 / 5, 1e-12);
-  EXPECT_FALSE(result.ratio(result.rivals[2]).has_value());
-  EXPECT_FALSE(result.coldRatio(result.rivals[2]).has_value());
+  EXPECT_NEAR(*result.ratio(result.baselines[1]), 20.0 / 3, 1e-12);
+  EXPECT_NEAR(*result.coldRatio(result.baselines[1]), 40.0 / 5, 1e-12);
+  EXPECT_FALSE(result.ratio(result.baselines[2]).has_value());
+  EXPECT_FALSE(result.coldRatio(result.baselines[2]).has_value());
 }
 
-TEST(Report, TableNamesAllAndWhatIsWrong) {
+TEST(Report, TableNamesAllBaselinesAndDifferences) {
   const Example example;
   const std::string heading = headingOf(example.inputs[0], example.settings);
   EXPECT_NE(heading.find("16 rows x 1800 columns, 20000 returns above -1.5 m, clusters of at least 5\n"),
@@ -1061,7 +1061,7 @@ TEST(Report, TableNamesAllAndWhatIsWrong) {
   EXPECT_TRUE(std::regex_search(summary, std::regex("a wrong one +0/1 +- +- +- +-\n"))) << summary;
 }
 
-TEST(Report, SumsUpOnlyWhatIsMoreThanOneCase) {
+TEST(Report, SumsUpSeveralCasesOnly) {
   Example example;
   example.settings.tolerances.pop_back();
   example.inputs[0].cases.pop_back();

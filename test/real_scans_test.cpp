@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cloud_file.h"
+#include "io/cloud_file.h"
 #include "pcl_client.h"
 #include "pcl_clouds.h"
 #include "pcl_stream.h"

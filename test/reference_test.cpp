@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// The two reference implementations that Lisco is compared with: the voxel grid, which must be exact, and the paper's
-// own algorithms, which must miss what Algorithm 2's mask misses, and nothing else.
+// The reference implementations: the voxel grid is exact, and the paper's algorithms miss exactly the neighbours that
+// Algorithm 2's mask misses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ constexpr double kDegree = kPi / 180.0;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// The clusters that a number per point stands for; points of `none` are in none.
+/// The clusters by a number per point; points with number `none` are in none.
 Clustering byNumber(const std::vector<std::uint32_t>& number_of, std::uint32_t none = PaperLisco::kNoCluster) {
   std::map<std::uint32_t, Cluster> clusters;
   for (std::uint32_t i = 0; i < number_of.size(); ++i) {
@@ -58,8 +58,7 @@ std::vector<lisco::Return> returnsOf(const std::vector<Point>& points) {
 
 // --- The voxel grid ------------------------------------------------------------------------------------------------
 
-/// Whether the grid is free to refuse a scan: its cells cannot be numbered, or its tolerance squared is at the end of
-/// the floats.
+/// Whether the grid may refuse a scan: too many cells, or a tolerance whose square is at the limits of float.
 bool mayRefuse(const std::vector<Point>& points, float tolerance) {
   const double eps = std::fabs(static_cast<double>(tolerance));
   if (!(eps > 1e-18 && eps < 1e18)) return true;
@@ -78,7 +77,7 @@ bool mayRefuse(const std::vector<Point>& points, float tolerance) {
   return bits > 60;
 }
 
-/// \return whether the grid took the scan
+/// \return whether the grid accepted the scan
 bool expectGridExact(VoxelGrid& grid, const std::vector<Point>& all, float tolerance) {
   std::vector<Point> points;
   std::copy_if(all.begin(), all.end(), std::back_inserter(points), isValid);
@@ -128,7 +127,7 @@ TEST(VoxelGrid, IsExactOnLattices) {
   }
 }
 
-TEST(VoxelGrid, IsExactOrSaysNoWhereFloatsEnd) {
+TEST(VoxelGrid, IsExactOrRefusesAtTheLimitsOfFloat) {
   VoxelGrid grid;
   std::size_t taken = 0;
   for (std::uint64_t seed = 0; seed < 1500; ++seed) {
@@ -164,7 +163,7 @@ TEST(VoxelGrid, IsExactOnClumpsAndPlanes) {
 }
 
 // Neighbours in every direction, up to two cells away in each axis, with the cell's border anywhere between them.
-TEST(VoxelGrid, SeesNeighboursInEveryDirection) {
+TEST(VoxelGrid, FindsNeighboursInEveryDirection) {
   VoxelGrid grid;
   Random random(1);
   constexpr float kTolerance = 1.0F;
@@ -192,7 +191,7 @@ TEST(VoxelGrid, PointsExactlyAtTheToleranceAreApart) {
   EXPECT_EQ(byNumber(grid.cluster(returnsOf(row), std::nextafter(0.5F, 1.0F))).size(), 1U);
 }
 
-TEST(VoxelGrid, TakesANegativeToleranceAsItsAbsoluteValue) {
+TEST(VoxelGrid, UsesTheAbsoluteValueOfANegativeTolerance) {
   expectGridExact({{1, 1, 1}, {1.4F, 1, 1}, {2, 1, 1}}, -0.5F);
 }
 
@@ -211,7 +210,7 @@ TEST(VoxelGrid, JoinsDuplicates) {
   expectGridExact(points, 1.001F);
 }
 
-TEST(VoxelGrid, TakesNothingAndOnePoint) {
+TEST(VoxelGrid, AcceptsNoPointsAndOnePoint) {
   VoxelGrid grid;
   EXPECT_TRUE(grid.cluster({}, 0.5F).empty());
   EXPECT_EQ(grid.cluster({{1, 2, 3, 0}}, 0.5F).size(), 1U);
@@ -219,7 +218,7 @@ TEST(VoxelGrid, TakesNothingAndOnePoint) {
   EXPECT_TRUE(grid.cluster({}, 0.0F).empty());
 }
 
-TEST(VoxelGrid, ForgetsTheScanBefore) {
+TEST(VoxelGrid, StartsEachScanAfresh) {
   VoxelGrid grid;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -241,11 +240,11 @@ TEST(VoxelGrid, RefusesMoreCellsThanItCanNumber) {
   EXPECT_THROW(grid.cluster(returnsOf(far), 0.001F), std::runtime_error);
   // Few enough along each axis, but 31 bits for each of three.
   EXPECT_THROW(grid.cluster(returnsOf({{0.1F, 0, 0}, {1e6F, 1e6F, 1e6F}}), 0.001F), std::runtime_error);
-  // And works on afterwards.
+  // The next scan is clustered again.
   expectGridExact(grid, {{1, 1, 1}, {1.4F, 1, 1}, {2, 1, 1}}, 0.5F);
 }
 
-// One axis, so long that a double does not tell cells at its near end from each other: either refused, or right.
+// One axis, so long that cells at its near end are equal in double: refused or right.
 TEST(VoxelGrid, DoesNotConfuseCellsOfALongAxis) {
   for (const float far : {-1e6F, -1e9F, -1e10F, -1e11F, -1e12F, -1e14F, -1e16F, -1e17F, -3e17F}) {
     SCOPED_TRACE(far);
@@ -321,9 +320,8 @@ std::size_t apart(std::size_t a, std::size_t b) {
   return a > b ? a - b : b - a;
 }
 
-/// What the paper's method compares, by its definitions and nothing else: when p arrives, or at once with others of its
-/// column, it is compared with what its mask holds of the steps before, and, around the end of the rotation, of the
-/// first ones.
+/// The pairs that the paper's method compares, by its definitions: p with the points in its mask in the same and the
+/// steps before, and around the end of the rotation in the first steps.
 class LiteralMask {
  public:
   LiteralMask(std::size_t lasers, std::size_t steps, const NominalSensor& sensor, float tolerance)
@@ -377,7 +375,7 @@ Clustering byThePaper(const Scan& scan, const NominalSensor& sensor, float toler
   return byNumber(paper.cluster(returnsOf(matrixOf(scan)), scan.lasers, sensor, tolerance));
 }
 
-/// A rotation of a regular sensor near the horizon, as the paper thinks of one.
+/// A rotation of a regular sensor near the horizon, as in the paper.
 class RegularSensor {
  public:
   RegularSensor(std::size_t steps, std::size_t lasers, double delta_theta)
@@ -399,7 +397,7 @@ class RegularSensor {
   NominalSensor nominal_;
 };
 
-/// Holds the outcome against the oracle's, after making sure that the mask shows all neighbours.
+/// Compares the clusters with the oracle's, after checking that the mask covers all neighbours.
 void expectPaperExact(const Scan& scan, const NominalSensor& sensor, float tolerance) {
   const std::vector<Point> matrix = matrixOf(scan);
   const LiteralMask mask(scan.lasers, scan.columns, sensor, tolerance);
@@ -448,7 +446,7 @@ TEST(PaperLisco, JoinsAcrossTheSeam) {
     expectPaperExact(scan, sensor.nominal(), tolerance);
     EXPECT_EQ(byThePaper(scan, sensor.nominal(), tolerance).size(), 1U);
   }
-  // Only the last of the steps sees the first: without it there are two.
+  // Only the last step reaches the first one; without it there are two clusters.
   Scan scan = sensor.empty();
   for (const std::size_t step : {0, 1, 33, 34}) scan.set(0, step, sensor.at(0, step, 5.0));
   EXPECT_EQ(byThePaper(scan, sensor.nominal(), 0.9F).size(), 2U);
@@ -465,7 +463,7 @@ TEST(PaperLisco, ComparesPointsNearerThanEpsWithAll) {
   EXPECT_EQ(byThePaper(scan, sensor.nominal(), 0.89F).size(), 3U);
 }
 
-TEST(PaperLisco, PassesEmptyColumnsAndScans) {
+TEST(PaperLisco, AcceptsEmptyColumnsAndScans) {
   const RegularSensor sensor(36, 2, 1.0 * kDegree);
   Scan scan = sensor.empty();
   EXPECT_TRUE(byThePaper(scan, sensor.nominal(), 1.0F).empty());
@@ -486,7 +484,7 @@ TEST(PaperLisco, ToleranceZeroGivesSingletons) {
   EXPECT_EQ(byThePaper(scan, sensor.nominal(), -0.5F).size(), 1U);
 }
 
-// --- Algorithm 4's four cases, on one laser whose mask shows everything ---------------------------------------------
+// --- Algorithm 4's four cases, on one laser whose mask covers everything -------------------------------------------
 
 /// Numbers of the clusters of points at these places on a line, one per step.
 std::vector<std::uint32_t> onALine(const std::vector<double>& places) {
@@ -502,17 +500,17 @@ TEST(PaperLisco, StartsASubclusterNamedByItsEarlierPoint) {
   EXPECT_EQ(onALine({0, 5, 0.5}), Numbers({0, 1, 0}));
 }
 
-TEST(PaperLisco, LetsTheNewPointJoin) {
+TEST(PaperLisco, JoinsTheNewPoint) {
   EXPECT_EQ(onALine({0, 0.5, 1.2}), Numbers({0, 0, 0}));
 }
 
-TEST(PaperLisco, LetsTheOlderPointJoin) {
-  // The last point joins the first two, then brings in the third, which was alone.
+TEST(PaperLisco, JoinsTheOlderPoint) {
+  // The last point joins the first two, then the third joins it.
   EXPECT_EQ(onALine({0, 0.5, 2.2, 1.3}), Numbers({0, 0, 0, 0}));
 }
 
 TEST(PaperLisco, MergesTheSmallerIntoTheLarger) {
-  // The last point lies between the two subclusters, and comes to the earlier one first.
+  // The last point lies between the two subclusters and is compared with the earlier one first.
   EXPECT_EQ(onALine({0, 0.5, 1.0, 2.5, 3.0, 1.8}), Numbers({0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(onALine({0, 0.5, 2.0, 2.5, 3.0, 3.5, 1.3}), Numbers({2, 2, 2, 2, 2, 2, 2}));
 }
@@ -527,7 +525,7 @@ TEST(PaperLisco, MergesSubclustersOfManyArrays) {
   }
 }
 
-TEST(PaperLisco, ForgetsTheScanBefore) {
+TEST(PaperLisco, StartsEachScanAfresh) {
   PaperLisco paper;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -541,7 +539,7 @@ TEST(PaperLisco, ForgetsTheScanBefore) {
   }
 }
 
-// On any scan, whatever its mask misses: the components of what it compares.
+// On any scan: the components of the pairs that the mask covers.
 void expectWhatTheMaskShows(const Scan& scan, const NominalSensor& sensor, float tolerance) {
   const std::vector<Point> matrix = matrixOf(scan);
   const LiteralMask mask(scan.lasers, scan.columns, sensor, tolerance);
@@ -550,7 +548,7 @@ void expectWhatTheMaskShows(const Scan& scan, const NominalSensor& sensor, float
   });
   const Clustering found = byThePaper(scan, sensor, tolerance);
   EXPECT_EQ(difference(expected, found), "") << "tolerance " << tolerance;
-  // So it never joins what is apart: each cluster lies in one of the true ones.
+  // Each cluster lies in one of the true ones.
   std::map<std::uint32_t, std::size_t> true_cluster;
   const Clustering right = trueClusters(matrix, tolerance);
   for (std::size_t i = 0; i < right.size(); ++i)
@@ -581,7 +579,7 @@ TEST(PaperLisco, MissesWhatItsMaskMissesAndNothingElse) {
   EXPECT_GT(wrong, kScans / 50);  // and it does miss some
 }
 
-TEST(PaperLisco, MissesNothingElseWhereFloatsEnd) {
+TEST(PaperLisco, MissesNothingElseAtTheLimitsOfFloat) {
   std::size_t taken = 0;
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -598,9 +596,8 @@ TEST(PaperLisco, MissesNothingElseWhereFloatsEnd) {
   EXPECT_GT(taken, 500U);
 }
 
-// Two returns behind one another, apart by the tolerance but for the last bits: rounding of their distances from the
-// sensor decides nothing.
-TEST(PaperLisco, DoesNotLoseNeighboursToRoundedRanges) {
+// Two returns behind one another, apart by the tolerance up to the last bits.
+TEST(PaperLisco, FindsNeighboursDespiteRoundedRanges) {
   Random random(1);
   std::size_t neighbours = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -726,7 +723,7 @@ TEST(PaperLisco, MissesTheCounterexamples) {
   }
 }
 
-// The same two returns, where the mask does look for them: at its very end.
+// The same two returns at the end of the mask.
 TEST(PaperLisco, JoinsTheCounterexamplesWhereItsMaskEnds) {
   for (const Counterexample& example : counterexamples()) {
     SCOPED_TRACE(example.why);

@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kDegree = kPi / 180;
 
-// Scenes are fitted by scanning them again and again: all seeds only where that is quick.
+// Scenes are fitted by many scans: all seeds only in release builds.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(NDEBUG)
 constexpr unsigned kSeeds = 2;
 #else
@@ -52,10 +52,10 @@ Solid randomSolid(Random& random) {
     solid = Solid::cylinder({0, 0, -half()}, {0, 0, half()}, half());
   else if (choice < 0.7)
     solid = Solid::block({-half(), half(), -half(), half(), -half()}, {-half(), half(), -half(), half(), half()});
-  return solid.turned(random.between(-kPi, kPi)).moved(randomPlace(random, 5));
+  return solid.rotated(random.between(-kPi, kPi)).moved(randomPlace(random, 5));
 }
 
-/// A place for a scan of a single solid, as object 1, over a floor far below.
+/// A scene of a single solid, object 1, with a distant floor.
 Scene sceneOf(const Solid& solid) {
   Scene scene;
   scene.floor_z = -1000;
@@ -66,7 +66,7 @@ Scene sceneOf(const Solid& solid) {
 
 // --- Solids --------------------------------------------------------------------------------------------------------
 
-TEST(Solid, IsMetWhereGeometrySays) {
+TEST(Solid, HasTheIntervalsOfGeometry) {
   const auto enters = [](const Solid& solid, const Vector& direction) { return solid.along(direction).enter; };
   EXPECT_NEAR(enters(Solid::ellipsoid({5, 0, 0}, {1, 2, 3}), {1, 0, 0}), 4, 1e-12);
   EXPECT_NEAR(enters(Solid::box({3, -1, -1}, {4, 1, 3}), {0.8, 0.0, 0.6}), 3 / 0.8, 1e-12);
@@ -75,8 +75,8 @@ TEST(Solid, IsMetWhereGeometrySays) {
   EXPECT_NEAR(enters(Solid::cylinder({5, 0, 0}, {7, 0, 0}, 0.5), {1, 0, 0}), 5, 1e-12) << "onto its end";
   // A windscreen that leans from x = 2 at z = -1 to x = 4 at z = 1 is met at x = 3 by a level ray.
   EXPECT_NEAR(enters(Solid::block({2, 9, -1, 1, -1}, {4, 8, -1, 1, 1}), {1, 0, 0}), 3, 1e-12);
-  EXPECT_NEAR(enters(Solid::box({3, -1, -1}, {4, 1, 1}).turned(kPi / 2), {0, 1, 0}), 3, 1e-12);
-  EXPECT_NEAR(enters(Solid::box({3, -1, -1}, {4, 1, 1}).moved({0, 0.5, 0}).turned(kPi), {-1, 0, 0}), 3, 1e-12);
+  EXPECT_NEAR(enters(Solid::box({3, -1, -1}, {4, 1, 1}).rotated(kPi / 2), {0, 1, 0}), 3, 1e-12);
+  EXPECT_NEAR(enters(Solid::box({3, -1, -1}, {4, 1, 1}).moved({0, 0.5, 0}).rotated(kPi), {-1, 0, 0}), 3, 1e-12);
 
   const Interval missed = Solid::ellipsoid({5, 0, 0}, {1, 1, 1}).along({0, 1, 0});
   EXPECT_GT(missed.enter, missed.leave);
@@ -84,7 +84,7 @@ TEST(Solid, IsMetWhereGeometrySays) {
   EXPECT_GT(beside.enter, beside.leave) << "along its axis";
 }
 
-TEST(Solid, IsMetWhereMarchingMeetsIt) {
+TEST(Solid, AgreesWithRayMarching) {
   Random random(1);
   int met = 0;
   for (int round = 0; round < 20000; ++round) {
@@ -114,7 +114,7 @@ TEST(Solid, IsMetWhereMarchingMeetsIt) {
   EXPECT_GT(met, 5000);
 }
 
-TEST(Solid, OfLeavesLetsThroughWhatTheExponentialSays) {
+TEST(Solid, OfLeavesStopsRaysExponentially) {
   // A wall of leaves 1 m thick with a mean depth of 0.5 m stops all but exp (-2) of the rays that go straight in.
   const Scene scene = sceneOf(Solid::box({4, -50, -50}, {5, 50, 50}).ofLeaves(0.5));
   Sensor sensor = makeSensor("hdl64e", 1, 100000);
@@ -167,7 +167,7 @@ TEST(Sensor, HasTheLasersAndStepsOfItsModel) {
   EXPECT_THROW(makeSensor("hdl65"), std::invalid_argument);
 }
 
-TEST(Sensor, LooksBehindFirstAndTurnsClockwise) {
+TEST(Sensor, StartsBehindAndTurnsClockwise) {
   const Sensor sensor = makeSensor("hdl64e", 3, 8);
   const auto expectHeading = [&sensor](std::size_t step, double x, double y) {
     const Vector direction = sensor.direction(1, step);
@@ -182,7 +182,7 @@ TEST(Sensor, LooksBehindFirstAndTurnsClockwise) {
   expectHeading(6, 0, -1);
 }
 
-TEST(Sensor, StaggersAsItsModelDoes) {
+TEST(Sensor, HasTheStaggerOfItsModel) {
   for (const double stagger : makeSensor("hdl64e").stagger) EXPECT_EQ(stagger, 0);
 
   // 16 firings in 2/3 of a step: the lowest laser first, then the lowest of the upper half.
@@ -243,7 +243,7 @@ TEST(Sensor, HasAnyNumberOfLasersAndSteps) {
 
 // --- Scanning ------------------------------------------------------------------------------------------------------
 
-TEST(Scan, MeetsWhatBruteForceMeetsFirst) {
+TEST(Scan, AgreesWithBruteForce) {
   Random random(2);
   for (int round = 0; round < 20; ++round) {
     Scene scene;
@@ -275,7 +275,7 @@ TEST(Scan, MeetsWhatBruteForceMeetsFirst) {
   }
 }
 
-TEST(Scan, IsDisturbedAsAsked) {
+TEST(Scan, HasTheGivenNoiseAndDropOuts) {
   const Scene scene = layOutScene(5, 1, 2);
   const Sensor sensor = makeSensor("hdl64e");
   const Scan perfect = scan(scene, sensor, {1, 0, 0});
@@ -303,7 +303,7 @@ TEST(Scan, IsDisturbedAsAsked) {
   EXPECT_NEAR(std::sqrt(squares / returns), 0.05, 0.001);
 }
 
-TEST(Scan, IsTheSameForTheSameSeedOnly) {
+TEST(Scan, IsEqualForEqualSeedsOnly) {
   const Scene scene = layOutScene(1, 1, 3);
   const Sensor sensor = makeSensor("vlp16");
   const auto bytes = [](const Scan& rotation) {
@@ -359,7 +359,7 @@ TEST_P(EachScene, LabelsReturnsWithTheObjectTheyLieOn) {
   }
 }
 
-TEST_P(EachScene, HidesWhatCarriesThePapersSensor) {
+TEST_P(EachScene, HidesTheMountOfThePapersSensor) {
   const Scene scene = makeScene(GetParam(), 1);
   ASSERT_EQ(scene.objects[0].kind.substr(0, 6), "sensor");
   for (const Cell& cell : scan(scene, makeSensor("hdl64e"), {}).cells) ASSERT_NE(cell.object, 1U);
@@ -448,7 +448,7 @@ TEST_P(EachStreet, HasAQuarterOfItsReturnsOnItsOwnVehicle) {
   }
 }
 
-TEST_P(EachStreet, HasTheSameVehicleForTheSameSeed) {
+TEST_P(EachStreet, HasEqualVehiclesForEqualSeeds) {
   const auto bytes = [] {
     Scene scene = makeScene(GetParam(), 2);
     addVehicle(scene, 2);
@@ -491,7 +491,7 @@ Clustered clustered(const Scan& rotation, float ground_z, float tolerance) {
   return result;
 }
 
-// What the paper says of scene 3: at 0.4 m every object is apart, at 1 m all cars of a side are one cluster.
+// Scene 3 in the paper: at 0.4 m every object is apart, at 1 m all cars of a side are one cluster.
 TEST(Scenes, ParkedCarsOfASideAreOneClusterAtOneMetreOnly) {
   for (unsigned seed = 1; seed <= kSeeds; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -1,84 +1,88 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "compare/charts.h"
-
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
-#include <limits>
-#include <stdexcept>
+#include <utility>
+
+#include "compare/report.h"
+#include "drawing/chart.h"
+#include "io/text.h"
 
 namespace lisco_apps {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// In single quotes, as both gnuplot and the shell read it.
-std::string quoted(const std::string& text, const char* quote_inside) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string(quote_inside) : std::string(1, c == '\n' ? ' ' : c);
-  return result + "'";
-}
-std::string forGnuplot(const std::string& text) {
-  return quoted(text, "''");
-}
-std::string forShell(const std::string& text) {
-  return quoted(text, "'\\''");
-}
-
-void writeScript(const Chart& chart, const fs::path& png, std::ostream& script) {
-  // From the points alone: an error bar may reach below 0, which no logarithmic axis shows.
-  double least = std::numeric_limits<double>::infinity();
-  double most = 0;
-  for (const Chart::Line& line : chart.lines)
-    for (const Chart::Point& point : line.points) {
-      least = std::min(least, point.y);
-      most = std::max(most, point.y);
-    }
-  script << "set terminal pngcairo noenhanced font 'DejaVu Sans,11' size 900,620 background '#ffffff'\n"
-         << "set output " << forGnuplot(png.string()) << '\n'
-         << "set title " << forGnuplot(chart.title) << '\n'
-         << "set xlabel " << forGnuplot(chart.x_label) << '\n'
-         << "set ylabel " << forGnuplot(chart.y_label) << '\n'
-         << "set logscale y\nset grid ytics xtics back linetype 1 linecolor rgb '#dcdcdc' linewidth 1\nset key outside "
-            "bottom center horizontal\n"
-         << "set offsets graph 0.02, graph 0.02\nset border 3\nset tics nomirror\nset bars small\n"
-         << "set format y '%g'\n"
-         << "set yrange [" << least / 2 << ':' << most * 2 << "]\n"
-         << (chart.log_x ? "set logscale x\n" : "");
-  for (std::size_t i = 0; i < chart.lines.size(); ++i) {
-    script << "$line" << i << " << END\n";
-    for (const Chart::Point& point : chart.lines[i].points)
-      script << point.x << ' ' << point.y << ' ' << (std::isfinite(point.error) ? point.error : 0.0) << '\n';
-    script << "END\n";
+/// Draws a line per baseline that was timed.
+/// \param add_points (baseline, points) appends its points
+template <typename AddPoints>
+void drawLines(const CompareSettings& settings, const std::string& title, const char* x_label, bool log_x,
+               const std::filesystem::path& png, AddPoints&& add_points) {
+  Chart chart{title, x_label, "milliseconds, mean with 99% confidence", log_x};
+  for (const Baseline& baseline : settings.baselines) {
+    Chart::Line line{baseline.title, baseline.color, {}};
+    add_points(baseline, line.points);
+    std::sort(line.points.begin(), line.points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+    if (!line.points.empty()) chart.lines.push_back(std::move(line));
   }
-  for (std::size_t i = 0; i < chart.lines.size(); ++i)
-    script << (i == 0 ? "plot " : ", ") << "$line" << i << " using 1:2:3 with yerrorlines lw 2 pt " << 5 + i % 8
-           << " ps 0.8 lc rgb " << chart.lines[i].color << " title " << forGnuplot(chart.lines[i].title);
-  script << '\n';
+  drawChart(chart, png);
 }
+
+/// Appends the times of a baseline, if it was timed.
+void addPoint(const CaseResult& result, const Baseline& baseline, double x, std::vector<Chart::Point>& points) {
+  const std::optional<Times>& times = result.find(baseline.key)->times;
+  if (times) points.push_back({x, times->mean(), times->confidence99()});
+}
+
+constexpr const char* kOverTolerance = "tolerance, metres";
+
+std::string overPoints(double tolerance) {
+  return formatted("time_over_points_%g.png", tolerance);
+}
+std::string overTolerance(const std::string& input) {
+  return "time_over_tolerance_" + input + ".png";
+}
+constexpr const char* kMeanChart = "time_over_tolerance.png";
 
 }  // namespace
 
-void checkCharts() {
-  // No other thread runs meanwhile. NOLINTNEXTLINE(concurrency-mt-unsafe)
-  if (std::system("gnuplot --version >/dev/null 2>&1") != 0)
-    throw std::runtime_error("charts need gnuplot (Debian's package gnuplot-nox)");
+std::vector<std::string> chartsOf(const std::vector<std::string>& input_names, const CompareSettings& settings) {
+  std::vector<std::string> charts;
+  for (const std::string& name : input_names) charts.push_back(overTolerance(name));
+  if (input_names.size() < 2) return charts;
+  charts.emplace_back(kMeanChart);
+  for (const double tolerance : settings.tolerances) charts.push_back(overPoints(tolerance));
+  return charts;
 }
 
-void drawChart(const Chart& chart, const fs::path& png) {
-  if (chart.lines.empty()) return;
-  const fs::path script = png.string() + ".gnuplot";
-  std::ofstream stream(script);
-  stream.precision(10);
-  writeScript(chart, png, stream);
-  stream.close();
-  // NOLINTNEXTLINE(concurrency-mt-unsafe)
-  const bool drawn = stream && std::system(("gnuplot " + forShell(script.string()) + " >/dev/null 2>&1").c_str()) == 0;
-  std::error_code ignored;
-  fs::remove(script, ignored);
-  if (!drawn || !fs::exists(png)) throw std::runtime_error(png.string() + ": cannot be drawn");
+void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& settings,
+                const std::filesystem::path& folder) {
+  for (const InputResult& input : inputs)
+    drawLines(settings, formatted("%s: %zu returns", input.name.c_str(), input.returns), kOverTolerance, false,
+              folder / overTolerance(input.name), [&](const Baseline& baseline, auto& points) {
+                for (const CaseResult& result : input.cases) addPoint(result, baseline, result.tolerance, points);
+              });
+  if (inputs.size() < 2) return;
+
+  drawLines(settings, formatted("arithmetic mean of %zu scans", inputs.size()), kOverTolerance, false,
+            folder / kMeanChart, [&](const Baseline& baseline, auto& points) {
+              for (std::size_t at = 0; at < settings.tolerances.size(); ++at) {
+                std::vector<Chart::Point> all;
+                for (const InputResult& input : inputs) addPoint(input.cases[at], baseline, 0, all);
+                if (all.size() != inputs.size()) continue;
+                Chart::Point mean{settings.tolerances[at], 0, 0};
+                for (const Chart::Point& point : all) {
+                  mean.y += point.y / static_cast<double>(inputs.size());
+                  mean.error = std::hypot(mean.error, point.error / static_cast<double>(inputs.size()));
+                }
+                points.push_back(mean);
+              }
+            });
+
+  for (std::size_t at = 0; at < settings.tolerances.size(); ++at)
+    drawLines(settings, formatted("%zu scans, tolerance %g m", inputs.size(), settings.tolerances[at]), "returns", true,
+              folder / overPoints(settings.tolerances[at]), [&](const Baseline& baseline, auto& points) {
+                for (const InputResult& input : inputs)
+                  addPoint(input.cases[at], baseline, static_cast<double>(input.returns), points);
+              });
 }
 
 }  // namespace lisco_apps

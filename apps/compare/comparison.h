@@ -9,72 +9,72 @@
 #include <string>
 #include <vector>
 
-#include "cloud_file.h"
+#include "compare/baselines.h"
 #include "compare/difference.h"
-#include "compare/rivals.h"
 #include "compare/timing.h"
+#include "io/cloud_file.h"
 
 namespace lisco_apps {
 
-/// What is to be compared.
+/// What to compare, and how.
 struct CompareSettings {
-  std::vector<Rival> rivals;            ///< in the order of the tables
-  std::vector<std::string> must_agree;  ///< keys of those whose clusters have to be the reference's
+  std::vector<Baseline> baselines;      ///< in the order of the tables
+  std::vector<std::string> must_agree;  ///< keys of those that must find the reference's clusters
   std::vector<double> tolerances;       ///< metres
   unsigned min_size = 10;
-  std::size_t runs = 20;    ///< of each rival, 0: only compare the clusters
-  double max_seconds = 10;  ///< a rival whose runs take longer gets fewer (but 3)
+  std::size_t runs = 20;    ///< of each baseline, 0: compare the clusters only
+  double max_seconds = 10;  ///< a baseline whose runs would take longer gets fewer, at least 3
   bool unorganized = false;
 
-  bool mustAgree(const Rival& rival) const;
+  bool mustAgree(const Baseline& baseline) const;
 };
 
-/// What one rival did with one problem.
-struct RivalResult {
-  const Rival* rival = nullptr;
-  std::string failure;  ///< why it could not do it; empty if it could
+/// The result of one baseline on one problem.
+struct BaselineResult {
+  const Baseline* baseline = nullptr;
+  std::string failure;  ///< why it has no clusters; empty on success
   std::size_t clusters = 0;
   Difference difference;
-  std::optional<Times> times;  ///< none if it was not timed
+  std::optional<Times> times;  ///< none if not timed
 };
 
 /// One scan at one tolerance.
 struct CaseResult {
   double tolerance = 0;
   std::size_t clusters = 0;            ///< of the reference
-  std::optional<ObjectScore> objects;  ///< how these clusters cover the true objects, if they are known
-  std::vector<RivalResult> rivals;
+  std::optional<ObjectScore> objects;  ///< their score against the true objects, if known
+  std::vector<BaselineResult> baselines;
 
-  const RivalResult* find(const std::string& key) const;
-  /// How many times as fast as the reference a rival is (medians), if both were timed.
-  std::optional<double> ratio(const RivalResult& result) const;
-  /// The same of the cold runs.
-  std::optional<double> coldRatio(const RivalResult& result) const;
+  const BaselineResult* find(const std::string& key) const;
+  /// Speed-up over the reference (of medians), if both were timed.
+  std::optional<double> ratio(const BaselineResult& result) const;
+  /// Speed-up of the cold runs.
+  std::optional<double> coldRatio(const BaselineResult& result) const;
 };
 
 /// One scan.
 struct InputResult {
   std::string name, file;
   std::size_t rows = 0, columns = 0;
-  std::size_t returns = 0;  ///< that were clustered
+  std::size_t returns = 0;  ///< clustered
   float ground_z = -std::numeric_limits<float>::infinity();
   std::vector<CaseResult> cases;
 };
 
-/// A scan as the rivals get it.
+/// A scan as prepared for the baselines.
 struct ComparedScan {
-  RivalCloud::Ptr cloud;                 ///< the ground, below ground_z, replaced by NaN
-  pcl::IndicesPtr returns;               ///< what is left
+  ComparedCloud::Ptr cloud;              ///< NaN at the ground, below ground_z
+  pcl::IndicesPtr returns;               ///< the rest
   std::vector<std::uint32_t> object_of;  ///< true object per point, empty if unknown
 };
 
-/// \param unorganized whether to keep only the returns, in the file's order
+/// \param unorganized whether to keep the returns only, in the order of the file
 /// \throws std::runtime_error if there are no returns
 ComparedScan prepareScan(const Cloud& cloud, std::vector<std::uint32_t> object_of, float ground_z, bool unorganized);
 
-/// Runs all rivals on one scan at one tolerance: first compares their clusters with those of PCL with KdTree (false),
-/// then times them in turn, but for those that must agree and do not.
-/// \param progress called with what is being done and the share of it that is done
+/// Runs all baselines on one scan at one tolerance: compares their clusters with the reference's, then times them in
+/// turn. Baselines that must agree and do not are not timed.
+/// \param progress called with the current step and the share of it that is done
 CaseResult compareAt(const ComparedScan& scan, double tolerance, const CompareSettings& settings,
                      const std::function<void(const std::string& what, double share)>& progress);
 

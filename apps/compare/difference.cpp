@@ -12,14 +12,14 @@
 #include <pcl/search/kdtree.h>
 
 #include "core/neighbour.h"
-#include "text.h"
+#include "io/text.h"
 
 namespace lisco_apps {
 namespace {
 
 using Labels = std::vector<std::uint32_t>;
 
-std::size_t place(pcl::index_t index) {
+std::size_t at(pcl::index_t index) {
   return static_cast<std::size_t>(index);
 }
 
@@ -36,12 +36,12 @@ std::set<pcl::Indices> setsOf(const Clusters& clusters) {
   return sets;
 }
 
-/// The best naming: which label of the rival stands for which of the reference (0 for 0).
+/// The best naming: pairs of corresponding labels of the reference and the baseline (0 for 0).
 class Naming {
  public:
   Naming(const pcl::Indices& returns, const Labels& expected, const Labels& found) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> shared;
-    for (const auto index : returns) ++shared[{expected[place(index)], found[place(index)]}];
+    for (const auto index : returns) ++shared[{expected[at(index)], found[at(index)]}];
     std::vector<std::pair<std::size_t, std::pair<std::uint32_t, std::uint32_t>>> by_size;
     for (const auto& [labels, points] : shared) by_size.push_back({points, labels});
     std::sort(by_size.rbegin(), by_size.rend());
@@ -61,12 +61,12 @@ class Naming {
   std::set<std::pair<std::uint32_t, std::uint32_t>> pairs_;
 };
 
-/// Two points whose relation makes the difference.
+/// Two points that only one of the two connects.
 struct DecidingPair {
   enum class Kind {
-    kKeptApart,  ///< neighbours that the rival keeps apart
-    kJoined,     ///< not connected, and the rival joins them
-    kMissed      ///< neighbours that the rival joins, and that the search of PCL's tree misses
+    kKeptApart,  ///< neighbours that the method keeps apart
+    kJoined,     ///< not connected, and the method joins them
+    kMissed      ///< neighbours that the method joins, and that the search of PCL's tree misses
   };
   pcl::index_t a, b;
   float d2;
@@ -75,23 +75,23 @@ struct DecidingPair {
 
 /// A pair of neighbours by the definition, one of `inside` and one of `joined`: the tree over `joined` is searched a
 /// little beyond the tolerance, so that its own rounding misses none.
-std::optional<DecidingPair> missedPair(const Problem& problem, pcl::search::KdTree<RivalPoint>& tree_of_joined,
+std::optional<DecidingPair> missedPair(const Problem& problem, pcl::search::KdTree<ComparedPoint>& tree_of_joined,
                                        const pcl::Indices& inside, const pcl::Indices& joined) {
   constexpr double kBeyond = 1 + 1e-4;
   constexpr double kMaxRadius = 1e18;  // metres; beyond, squares overflow in the tree
-  const RivalCloud& cloud = *problem.cloud;
+  const ComparedCloud& cloud = *problem.cloud;
   const lisco::Tolerance tolerance(static_cast<float>(problem.tolerance));
   const double radius = tolerance.reach() * kBeyond;
   pcl::Indices near;
   std::vector<float> squared;
   for (const auto index : inside) {
-    const RivalPoint& p = cloud[place(index)];
+    const ComparedPoint& p = cloud[at(index)];
     if (radius < kMaxRadius)
       tree_of_joined.radiusSearch(p, radius, near, squared);
     else
       near = joined;
     for (const auto other : near) {
-      const RivalPoint& q = cloud[place(other)];
+      const ComparedPoint& q = cloud[at(other)];
       const float d2 = lisco::squaredDistance(p.x - q.x, p.y - q.y, p.z - q.z);
       if (d2 < tolerance.squared()) return DecidingPair{index, other, d2, DecidingPair::Kind::kMissed};
     }
@@ -99,28 +99,28 @@ std::optional<DecidingPair> missedPair(const Problem& problem, pcl::search::KdTr
   return std::nullopt;
 }
 
-/// Looks for the pair in the reference's component of `point`. The labels are those of clusters of any size; what the
-/// rival puts in none is with nobody.
+/// Searches the pair in the reference's component of `point`. The labels are those of clusters of any size; points
+/// without a label are joined with none.
 std::optional<DecidingPair> decidingPair(const Problem& problem, pcl::index_t point, const Labels& expected,
                                          const Labels& found) {
   const auto joined_with = [&found](pcl::index_t a, pcl::index_t b) {
-    return found[place(a)] != 0 && found[place(a)] == found[place(b)];
+    return found[at(a)] != 0 && found[at(a)] == found[at(b)];
   };
   pcl::IndicesPtr inside = std::make_shared<pcl::Indices>();
   pcl::IndicesPtr joined = std::make_shared<pcl::Indices>();
   for (const auto index : *problem.returns)
-    if (expected[place(index)] == expected[place(point)])
+    if (expected[at(index)] == expected[at(point)])
       inside->push_back(index);
     else if (joined_with(index, point))
       joined->push_back(index);
 
-  pcl::search::KdTree<RivalPoint> tree;
+  pcl::search::KdTree<ComparedPoint> tree;
   pcl::Indices near;
   std::vector<float> squared;
   const double radius = std::fabs(static_cast<double>(static_cast<float>(problem.tolerance)));
   tree.setInputCloud(problem.cloud, inside);
   for (const auto index : *inside) {
-    tree.radiusSearch((*problem.cloud)[place(index)], radius, near, squared);
+    tree.radiusSearch((*problem.cloud)[at(index)], radius, near, squared);
     for (std::size_t i = 0; i < near.size(); ++i)
       if (near[i] != index && !joined_with(near[i], index))
         return DecidingPair{index, near[i], squared[i], DecidingPair::Kind::kKeptApart};
@@ -130,7 +130,7 @@ std::optional<DecidingPair> decidingPair(const Problem& problem, pcl::index_t po
   std::optional<DecidingPair> nearest = missedPair(problem, tree, *inside, *joined);
   if (nearest) return nearest;
   for (const auto index : *inside)
-    if (joined_with(index, point) && tree.nearestKSearch((*problem.cloud)[place(index)], 1, near, squared) == 1 &&
+    if (joined_with(index, point) && tree.nearestKSearch((*problem.cloud)[at(index)], 1, near, squared) == 1 &&
         (!nearest || squared[0] < nearest->d2))
       nearest = DecidingPair{index, near[0], squared[0], DecidingPair::Kind::kJoined};
   return nearest;
@@ -144,9 +144,9 @@ std::string inWords(std::uint32_t label, const Clusters& clusters) {
 std::string inWords(DecidingPair::Kind kind) {
   switch (kind) {
     case DecidingPair::Kind::kKeptApart:
-      return "neighbours, which the rival keeps apart";
+      return "neighbours, which the method keeps apart";
     case DecidingPair::Kind::kJoined:
-      return "not connected, which the rival joins";
+      return "not connected, which the method joins";
     case DecidingPair::Kind::kMissed:
       return "neighbours; PCL's tree missed this pair";
   }
@@ -154,34 +154,33 @@ std::string inWords(DecidingPair::Kind kind) {
 }
 
 std::string whereIs(const Problem& problem, pcl::index_t index) {
-  const RivalCloud& cloud = *problem.cloud;
-  const RivalPoint& p = cloud[place(index)];
+  const ComparedCloud& cloud = *problem.cloud;
+  const ComparedPoint& p = cloud[at(index)];
   std::string text = formatted("point %d (%.6g, %.6g, %.6g)", index, static_cast<double>(p.x), static_cast<double>(p.y),
                                static_cast<double>(p.z));
-  if (cloud.height > 1)
-    text += formatted(" row %zu column %zu", place(index) / cloud.width, place(index) % cloud.width);
+  if (cloud.height > 1) text += formatted(" row %zu column %zu", at(index) / cloud.width, at(index) % cloud.width);
   return text;
 }
 
-/// The neighbours of a point, nearest first, and how the two label them.
+/// The neighbours of a point, nearest first, with both labels.
 std::string neighboursOf(const Problem& problem, pcl::index_t point, const Labels& expected, const Labels& found) {
-  const RivalCloud& cloud = *problem.cloud;
+  const ComparedCloud& cloud = *problem.cloud;
   const lisco::Tolerance tolerance(static_cast<float>(problem.tolerance));
-  const RivalPoint& p = cloud[place(point)];
+  const ComparedPoint& p = cloud[at(point)];
   std::vector<std::pair<float, pcl::index_t>> neighbours;
   for (const auto index : *problem.returns) {
-    const RivalPoint& q = cloud[place(index)];
+    const ComparedPoint& q = cloud[at(index)];
     const float d2 = lisco::squaredDistance(p.x - q.x, p.y - q.y, p.z - q.z);
     if (index != point && d2 < tolerance.squared()) neighbours.push_back({d2, index});
   }
   std::sort(neighbours.begin(), neighbours.end());
   constexpr std::size_t kShown = 4;
   std::string text = formatted("its %zu neighbours within %g m", neighbours.size(), problem.tolerance);
-  if (!neighbours.empty()) text += ", with their distances, clusters by PCL and clusters by the rival:";
+  if (!neighbours.empty()) text += ", with their distances, clusters by PCL and clusters by the method:";
   for (std::size_t i = 0; i < std::min(neighbours.size(), kShown); ++i) {
     const auto [d2, index] = neighbours[i];
-    text += formatted(" %d (%.4f m, %u, %u)", index, static_cast<double>(std::sqrt(d2)), expected[place(index)],
-                      found[place(index)]);
+    text += formatted(" %d (%.4f m, %u, %u)", index, static_cast<double>(std::sqrt(d2)), expected[at(index)],
+                      found[at(index)]);
   }
   if (neighbours.size() > kShown) text += " ...";
   return text;
@@ -189,15 +188,8 @@ std::string neighboursOf(const Problem& problem, pcl::index_t point, const Label
 
 }  // namespace
 
-std::vector<std::uint32_t> labelsOf(const Clusters& clusters, std::size_t points) {
-  Labels labels(points, 0);
-  for (std::size_t number = 0; number < clusters.size(); ++number)
-    for (const auto index : clusters[number].indices) labels[place(index)] = static_cast<std::uint32_t>(number + 1);
-  return labels;
-}
-
-Difference differenceOf(const Problem& problem, const Rival& reference, const Clusters& expected, const Rival& rival,
-                        const Clusters& found) {
+Difference differenceOf(const Problem& problem, const Baseline& reference, const Clusters& expected,
+                        const Baseline& baseline, const Clusters& found) {
   Difference difference;
   if (sameVector(expected, found)) return difference;
   difference.identical = false;
@@ -216,20 +208,20 @@ Difference differenceOf(const Problem& problem, const Rival& reference, const Cl
   const Naming naming(*problem.returns, expected_label, found_label);
   std::optional<pcl::index_t> first;
   for (const auto index : *problem.returns) {
-    if (naming.agree(expected_label[place(index)], found_label[place(index)])) continue;
+    if (naming.agree(expected_label[at(index)], found_label[at(index)])) continue;
     ++difference.mislabelled;
     if (!first) first = index;
   }
   difference.details =
-      formatted("PCL finds %zu clusters, the rival %zu; %zu of PCL's are not among them; %zu of %zu points differ\n",
+      formatted("PCL finds %zu clusters, the method %zu; %zu of PCL's are not among them; %zu of %zu points differ\n",
                 expected.size(), found.size(), difference.clusters, difference.mislabelled, problem.returns->size());
   if (!first) {
-    difference.details += "the rival lists points twice, or points that are no returns\n";
+    difference.details += "the method lists points twice, or points that are no returns\n";
     return difference;
   }
   difference.details += "first: " + whereIs(problem, *first) + ": by PCL in " +
-                        inWords(expected_label[place(*first)], expected) + ", by the rival in " +
-                        inWords(found_label[place(*first)], found) + "\n" +
+                        inWords(expected_label[at(*first)], expected) + ", by the method in " +
+                        inWords(found_label[at(*first)], found) + "\n" +
                         neighboursOf(problem, *first, expected_label, found_label) + "\n";
 
   Problem any_size = problem;
@@ -237,7 +229,7 @@ Difference differenceOf(const Problem& problem, const Rival& reference, const Cl
   any_size.max_size = Problem().max_size;
   Clusters expected_components, found_components;
   reference.extract(any_size, expected_components);
-  rival.extract(any_size, found_components);
+  baseline.extract(any_size, found_components);
   const auto pair =
       decidingPair(any_size, *first, labelsOf(expected_components, points), labelsOf(found_components, points));
   if (pair) {
@@ -257,12 +249,12 @@ ObjectScore scoreObjects(const Problem& problem, const Clusters& clusters,
   std::map<std::uint32_t, std::set<std::uint32_t>> clusters_of;  // per object
   std::map<std::uint32_t, std::set<std::uint32_t>> objects_in;   // per cluster
   for (const auto index : *problem.returns) {
-    const std::uint32_t object = object_of[place(index)];
+    const std::uint32_t object = object_of[at(index)];
     if (object == 0) continue;
     ++returns[object];
-    if (label[place(index)] == 0) continue;
-    clusters_of[object].insert(label[place(index)]);
-    objects_in[label[place(index)]].insert(object);
+    if (label[at(index)] == 0) continue;
+    clusters_of[object].insert(label[at(index)]);
+    objects_in[label[at(index)]].insert(object);
   }
   ObjectScore score;
   for (const auto& [object, count] : returns) {

@@ -13,9 +13,8 @@
 
 #include <pcl/pcl_config.h>
 
-#include "compare/charts.h"
+#include "io/text.h"
 #include "lisco/version.h"
-#include "text.h"
 
 namespace lisco_apps {
 namespace {
@@ -38,10 +37,10 @@ std::string processor() {
   return "unknown processor";
 }
 
-/// What the table says of a rival's clusters.
-std::string verdictOn(const RivalResult& result) {
+/// The table's last column.
+std::string verdictOn(const BaselineResult& result) {
   if (!result.failure.empty()) return "not possible: " + result.failure;
-  if (result.rival->key == kReferenceKey) return "reference";
+  if (result.baseline->key == kReferenceKey) return "reference";
   if (result.difference.identical) return "identical";
   if (result.difference.same_sets) return "DIFFERENT order";
   return formatted("DIFFERENT: %zu points, %zu clusters", result.difference.mislabelled, result.clusters);
@@ -54,18 +53,21 @@ std::string indented(const std::string& lines, const char* by) {
   return result;
 }
 
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
 double orNan(const std::optional<double>& value) {
-  return value.value_or(std::numeric_limits<double>::quiet_NaN());
+  return value.value_or(kNan);
 }
 
-/// NaN has no place in JSON.
+/// JSON has no NaN.
 nlohmann::ordered_json finiteOrNull(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
-nlohmann::ordered_json jsonOf(const CaseResult& result, const RivalResult& entry, const CompareSettings& settings) {
-  nlohmann::ordered_json json{
-      {"rival", entry.rival->key}, {"title", entry.rival->title}, {"must_agree", settings.mustAgree(*entry.rival)}};
+nlohmann::ordered_json jsonOf(const CaseResult& result, const BaselineResult& entry, const CompareSettings& settings) {
+  nlohmann::ordered_json json{{"baseline", entry.baseline->key},
+                              {"title", entry.baseline->title},
+                              {"must_agree", settings.mustAgree(*entry.baseline)}};
   if (!entry.failure.empty()) {
     json["failure"] = entry.failure;
     return json;
@@ -91,33 +93,6 @@ nlohmann::ordered_json jsonOf(const CaseResult& result, const RivalResult& entry
   return json;
 }
 
-Chart::Point pointOf(double x, const Times& times) {
-  return {x, times.mean(), times.confidence99()};
-}
-
-/// A line per rival that was timed; `point` adds the rival's points.
-template <typename AddPoints>
-std::vector<Chart::Line> linesOf(const CompareSettings& settings, AddPoints&& add_points) {
-  std::vector<Chart::Line> lines;
-  for (const Rival& rival : settings.rivals) {
-    Chart::Line line{rival.title, rival.color, {}};
-    add_points(rival, line.points);
-    std::sort(line.points.begin(), line.points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
-    if (!line.points.empty()) lines.push_back(std::move(line));
-  }
-  return lines;
-}
-
-constexpr const char* kTimeLabel = "milliseconds, mean with 99% confidence";
-
-std::string overPoints(double tolerance) {
-  return formatted("time_over_points_%g.png", tolerance);
-}
-std::string overTolerance(const std::string& input) {
-  return "time_over_tolerance_" + input + ".png";
-}
-constexpr const char* kMeanChart = "time_over_tolerance.png";
-
 }  // namespace
 
 std::string describeRun(const CompareSettings& settings, unsigned threads) {
@@ -126,11 +101,12 @@ std::string describeRun(const CompareSettings& settings, unsigned threads) {
   text += threads == 1 ? "1 is used\n" : formatted("up to %u are used\n", threads);
   text += std::string("against PCL ") + PCL_VERSION_PRETTY + "; built as " + kBuild + "\n";
 #ifndef NDEBUG
-  text += "not a release build: its times say nothing\n";
+  text += "not a release build: its times are not representative\n";
 #endif
   if (settings.runs > 0) text += formatted("%zu run%s of each in turn", settings.runs, settings.runs == 1 ? "" : "s");
   if (settings.runs > 3)
-    text += formatted("; fewer, but 3, of what takes longer than %g s for all of them", settings.max_seconds);
+    text += formatted("; fewer, at least 3, of a baseline that takes longer than %g s for all of them",
+                      settings.max_seconds);
   if (settings.runs > 0) text += "\n";
   return text;
 }
@@ -151,8 +127,8 @@ std::string tableOf(const CaseResult& result) {
                       result.objects->missed);
   text += formatted("  %-30s %5s %11s %9s %11s %8s  %s\n", "", "runs", "mean ms", "+-99%", "median ms", "ratio",
                     "clusters");
-  for (const RivalResult& entry : result.rivals) {
-    text += formatted("  %-30s ", entry.rival->title.c_str());
+  for (const BaselineResult& entry : result.baselines) {
+    text += formatted("  %-30s ", entry.baseline->title.c_str());
     if (entry.times) {
       const double ratio = orNan(result.ratio(entry));
       const double confidence = entry.times->confidence99();
@@ -165,9 +141,9 @@ std::string tableOf(const CaseResult& result) {
     }
     text += "  " + verdictOn(entry) + "\n";
   }
-  for (const RivalResult& entry : result.rivals)
+  for (const BaselineResult& entry : result.baselines)
     if (!entry.difference.details.empty())
-      text += "  " + entry.rival->title + ":\n" + indented(entry.difference.details, "    ");
+      text += "  " + entry.baseline->title + ":\n" + indented(entry.difference.details, "    ");
   return text;
 }
 
@@ -176,13 +152,13 @@ std::string summaryOf(const std::vector<InputResult>& inputs, const CompareSetti
   std::string text =
       formatted("\n%-32s %9s  %s\n%-32s %9s  %8s %8s %8s %10s\n", "all scans and tolerances", "identical",
                 "times as fast as PCL, KdTree (false)", "", "", "mean", "lowest", "highest", "mean, cold");
-  for (const Rival& rival : settings.rivals) {
+  for (const Baseline& baseline : settings.baselines) {
     std::size_t cases = 0;
     std::size_t identical = 0;
     std::vector<double> ratios, cold;
     for (const InputResult& input : inputs)
       for (const CaseResult& result : input.cases) {
-        const RivalResult* const entry = result.find(rival.key);
+        const BaselineResult* const entry = result.find(baseline.key);
         if (entry == nullptr || !entry->failure.empty()) continue;
         ++cases;
         identical += entry->difference.identical ? 1 : 0;
@@ -190,45 +166,44 @@ std::string summaryOf(const std::vector<InputResult>& inputs, const CompareSetti
         ratios.push_back(*result.ratio(*entry));
         cold.push_back(*result.coldRatio(*entry));
       }
-    text += formatted("%-32s %9s  ", rival.title.c_str(), formatted("%zu/%zu", identical, cases).c_str());
+    text += formatted("%-32s %9s  ", baseline.title.c_str(), formatted("%zu/%zu", identical, cases).c_str());
     text += ratios.empty() ? formatted("%8s %8s %8s %10s\n", "-", "-", "-", "-")
                            : formatted("%8.2f %8.2f %8.2f %10.2f\n", geometricMean(ratios),
                                        *std::min_element(ratios.begin(), ratios.end()),
                                        *std::max_element(ratios.begin(), ratios.end()), geometricMean(cold));
   }
-  if (settings.runs > 0)
-    text += "mean: geometric; cold: of first runs, whose memory another rival has displaced from the caches\n";
+  if (settings.runs > 0) text += "mean: geometric; cold: of first runs, with caches displaced by the other baselines\n";
   return text;
 }
 
 std::string csvOf(const std::vector<InputResult>& inputs, const CompareSettings& settings) {
-  std::string text = std::string(kCsvSignature) +
-                     ",min_size,reference_clusters,rival,clusters,identical,mislabelled,runs,mean_ms,confidence99_ms,"
-                     "median_ms,cold_median_ms,min_ms,lower_quartile_ms,upper_quartile_ms,max_ms,ratio,objects,whole,"
-                     "split,merged,missed,failure\n";
+  std::string text =
+      std::string(kCsvSignature) +
+      ",min_size,reference_clusters,baseline,clusters,identical,mislabelled,runs,mean_ms,confidence99_ms,"
+      "median_ms,cold_median_ms,min_ms,lower_quartile_ms,upper_quartile_ms,max_ms,ratio,objects,whole,"
+      "split,merged,missed,failure\n";
   const auto number = [](double value) { return std::isfinite(value) ? formatted("%.6g", value) : std::string(); };
   for (const InputResult& input : inputs)
     for (const CaseResult& result : input.cases)
-      for (const RivalResult& entry : result.rivals) {
-        // A name may hold a comma or a quote.
+      for (const BaselineResult& entry : result.baselines) {
+        // Quoted, for names with commas or quotes.
         std::string name = "\"";
         for (const char c : input.name) name += c == '"' ? "\"\"" : std::string(1, c);
         text += name + "\"" +
                 formatted(",%zu,%zu,%zu,%s,%.10g,%u,%zu,%s", input.rows, input.columns, input.returns,
                           number(static_cast<double>(input.ground_z)).c_str(), result.tolerance, settings.min_size,
-                          result.clusters, entry.rival->key.c_str());
+                          result.clusters, entry.baseline->key.c_str());
         text += entry.failure.empty()
                     ? formatted(",%zu,%s,%zu", entry.clusters, entry.difference.identical ? "yes" : "no",
                                 entry.difference.mislabelled)
                     : ",,,";
-        if (entry.times)
-          text += formatted(",%zu", entry.times->runs.size()) + "," + number(entry.times->mean()) + "," +
-                  number(entry.times->confidence99()) + "," + number(median(entry.times->runs)) + "," +
-                  number(median(entry.times->cold)) + "," + number(entry.times->least()) + "," +
-                  number(quantile(entry.times->runs, 0.25)) + "," + number(quantile(entry.times->runs, 0.75)) + "," +
-                  number(entry.times->most()) + "," + number(orNan(result.ratio(entry)));
-        else
-          text += ",0,,,,,,,,,";
+        text += formatted(",%zu", entry.times ? entry.times->runs.size() : 0);
+        const Times none{{kNan}, {kNan}};
+        const Times& times = entry.times ? *entry.times : none;
+        for (const double value :
+             {times.mean(), times.confidence99(), median(times.runs), median(times.cold), times.min(),
+              quantile(times.runs, 0.25), quantile(times.runs, 0.75), times.max(), orNan(result.ratio(entry))})
+          text += "," + number(value);
         if (result.objects)
           text += formatted(",%zu,%zu,%zu,%zu,%zu", result.objects->objects, result.objects->whole,
                             result.objects->split, result.objects->merged, result.objects->missed);
@@ -264,8 +239,8 @@ std::string jsonOf(const std::vector<InputResult>& inputs, const CompareSettings
                           {"split", result.objects->split},
                           {"merged", result.objects->merged},
                           {"missed", result.objects->missed}};
-      one["rivals"] = nlohmann::ordered_json::array();
-      for (const RivalResult& entry : result.rivals) one["rivals"].push_back(jsonOf(result, entry, settings));
+      one["baselines"] = nlohmann::ordered_json::array();
+      for (const BaselineResult& entry : result.baselines) one["baselines"].push_back(jsonOf(result, entry, settings));
       cases.push_back(std::move(one));
     }
     json["inputs"].push_back({{"name", input.name},
@@ -276,62 +251,8 @@ std::string jsonOf(const std::vector<InputResult>& inputs, const CompareSettings
                               {"ground_z", finiteOrNull(static_cast<double>(input.ground_z))},
                               {"cases", std::move(cases)}});
   }
-  // A file name may be no UTF-8.
+  // Replaces bytes of file names that are not UTF-8.
   return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-}
-
-std::vector<std::string> chartsOf(const std::vector<std::string>& input_names, const CompareSettings& settings) {
-  std::vector<std::string> charts;
-  for (const std::string& name : input_names) charts.push_back(overTolerance(name));
-  if (input_names.size() < 2) return charts;
-  charts.emplace_back(kMeanChart);
-  for (const double tolerance : settings.tolerances) charts.push_back(overPoints(tolerance));
-  return charts;
-}
-
-void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& settings,
-                const std::filesystem::path& folder) {
-  for (const InputResult& input : inputs) {
-    Chart chart{formatted("%s: %zu returns", input.name.c_str(), input.returns), "tolerance, metres", kTimeLabel};
-    chart.lines = linesOf(settings, [&](const Rival& rival, std::vector<Chart::Point>& points) {
-      for (const CaseResult& result : input.cases) {
-        const RivalResult* const entry = result.find(rival.key);
-        if (entry->times) points.push_back(pointOf(result.tolerance, *entry->times));
-      }
-    });
-    drawChart(chart, folder / overTolerance(input.name));
-  }
-  if (inputs.size() < 2) return;
-
-  Chart mean{formatted("arithmetic mean of %zu scans", inputs.size()), "tolerance, metres", kTimeLabel};
-  mean.lines = linesOf(settings, [&](const Rival& rival, std::vector<Chart::Point>& points) {
-    for (std::size_t at = 0; at < settings.tolerances.size(); ++at) {
-      Chart::Point point{settings.tolerances[at], 0, 0};
-      std::size_t timed = 0;
-      for (const InputResult& input : inputs) {
-        const RivalResult* const entry = input.cases[at].find(rival.key);
-        if (!entry->times) continue;
-        ++timed;
-        point.y += entry->times->mean() / static_cast<double>(inputs.size());
-        const double error = entry->times->confidence99() / static_cast<double>(inputs.size());
-        point.error = std::hypot(point.error, error);
-      }
-      if (timed == inputs.size()) points.push_back(point);
-    }
-  });
-  drawChart(mean, folder / kMeanChart);
-
-  for (std::size_t at = 0; at < settings.tolerances.size(); ++at) {
-    Chart chart{formatted("%zu scans, tolerance %g m", inputs.size(), settings.tolerances[at]), "returns", kTimeLabel,
-                true};
-    chart.lines = linesOf(settings, [&](const Rival& rival, std::vector<Chart::Point>& points) {
-      for (const InputResult& input : inputs) {
-        const RivalResult* const entry = input.cases[at].find(rival.key);
-        if (entry->times) points.push_back(pointOf(static_cast<double>(input.returns), *entry->times));
-      }
-    });
-    drawChart(chart, folder / overPoints(settings.tolerances[at]));
-  }
 }
 
 }  // namespace lisco_apps

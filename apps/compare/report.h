@@ -10,31 +10,32 @@
 
 namespace lisco_apps {
 
-/// Version, compiler, processor and settings: what a figure means nothing without.
-/// \param threads the most that anything of it uses
+/// Version, compiler, processor and settings.
+/// \param threads the highest number that is used
 std::string describeRun(const CompareSettings& settings, unsigned threads = 1);
 
-/// The tables for people: one scan's heading, one tolerance's rivals, and what all of it comes to.
+/// The printed tables: the heading of a scan, the baselines at one tolerance, and the summary.
 std::string headingOf(const InputResult& input, const CompareSettings& settings);
 std::string tableOf(const CaseResult& result);
-/// Empty if there is but one case.
+/// Empty if there is only one case.
 std::string summaryOf(const std::vector<InputResult>& inputs, const CompareSettings& settings);
 
-/// What the files for machines have near their beginning, by which they are known.
+/// Signatures of the CSV and JSON files, see writeOwnFile ().
 inline constexpr const char* kCsvSignature = "input,rows,columns,returns,ground_z,tolerance";
 inline constexpr const char* kJsonSignature = "\"program\": \"lisco_compare\"";
 
-/// One row per scan, tolerance and rival.
+/// One row per scan, tolerance and baseline.
 std::string csvOf(const std::vector<InputResult>& inputs, const CompareSettings& settings);
-/// All of it, times of every run included.
+/// All results, with the times of every run.
 /// \param failures inputs that could not be read, and why
 std::string jsonOf(const std::vector<InputResult>& inputs, const CompareSettings& settings,
                    const std::vector<std::string>& failures);
 
-/// Names of the charts that drawCharts would draw.
+/// The file names of the charts that drawCharts draws.
 std::vector<std::string> chartsOf(const std::vector<std::string>& input_names, const CompareSettings& settings);
-/// Time over tolerance for each scan; of several scans also their mean, and time over the number of returns for each
-/// tolerance.
+
+/// Draws time over tolerance for each scan; of several scans also its mean, and time over the number of returns for
+/// each tolerance.
 void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& settings,
                 const std::filesystem::path& folder);
 

@@ -2,40 +2,20 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "compare/timing.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include <boost/math/distributions/students_t.hpp>
 
 namespace lisco_apps {
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
-}
-
 double quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
-  const double place = share * static_cast<double>(values.size() - 1);
-  const auto below = std::min(static_cast<std::size_t>(place), values.size() - 1);
+  const double position = share * static_cast<double>(values.size() - 1);
+  const auto below = std::min(static_cast<std::size_t>(position), values.size() - 1);
   const std::size_t above = std::min(below + 1, values.size() - 1);
-  return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
-}
-
-double Times::mean() const {
-  return std::accumulate(runs.begin(), runs.end(), 0.0) / static_cast<double>(runs.size());
-}
-
-double Times::least() const {
-  return *std::min_element(runs.begin(), runs.end());
-}
-
-double Times::most() const {
-  return *std::max_element(runs.begin(), runs.end());
+  return values[below] + (position - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
 double Times::confidence99() const {
@@ -57,7 +37,7 @@ double millisecondsOf(const std::function<void()>& run) {
 
 std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants,
                               const std::function<void(std::size_t, std::size_t)>& between) {
-  constexpr double kShort = 50;  // milliseconds
+  constexpr double kMaxShort = 50;  // milliseconds of a run that is repeated at once
   std::size_t rounds = 0;
   for (const Contestant& contestant : contestants) rounds = std::max(rounds, contestant.runs);
   std::vector<Times> times(contestants.size());
@@ -67,7 +47,7 @@ std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants,
       const Contestant& contestant = contestants[i];
       if (round * contestant.runs / rounds == (round + 1) * contestant.runs / rounds) continue;
       times[i].cold.push_back(millisecondsOf(contestant.run));
-      times[i].runs.push_back(contestant.tried_ms < kShort ? millisecondsOf(contestant.run) : times[i].cold.back());
+      times[i].runs.push_back(contestant.tried_ms < kMaxShort ? millisecondsOf(contestant.run) : times[i].cold.back());
     }
   }
   return times;

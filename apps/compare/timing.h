@@ -2,46 +2,51 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 namespace lisco_apps {
 
-double median(std::vector<double> values);
-/// The value below which a share of the values lies, interpolated between the two nearest ones. \param share 0 to 1
+/// The value below which a share (0 to 1) of the values lies, linearly interpolated.
 double quantile(std::vector<double> values, double share);
+inline double median(std::vector<double> values) {
+  return quantile(std::move(values), 0.5);
+}
 
-/// Times of one rival, milliseconds.
+/// Run times of one baseline, milliseconds.
 struct Times {
   std::vector<double> runs;
-  std::vector<double> cold;  ///< the run before each, which found its memory displaced; the same run if it was long
+  std::vector<double> cold;  ///< the run before each, with displaced caches; the same run if long
 
-  double mean() const;
-  double least() const;
-  double most() const;
-  /// Half the width of the mean's confidence interval of 99% (Student's t); NaN for fewer than two runs.
+  double mean() const { return std::accumulate(runs.begin(), runs.end(), 0.0) / static_cast<double>(runs.size()); }
+  double min() const { return *std::min_element(runs.begin(), runs.end()); }
+  double max() const { return *std::max_element(runs.begin(), runs.end()); }
+  /// Half the width of the mean's 99% confidence interval (Student's t); NaN for fewer than two runs.
   double confidence99() const;
 };
 
-/// What is to be timed: a rival's run, how long one took when it was tried, and how many are wanted.
+/// Something to be timed.
 struct Contestant {
   std::function<void()> run;
-  double tried_ms = 0;
-  std::size_t runs = 0;
+  double tried_ms = 0;   ///< duration of a trial run
+  std::size_t runs = 0;  ///< to be timed
 };
 
-/// Times contestants in turn, round by round, so that what disturbs the machine disturbs all; those with fewer runs sit
-/// out some rounds, evenly spread. A short run is done twice in each round, of which the second counts: the first, the
-/// cold one, brings back the memory that the others have displaced from the caches.
-/// \param between called before each round with its number and that of all rounds
+/// Times contestants in turn, round by round, so that disturbances of the machine are shared. Contestants with fewer
+/// runs skip rounds, evenly spread. A short run is repeated at once, and the repetition counts: the first, cold run
+/// refills the caches that the others have displaced.
+/// \param between called before each round with its number and the number of rounds
 std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants,
                               const std::function<void(std::size_t round, std::size_t rounds)>& between);
 
-/// Milliseconds that a call takes.
+/// Duration of a call, milliseconds.
 double millisecondsOf(const std::function<void()>& run);
 
-/// A mean of ratios, for which twice as fast and half as fast cancel out.
+/// The mean of ratios: twice as fast and half as fast cancel out.
 double geometricMean(const std::vector<double>& values);
 
 }  // namespace lisco_apps

@@ -17,7 +17,7 @@ NeighborMask getNeighborMask(double distance, double eps, const NominalSensor& s
   constexpr double kEverything = 2147483648.0;
   if (!(eps <= distance)) return {static_cast<std::size_t>(kEverything), static_cast<std::size_t>(kEverything)};
   const double angle = std::fabs(std::asin(eps / distance));
-  // In this order, so that 0 / 0 is everything, too.
+  // std::min in this order turns 0 / 0 into everything.
   return {static_cast<std::size_t>(std::min(kEverything, std::ceil(angle / sensor.delta_theta))),
           static_cast<std::size_t>(std::min(kEverything, std::ceil(angle / sensor.delta_alpha)))};
 }
@@ -46,7 +46,7 @@ void PaperLisco::receiveStep(std::size_t step) {
   for (std::size_t laser = 0; laser < lasers_; ++laser) {
     const lisco::Return& r = matrix_[step * lasers_ + laser];
     if (!lisco::isReturn(r.x, r.y, r.z)) continue;
-    // In double, whose squares of floats neither overflow nor vanish.
+    // Squares of floats neither overflow nor vanish in double.
     const double x = static_cast<double>(r.x);
     const double y = static_cast<double>(r.y);
     const double z = static_cast<double>(r.z);
@@ -66,15 +66,14 @@ void PaperLisco::cluster(Point p, const NeighborMask& mask) {
   const std::size_t first_laser = p_laser - std::min(p_laser, mask.lambda);
   const std::size_t last_laser = std::min(p_laser + mask.lambda, lasers_ - 1);
   const std::size_t sigma = std::min(mask.sigma, steps_);
-  // eps, and a little for the rounding of the distances and of PCL's comparison.
-  constexpr float kRounding = 4e-7F;
+  constexpr float kRounding = 4e-7F;  // relative, of the distances and of PCL's comparison
   const auto reach = static_cast<float>(tolerance_.reach());
-  const float most = reach + kRounding * (distance_[p] + reach);
+  const float max_difference = reach + kRounding * (distance_[p] + reach);
   const auto visit = [&](std::size_t step) {
     for (std::size_t laser = first_laser; laser <= last_laser; ++laser) {
       const auto other = static_cast<Point>(step * lasers_ + laser);
       if (other == p || distance_[other] == 0) continue;
-      if (!(std::fabs(distance_[p] - distance_[other]) > most)) compare(p, other);
+      if (!(std::fabs(distance_[p] - distance_[other]) > max_difference)) compare(p, other);
     }
   };
   const std::size_t first_step = p_step - std::min(p_step, sigma);

@@ -8,45 +8,39 @@
 #include <unordered_map>
 #include <vector>
 
-#include "lisco/return.h"
 #include "core/neighbour.h"
+#include "lisco/return.h"
 
 namespace lisco_reference {
 
-/// What Algorithm 2 knows of a sensor: the smallest angles between two steps and between two lasers, radians.
+/// The sensor of Algorithm 2: the smallest angles between two steps and between two lasers, radians.
 struct NominalSensor {
   double delta_alpha, delta_theta;
 };
 
-/// Algorithm 2's neighbour mask: how many lasers above and below, and how many steps before.
+/// Algorithm 2's neighbour mask: lasers above and below, and steps before.
 struct NeighborMask {
   std::size_t lambda, sigma;
 };
 
-/// Algorithm 2, literally. It misses neighbours on real scans (see doc/algorithm.md).
+/// Algorithm 2, literally, which misses neighbours on real scans (see doc/algorithm.md).
 /// \param distance p_d, metres
-/// \return 2^31 lasers and steps, that is all of them, for a point nearer than eps, where the paper's arcsine is not
-///         defined
+/// \return 2^31 lasers and steps, that is all, for a point nearer than eps, where the paper's arcsine is undefined
 NeighborMask getNeighborMask(double distance, double eps, const NominalSensor& sensor);
 
-/// The paper's Lisco as it is printed: Algorithms 2 to 4 and section V's data structures. A reference implementation,
-/// to show what the paper's own method costs and where its mask misses neighbours; it is not part of the library.
-/// (Algorithm 1 is PCL's EuclideanClusterExtraction, which is at hand.)
+/// The paper's Lisco as printed, for comparison only: Algorithms 2 to 4 and section V's data structures. (Algorithm 1
+/// is PCL's EuclideanClusterExtraction.)
 ///
-/// What the paper leaves open, or what cannot be meant as printed:
-/// - two returns are neighbours by PCL's comparison (d2 < r2 in float) instead of "distance <= eps", so that what
-///   differs from PCL is what the mask misses, and nothing else; for the same reason "|p_d - p'_d| <= eps", which goes
-///   before it, leaves room for rounding;
-/// - line 5 of Algorithm 4 compares heads with H1 != H2; two returns without a head are to pass it, or no subcluster
-///   would ever start;
-/// - arcsin (eps / p_d) is not defined for p_d < eps: the mask is everything then (see getNeighborMask);
-/// - a return without neighbours has no head. It is a cluster of its own here, which matters for minPts = 1 only.
+/// Choices where the paper is open or cannot be meant as printed:
+/// - two returns are neighbours by PCL's comparison (d2 < r2 in float) instead of "distance <= eps", so that all
+///   differences from PCL come from the mask; "|p_d - p'_d| <= eps" before it allows for rounding for the same reason;
+/// - line 5 of Algorithm 4 compares heads with H1 != H2; two returns without a head pass it, to start a subcluster;
+/// - a return without neighbours has no head; it is a cluster of its own here, which matters for minPts = 1 only.
 class PaperLisco {
  public:
   /// Clusters one rotation, step by step.
   /// \param matrix M, step by step: cell (laser l, step s) at s * lasers + l; cells without a return fail isReturn
-  /// \return a number per cell: the same for two returns if and only if they are in one cluster, kNoCluster where there
-  ///         is no return; valid until the next call
+  /// \return cluster number per cell, kNoCluster without a return; valid until the next call
   const std::vector<std::uint32_t>& cluster(const std::vector<lisco::Return>& matrix, std::size_t lasers,
                                             const NominalSensor& sensor, float tolerance);
 
@@ -56,7 +50,7 @@ class PaperLisco {
   using Point = std::uint32_t;  ///< number of a cell
   using Head = std::uint32_t;   ///< the point that names a subcluster
 
-  /// A linked list of arrays: grows without moving, and is appended to another in O(1).
+  /// A linked list of arrays, which grows without moving and is spliced in O(1).
   struct Members {
     std::list<std::vector<Point>> arrays;
     std::size_t size = 0;

@@ -10,14 +10,14 @@
 namespace lisco_reference {
 namespace {
 
-constexpr std::uint64_t kReach = 2;  // cells per axis between two neighbours, at most
-
-// A cell's number along an axis is computed in double. Up to so many bits its error is below a 20,000th of a cell,
-// which the factor 0.9999 of the cell's side makes up for.
-constexpr int kMostBitsPerAxis = 37;
-// Between these, squares in float neither vanish nor overflow, and the points of a cell are neighbours.
-constexpr double kLeastTolerance = 1e-18;
-constexpr double kMostTolerance = 1e18;
+constexpr std::uint64_t kReach = 2;  ///< cells per axis between two neighbours, at most
+/// Of a cell's number along an axis, computed in double: its error is below a 20,000th of a cell, for which kSideFactor
+/// makes up.
+constexpr int kMaxBitsPerAxis = 37;
+constexpr double kSideFactor = 0.9999;
+// Metres: between these, squares in float neither vanish nor overflow, and the points of a cell are neighbours.
+constexpr double kMinTolerance = 1e-18;
+constexpr double kMaxTolerance = 1e18;
 
 }  // namespace
 
@@ -29,9 +29,9 @@ const std::vector<std::uint32_t>& VoxelGrid::cluster(const std::vector<lisco::Re
     return component_of_;
   }
   const double eps = std::fabs(static_cast<double>(tolerance));
-  if (eps < kLeastTolerance || eps > kMostTolerance)
+  if (eps < kMinTolerance || eps > kMaxTolerance)
     throw std::runtime_error("the tolerance is too small or too large for a voxel grid");
-  side_ = 0.9999 * eps / std::sqrt(3.0);
+  side_ = kSideFactor * eps / std::sqrt(3.0);
   numberCells(returns);
   sortItems();
   gatherCells(returns);
@@ -57,12 +57,12 @@ void VoxelGrid::numberCells(const std::vector<lisco::Return>& returns) {
   bool numbers_hold = true;
   for (int axis = 0; axis < 3; ++axis) {
     origin[axis] = static_cast<double>(box.lo[axis]);
-    // A margin on both sides: what lies kReach before the first cell of a row is in no other row.
+    // A margin of kReach cells on both sides keeps rows apart.
     const double cells =
         (static_cast<double>(box.hi[axis]) - origin[axis]) / side_ + 1 + 2 * static_cast<double>(kReach);
     bits_[axis] = static_cast<int>(std::ceil(std::log2(cells + 1)));
     all_bits += bits_[axis];
-    numbers_hold = numbers_hold && bits_[axis] <= kMostBitsPerAxis;
+    numbers_hold = numbers_hold && bits_[axis] <= kMaxBitsPerAxis;
   }
   if (all_bits > 64 || !numbers_hold) throw std::runtime_error("the scan has too many cells for a voxel grid");
 
@@ -116,7 +116,7 @@ void VoxelGrid::gatherCells(const std::vector<lisco::Return>& returns) {
 }
 
 void VoxelGrid::linkCells() {
-  // Rows that follow a cell's own, by the difference of their keys.
+  // The rows to compare after a cell's own, as differences of keys.
   constexpr std::size_t kRows = 12;
   std::array<std::uint64_t, kRows> row{};
   std::array<std::size_t, kRows> cursor{};

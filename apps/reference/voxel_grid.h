@@ -7,30 +7,26 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/neighbour.h"
 #include "core/disjoint_sets.h"
-#include "lisco/return.h"
 #include "core/neighbour.h"
+#include "lisco/return.h"
 
 namespace lisco_reference {
 
-/// The rival to beat: exact Euclidean clustering of a finished scan by a voxel grid. A reference implementation, for
-/// comparison and benchmarks only; it is not part of the library.
+/// Exact Euclidean clustering of a finished scan by a voxel grid, for comparison only; not part of the library.
 ///
-/// Cells of side 0.9999 eps / sqrt(3), so that all points of a cell are neighbours and a cell is one component. The
-/// points are sorted by cell (radix sort by z, y, x). Points within eps lie at most two cells apart per axis: each cell
+/// Cells have a side of 0.9999 eps / sqrt(3), so that all points of a cell are neighbours and a cell is one component.
+/// Points are sorted by cell (radix sort by z, y, x). Points within eps lie at most two cells apart per axis: each cell
 /// is compared with the two that follow it in its row and with those of 12 rows that follow, each row read by a cursor
-/// that only moves forward. Two cells are compared by head, then by box, then point by point up to the first pair of
+/// that moves forward only. Two cells are compared by head, then by box, then point by point up to the first pair of
 /// neighbours. Memory is kept from scan to scan.
 class VoxelGrid {
  public:
   /// Finds the connected components of `returns`.
   /// \param returns all valid (lisco::isReturn)
-  /// \return a number per return, the same for two of them if and only if they are in one component; valid until the
-  ///         next call
+  /// \return component number per return; valid until the next call
   /// \throws std::runtime_error if the scan has more than 2^37 cells along an axis, or more than 64 bits can number, or
-  /// if
-  ///         the tolerance is not 0 and below 1e-18 m or above 1e18 m
+  ///         if the tolerance is not 0 and below 1e-18 m or above 1e18 m
   const std::vector<std::uint32_t>& cluster(const std::vector<lisco::Return>& returns, float tolerance);
 
  private:

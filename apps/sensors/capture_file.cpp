@@ -9,24 +9,21 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <stdexcept>
 #include <system_error>
+
+#include "io/text.h"
 
 namespace lisco_apps {
 namespace {
 
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
-  throw std::runtime_error(file.string() + ": " + what);
-}
-
-/// Bytes that are left of a frame. Numbers are big-endian, as everywhere on a network.
+/// The rest of a frame, in network byte order.
 struct Bytes {
   const std::uint8_t* data;
   std::size_t size;
 
   unsigned u8(std::size_t at) const { return data[at]; }
   unsigned u16(std::size_t at) const { return u8(at) << 8U | u8(at + 1); }
-  /// Leaves out the first ones. \return false if there are not that many
+  /// Drops the first bytes. \return false if there are fewer
   bool skip(std::size_t count) {
     if (count > size) return false;
     data += count;
@@ -38,7 +35,7 @@ struct Bytes {
 constexpr unsigned kIpv4 = 0x0800, kIpv6 = 0x86DD, kUdp = 17;
 constexpr std::array<unsigned, 3> kVlanTags{0x8100, 0x88A8, 0x9100};
 
-/// Skips a header that ends with an EtherType, and VLAN tags after it. \return false if that is not IP
+/// Skips a link header and VLAN tags after it. \return false if their EtherType is not IP
 bool skipLink(Bytes& frame, std::size_t type_at, std::size_t header) {
   if (frame.size < header) return false;
   unsigned type = frame.u16(type_at);
@@ -54,9 +51,9 @@ bool skipLink(Bytes& frame, std::size_t type_at, std::size_t header) {
 bool skipIpv4(Bytes& packet) {
   if (packet.size < 20) return false;
   const std::size_t header = 4UL * (packet.u8(0) & 0xFU);
-  const unsigned fragment = packet.u16(6) & 0x3FFFU;  // more of them follow, or it is not the first
+  const unsigned fragment = packet.u16(6) & 0x3FFFU;  // the offset, and whether more fragments follow
   if (header < 20 || fragment != 0 || packet.u8(9) != kUdp) return false;
-  // The VLP-16's position packets claim to be longer than they are: the UDP header's length decides what is whole.
+  // Position packets of the VLP-16 declare a longer total than they have; the UDP length is checked instead.
   packet.size = std::min<std::size_t>(packet.size, packet.u16(2));
   return packet.skip(header);
 }
@@ -76,29 +73,20 @@ bool skipIpv6(Bytes& packet) {
   return next == kUdp;
 }
 
-/// \return false if the network is of a kind that is not known
 bool isKnown(int link_type) {
   return link_type == DLT_EN10MB || link_type == DLT_LINUX_SLL || link_type == DLT_LINUX_SLL2 || link_type == DLT_RAW ||
          link_type == DLT_IPV4 || link_type == DLT_IPV6 || link_type == DLT_NULL || link_type == DLT_LOOP;
 }
 
 bool skipToIp(Bytes& frame, int link_type) {
-  switch (link_type) {
-    case DLT_EN10MB:
-      return skipLink(frame, 12, 14);
-    case DLT_LINUX_SLL:
-      return skipLink(frame, 14, 16);
-    case DLT_LINUX_SLL2:
-      return skipLink(frame, 0, 20);
-    case DLT_NULL:
-    case DLT_LOOP:
-      return frame.skip(4);
-    default:
-      return true;
-  }
+  if (link_type == DLT_EN10MB) return skipLink(frame, 12, 14);
+  if (link_type == DLT_LINUX_SLL) return skipLink(frame, 14, 16);
+  if (link_type == DLT_LINUX_SLL2) return skipLink(frame, 0, 20);
+  const bool has_family = link_type == DLT_NULL || link_type == DLT_LOOP;
+  return !has_family || frame.skip(4);
 }
 
-/// Makes a frame the payload of its UDP packet. \return false if it holds no whole one to this port
+/// Reduces a frame to its UDP payload. \return false if it holds no whole UDP packet to this port
 bool skipToPayload(Bytes& frame, int link_type, std::optional<std::uint16_t> port) {
   if (!skipToIp(frame, link_type) || frame.size == 0) return false;
   const unsigned version = frame.u8(0) >> 4U;
@@ -122,7 +110,7 @@ CaptureFile::CaptureFile(const std::filesystem::path& file, std::optional<std::u
   if (std::filesystem::is_directory(file, unknown)) fail(file, "is no capture of packets: it is a folder");
   if (std::filesystem::is_regular_file(file, unknown) && std::filesystem::file_size(file, unknown) == 0)
     fail(file, "is no capture of packets: it is empty");
-  // By a stream: libpcap takes a file named "-" for the standard input.
+  // Opened as a stream, as libpcap takes a file named "-" for the standard input.
   std::FILE* const stream = std::fopen(file.c_str(), "rb");
   if (stream == nullptr) fail(file, std::strerror(errno));
   std::array<char, PCAP_ERRBUF_SIZE> why{};

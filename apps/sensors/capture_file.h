@@ -13,14 +13,13 @@ struct pcap;
 
 namespace lisco_apps {
 
-/// The UDP packets of a capture, as fast as they can be read: pcap or pcapng, of Ethernet (with VLAN tags too), Linux
-/// "cooked", loopback or raw IP, over IPv4 or IPv6. Fragments of packets are not put together; they count as foreign.
-///
-/// A file that breaks off or goes bad ends there, and error() says so.
+/// The UDP packets of a capture, without pauses: pcap or pcapng, of Ethernet (also with VLAN tags), Linux "cooked",
+/// loopback or raw IP, over IPv4 or IPv6. Fragments are not reassembled and count as foreign. A truncated or damaged
+/// file ends where the damage begins, with error () set.
 class CaptureFile : public PacketSource {
  public:
   /// \param port only packets to this port; nullopt: to any
-  /// \throws std::runtime_error with one line if the file is missing, or no capture, or of another kind of network
+  /// \throws std::runtime_error with one line if the file is missing, no capture, or of another kind of network
   explicit CaptureFile(const std::filesystem::path& file, std::optional<std::uint16_t> port = std::nullopt);
 
   Arrival next(Packet& packet) override;

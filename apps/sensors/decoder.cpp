@@ -13,13 +13,11 @@ constexpr std::size_t kDataBytes = 1206, kPositionBytes = 512;
 constexpr std::size_t kBlockBytes = 100, kMeasurementsAt = 4, kMeasurementBytes = 3, kLasersPerBlock = 32;
 constexpr std::size_t kTimeAt = 1200, kModeAt = 1204, kModelAt = 1205;
 constexpr unsigned kDualMode = 0x39;
-constexpr unsigned kTurn = 36000;  ///< hundredths of a degree
-/// So many steps are seen in a few seconds. Then the old ones begin to count less.
-constexpr std::uint32_t kManySteps = 1U << 16U;
+constexpr unsigned kTurn = 36000;               ///< hundredths of a degree
+constexpr std::uint32_t kMaxSteps = 1U << 16U;  ///< counted, a few seconds; then all counts are halved
 
-constexpr double kPi = 3.14159265358979323846;
 double radians(double degrees) {
-  return degrees * (kPi / 180.);
+  return degrees * kRadiansPerDegree;
 }
 
 unsigned u16(const std::uint8_t* at) {
@@ -29,9 +27,6 @@ std::uint32_t u32(const std::uint8_t* at) {
   return u16(at) | static_cast<std::uint32_t>(u16(at + 2)) << 16U;
 }
 
-unsigned flagOf(const std::uint8_t* block) {
-  return u16(block);
-}
 unsigned azimuthOf(const std::uint8_t* block) {
   return u16(block + 2);
 }
@@ -60,15 +55,15 @@ bool Decoder::isLaidOut(const std::uint8_t* data, const Layout& layout) const {
     for (std::size_t k = 0; k < model_.flags.size(); ++k) {
       const std::uint8_t* const block = data + kBlockBytes * (g * layout.group + k * layout.part);
       const std::uint8_t* const second = block + kBlockBytes * layout.second;
-      if (flagOf(block) != model_.flags[k] || azimuthOf(block) > kTurn) return false;
-      if (flagOf(second) != flagOf(block) || azimuthOf(second) != azimuthOf(block)) return false;
+      if (u16(block) != model_.flags[k] || azimuthOf(block) > kTurn) return false;
+      if (u16(second) != u16(block) || azimuthOf(second) != azimuthOf(block)) return false;
     }
   return true;
 }
 
 std::optional<Decoder::Layout> Decoder::layoutOf(const std::uint8_t* data) const {
   const std::size_t blocks = model_.flags.size();
-  // Each block has its second return after it; in packets of the HDL-64E, which do not tell their mode, each firing.
+  // A second return follows each block, or each firing in packets of the HDL-64E, which do not tell their mode.
   const bool has_mode = !model_.factory_bytes.empty();
   const Layout dual = has_mode ? Layout{kBlocks / (2 * blocks), 2 * blocks, 2, 1}
                                : Layout{kBlocks / (2 * blocks), 2 * blocks, 1, blocks};
@@ -96,14 +91,14 @@ void Decoder::measureStep(const std::uint8_t* data, const Layout& layout) {
   std::size_t median = 0;
   for (std::uint32_t up_to = steps_[0]; 2 * up_to < step_count_; up_to += steps_[median]) ++median;
   if (!step_is_set_) step_ = static_cast<double>(median) / 100;
-  // Azimuths are rounded to hundredths of a degree, so a turn has more or fewer columns than the median says.
+  // The mean is more exact than the median, which is a multiple of a hundredth of a degree.
   double sum = 0, counted = 0;
   for (std::size_t step = median / 2; step < std::min(2 * median, kStepLimit); ++step) {
     sum += static_cast<double>(step) / 100 * steps_[step];
     counted += steps_[step];
   }
   mean_step_ = counted > 0 ? sum / counted : 0;
-  if (step_count_ < kManySteps) return;
+  if (step_count_ < kMaxSteps) return;
   step_count_ = 0;
   for (std::uint32_t& count : steps_) step_count_ += count /= 2;
 }

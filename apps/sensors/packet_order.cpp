@@ -9,10 +9,10 @@ namespace lisco_apps {
 namespace {
 
 constexpr std::int64_t kHourUs = 3600LL * 1000000;
-constexpr std::int64_t kLongestGapUs = 10LL * 1000000;  ///< beyond it, the clock was set
-constexpr unsigned kMostLate = 16;                      ///< in a row; more of them are another recording
+constexpr std::int64_t kMaxGapUs = 10LL * 1000000;  ///< beyond it, the clock was set
+constexpr unsigned kMaxLate = 16;                   ///< in a row; with more, another recording has begun
 
-/// From one time to another, the shorter way around the hour.
+/// From one time to another, whichever way around the hour is shorter.
 std::int64_t between(std::uint32_t from, std::uint32_t to) {
   const std::int64_t ahead = ((std::int64_t{to} - from) % kHourUs + kHourUs) % kHourUs;
   return ahead > kHourUs / 2 ? ahead - kHourUs : ahead;
@@ -23,17 +23,17 @@ std::int64_t between(std::uint32_t from, std::uint32_t to) {
 PacketOrder::Place PacketOrder::place(std::uint32_t timestamp_us, double period_us) {
   const std::int64_t gap = started_ ? between(newest_, timestamp_us) : 0;
   clock_stands_ = clock_stands_ && gap == 0;
-  const bool is_late = started_ && !clock_stands_ && gap <= 0 && gap >= -kLongestGapUs;
+  const bool is_late = started_ && !clock_stands_ && gap <= 0 && gap >= -kMaxGapUs;
   if (is_late) {
     late_in_a_row_ = late_in_a_row_ > 0 && between(newest_late_, timestamp_us) >= 0 ? late_in_a_row_ + 1 : 1;
     newest_late_ = timestamp_us;
-    if (late_in_a_row_ <= kMostLate) {
+    if (late_in_a_row_ <= kMaxLate) {
       ++late_;
       return Place::kLate;
     }
     clock_stands_ = gap == 0;
   }
-  const bool is_new_clock = started_ && (is_late || std::abs(gap) > kLongestGapUs);
+  const bool is_new_clock = started_ && (is_late || std::abs(gap) > kMaxGapUs);
   started_ = true;
   newest_ = timestamp_us;
   late_in_a_row_ = 0;

@@ -8,8 +8,8 @@
 
 namespace lisco_apps {
 
-/// Finds out from the sensor's clock which of its packets are missing or late. A late one is one of an earlier time
-/// than one that has come already: whoever clusters while the sensor turns has gone on by then, so it is to be dropped.
+/// Detects missing and late packets by the sensor's clock. A packet is late if one of a later time has come before it;
+/// it is to be dropped, as the columns after it have been clustered.
 class PacketOrder {
  public:
   enum class Place {
@@ -19,28 +19,28 @@ class PacketOrder {
     kLate,      ///< or a second copy; to be dropped
   };
 
-  /// \param timestamp_us as in the packet, microseconds past the hour; it starts anew each hour
-  /// \param period_us from one packet to the next, as the packets of this sensor and mode come
+  /// \param timestamp_us as in the packet, microseconds past the hour
+  /// \param period_us from one packet to the next, for this sensor and mode
   Place place(std::uint32_t timestamp_us, double period_us);
 
-  /// Microseconds from the packet before the last one (late ones aside) to the last one; 0 if that is unknown.
+  /// Microseconds between the last two packets that were not late; 0 if unknown.
   double gap() const { return gap_us_; }
 
-  std::uint64_t missing() const { return missing_; }  ///< packets that never came, or too late
-  std::uint64_t late() const { return late_; }        ///< packets that came too late, or twice
+  std::uint64_t missing() const { return missing_; }  ///< packets that never came, or late
+  std::uint64_t late() const { return late_; }        ///< packets that came late, or twice
   std::uint64_t clockJumps() const { return clock_jumps_; }
-  /// Microseconds from packet to packet as most of the first ones came, 0 if fewer than 16 have. Far from the
-  /// period of the sensor, it is another sensor.
+  /// Median time between the first packets, microseconds; 0 before the 17th. Far from the sensor's period, the packets
+  /// are another sensor's.
   double usualGap() const { return usual_gap_us_; }
 
  private:
   void measureUsualGap();
 
   bool started_ = false;
-  bool clock_stands_ = false;      ///< packets do not tell their times
+  bool clock_stands_ = false;      ///< all packets have the same time
   std::uint32_t newest_ = 0;       ///< time of the newest packet
   std::uint32_t newest_late_ = 0;  ///< time of the last late one
-  unsigned late_in_a_row_ = 0;     ///< and in the order of their times
+  unsigned late_in_a_row_ = 0;     ///< in the order of their times
   double gap_us_ = 0, usual_gap_us_ = 0;
   std::array<double, 16> first_gaps_{};
   std::size_t gaps_ = 0;

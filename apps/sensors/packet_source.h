@@ -8,9 +8,12 @@
 
 namespace lisco_apps {
 
-/// A UDP payload as it came.
+/// No sensor's packet is longer than an Ethernet frame.
+inline constexpr std::size_t kMaxPacketBytes = 2048;
+
+/// A UDP payload.
 struct Packet {
-  const std::uint8_t* data = nullptr;  ///< the source's own, until its next packet
+  const std::uint8_t* data = nullptr;  ///< owned by the source, valid until its next packet
   std::size_t size = 0;
   std::int64_t time_us = 0;  ///< when it was captured or received, microseconds since 1970
 };
@@ -20,29 +23,23 @@ class PacketSource {
  public:
   enum class Arrival {
     kPacket,
-    kNothing,  ///< none came within 100 ms: time to see whether to go on
-    kEnd,      ///< none will ever come
+    kNothing,  ///< none came within 100 ms
+    kEnd,      ///< no more will come
   };
 
   virtual ~PacketSource() = default;
 
-  /// Waits for the next packet, but not for long.
+  /// Waits for the next packet, at most 100 ms.
   virtual Arrival next(Packet& packet) = 0;
 
-  /// How many packets next() has given.
+  /// Packets that next () has given.
   std::uint64_t packets() const { return packets_; }
-  /// How much else has passed: what is no UDP, or to another port, or only a part of a packet.
+  /// Frames left out: not UDP, to another port, or fragments.
   std::uint64_t foreign() const { return foreign_; }
-  /// One line on what ended the packets before their time, empty if nothing did.
+  /// One line on what ended the packets early; empty if nothing did.
   const std::string& error() const { return error_; }
 
  protected:
-  PacketSource() = default;
-  PacketSource(const PacketSource&) = default;
-  PacketSource& operator=(const PacketSource&) = default;
-  PacketSource(PacketSource&&) = default;
-  PacketSource& operator=(PacketSource&&) = default;
-
   std::uint64_t packets_ = 0, foreign_ = 0;
   std::string error_;
 };

@@ -10,9 +10,9 @@ namespace {
 
 constexpr std::int64_t kDegree = 1000000;
 constexpr std::int64_t kTurn = 360 * kDegree;
-constexpr std::int64_t kLongestStepBack = 10 * kDegree;
-constexpr std::int64_t kOneStep = kDegree;     ///< what a single step may change of the drift
-constexpr std::int64_t kDrift = 20 * kDegree;  ///< and how far it goes
+constexpr std::int64_t kMaxStepBack = 10 * kDegree;
+constexpr std::int64_t kMaxDriftStep = kDegree;  ///< change of the drift by one column
+constexpr std::int64_t kMaxDrift = 20 * kDegree;
 
 std::int64_t angleOf(double degrees) {
   return std::llround(std::fmod(degrees, 360.) * static_cast<double>(kDegree));
@@ -45,11 +45,11 @@ bool RotationCutter::startsRotation(double azimuth, bool after_break) {
   }
   const Angle shorter_way = ahead > kTurn / 2 ? ahead - kTurn : ahead;
   const bool was_clockwise = isClockwise();
-  drift_ = std::clamp(drift_ + std::clamp(shorter_way, -kOneStep, kOneStep), -kDrift, kDrift);
+  drift_ = std::clamp(drift_ + std::clamp(shorter_way, -kMaxDriftStep, kMaxDriftStep), -kMaxDrift, kMaxDrift);
   if (isClockwise())
-    turned_ += ahead > kTurn - kLongestStepBack ? ahead - kTurn : ahead;
+    turned_ += ahead > kTurn - kMaxStepBack ? ahead - kTurn : ahead;
   else
-    turned_ += ahead < kLongestStepBack ? ahead : ahead - kTurn;
+    turned_ += ahead < kMaxStepBack ? ahead : ahead - kTurn;
   if (isClockwise() != was_clockwise && (was_clockwise ? turned_ > 0 : turned_ < 0))
     turned_ += was_clockwise ? -kTurn : kTurn;
   if (std::abs(turned_) < kTurn) return false;

@@ -7,16 +7,16 @@
 
 namespace lisco_apps {
 
-/// Cuts endless columns into rotations. The sensor may turn either way; columns may step back a little, and any number
-/// of them may be missing. No rotation holds more than a full turn (and a step back).
+/// Cuts a stream of columns into rotations of at most a full turn (and a step back). The sensor may turn either way;
+/// columns may step back a little, and any number of them may be missing.
 class RotationCutter {
  public:
-  /// \param cut azimuth at which each rotation begins, degrees; nullopt: where the first column lies
+  /// \param cut azimuth at which each rotation begins, degrees; nullopt: that of the first column
   explicit RotationCutter(std::optional<double> cut = std::nullopt);
 
   /// \param azimuth of the next column, degrees, finite; steps of more than 350 degrees are steps back
-  /// \param after_break whether a whole turn or more is missing before it, which the azimuth cannot tell
-  /// \return whether a rotation starts with it; so it does with the very first column
+  /// \param after_break whether at least a whole turn is missing before it, which the azimuth cannot tell
+  /// \return whether a rotation starts with it
   bool startsRotation(double azimuth, bool after_break = false);
 
  private:
@@ -29,7 +29,7 @@ class RotationCutter {
   bool started_ = false;
   Angle last_ = 0;    ///< azimuth of the last column
   Angle turned_ = 0;  ///< from the cut to the last column, clockwise
-  Angle drift_ = 0;   ///< which way the sensor has been turning lately
+  Angle drift_ = 0;   ///< positive if the latest columns turned clockwise
 };
 
 }  // namespace lisco_apps

@@ -13,6 +13,8 @@
 #include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
 
+#include "io/text.h"
+
 namespace lisco_apps {
 namespace {
 
@@ -33,7 +35,7 @@ constexpr std::array<double, 128> kVls128{
     -4.52,   0.87,  6.08,  -3.31,  2.08,  -6.65, 1.42,  -10.346, -1.88, 3.51,    -6.06,  -0.67, 4.72,    -3.97, 2.3,
     -6.39,   -1,    4.39,  -5.18,  0.21,  6.98,  -3.09, 4.98,    -3.75, 1.64,    -8.352, -2.54, 2.85,    -5.84, -0.45,
     8.43,    -2.87, 2.52,  -6.17,  -1.66, 3.73,  -4.96, 0.43};
-/// Directions of the VLS-128's lasers, by the last three bits of their numbers, degrees clockwise.
+/// Azimuth offsets of the VLS-128's lasers by the last three bits of their numbers, degrees clockwise.
 constexpr std::array kVls128Directions{6.354, 4.548, 2.732, 0.911, -0.911, -2.732, -4.548, -6.354};
 
 constexpr std::size_t kCalibratedLasers = 64;
@@ -57,19 +59,17 @@ SensorModel modelOf(const std::string& name, const std::filesystem::path& calibr
     if (calibration_file.empty())
       throw std::runtime_error(
           "the hdl64e needs its calibration file: each of these sensors has its own; give it by --calibration");
-    // Its calibration knows no delays. The last two bytes of its packets carry a status.
+    // The calibration has no delays; the last two bytes of the packets carry a status.
     return {name, readCalibration(calibration_file), {kUpperBlock, kLowerBlock}, 1, 48., 0.002, {}};
   }
   if (name == "vls128") {
-    // Its block's azimuth serves all lasers, as in most drivers. The period is as measured.
+    // All lasers take their block's azimuth, as in most drivers. The period is measured.
     SensorModel model{name,  lasersAt(kVls128, 0.), {kUpperBlock, kLowerBlock, kThirdBlock, kFourthBlock}, 1, 55.2,
                       0.004, {0x63, 0xA1}};
     for (Laser& laser : model.lasers) laser.azimuth_offset = kVls128Directions[laser.number % 8];
     return model;
   }
-  std::string names;
-  for (const std::string& known : sensorModelNames()) names += (names.empty() ? "" : ", ") + known;
-  throw std::runtime_error("there is no sensor '" + name + "': it is one of " + names);
+  throw std::runtime_error("there is no sensor '" + name + "': it is one of " + listOf(sensorModelNames()));
 }
 
 }  // namespace
@@ -87,11 +87,10 @@ SensorModel makeSensorModel(const std::string& name, const std::filesystem::path
   return model;
 }
 
-// Not by PCL's HDLGrabber: it goes on with uninitialized numbers if the file is missing, and writes out of its bounds
-// where the file numbers a laser 64 or more.
+// PCL's HDLGrabber uses uninitialized numbers if the file is missing, and writes out of bounds for a laser number of 64
+// or more.
 std::vector<Laser> readCalibration(const std::filesystem::path& file) {
   namespace tree = boost::property_tree;
-  const auto fail = [&](const std::string& what) { throw std::runtime_error(file.string() + ": " + what); };
   std::vector<std::optional<Laser>> found(kCalibratedLasers);
   try {
     tree::ptree document;
@@ -104,12 +103,12 @@ std::vector<Laser> readCalibration(const std::filesystem::path& file) {
         double read = 0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), read);
         if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(read))
-          fail(std::string(name) + " is no number: '" + text + "'");
+          fail(file, std::string(name) + " is no number: '" + text + "'");
         return read;
       };
       const double number = value("id_");
       if (!(number >= 0 && number < static_cast<double>(kCalibratedLasers)) || number != std::floor(number))
-        fail("there is no laser " + values.get_child("id_").data());
+        fail(file, "there is no laser " + values.get_child("id_").data());
       constexpr double kCentimetre = 0.01;
       Laser laser;
       laser.number = static_cast<std::size_t>(number);
@@ -121,13 +120,13 @@ std::vector<Laser> readCalibration(const std::filesystem::path& file) {
       found[laser.number] = laser;
     }
   } catch (const tree::xml_parser_error& error) {
-    fail("is no calibration file: " + error.message());
+    fail(file, "is no calibration file: " + error.message());
   } catch (const tree::ptree_error& error) {
-    fail(std::string("is no calibration file of an HDL-64E: ") + error.what());
+    fail(file, std::string("is no calibration file of an HDL-64E: ") + error.what());
   }
   std::vector<Laser> lasers;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (!found[i]) fail("says nothing of laser " + std::to_string(i));
+    if (!found[i]) fail(file, "says nothing of laser " + std::to_string(i));
     lasers.push_back(*found[i]);
   }
   return lasers;

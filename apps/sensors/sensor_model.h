@@ -10,13 +10,15 @@
 
 namespace lisco_apps {
 
-/// One laser, and how it sits in its sensor.
+inline constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.;
+
+/// One laser, and its place in the sensor.
 struct Laser {
-  std::size_t number = 0;      ///< its place among the measurements of a firing
+  std::size_t number = 0;      ///< index among the measurements of a firing
   double elevation = 0;        ///< degrees above the horizon
-  double azimuth_offset = 0;   ///< degrees clockwise, to the azimuth of its block
-  double delay_us = 0;         ///< it fires so much later than its block's azimuth was taken
-  double distance_offset = 0;  ///< metres, added to what was measured
+  double azimuth_offset = 0;   ///< degrees clockwise from the azimuth of its block
+  double delay_us = 0;         ///< of its firing, since the azimuth of its block was taken
+  double distance_offset = 0;  ///< metres, added to the measured distance
   double height = 0;           ///< metres above the origin
   double side = 0;             ///< metres to the left of the origin, seen along the ray
 };
@@ -26,31 +28,30 @@ struct Laser {
 /// past the hour, and two factory bytes: the mode of returns and the model.
 struct SensorModel {
   std::string name;
-  std::vector<Laser> lasers;         ///< from top to bottom
-  std::vector<std::uint16_t> flags;  ///< of the blocks that hold one firing of all lasers
-  std::size_t firings = 1;           ///< in one block
-  double firing_period_us = 0;       ///< from one firing of all lasers to the next
-  double distance_unit = 0.002;      ///< metres
-  /// What the last byte says, empty if the byte is used for something else.
-  std::vector<std::uint8_t> factory_bytes;
+  std::vector<Laser> lasers;                ///< from top to bottom
+  std::vector<std::uint16_t> flags;         ///< of the blocks that hold one firing of all lasers
+  std::size_t firings = 1;                  ///< in one block
+  double firing_period_us = 0;              ///< from one firing of all lasers to the next
+  double distance_unit = 0.002;             ///< metres
+  std::vector<std::uint8_t> factory_bytes;  ///< values of the last byte; empty if it does not name the model
 };
 
-/// The names makeSensorModel() knows.
+/// The names that makeSensorModel () accepts.
 std::vector<std::string> sensorModelNames();
 
-/// A sensor as its maker describes it:
+/// A sensor by its manual:
 /// - vlp16: VLP-16 (Puck), 16 lasers, +-15 degrees
 /// - hdl32e: HDL-32E, 32 lasers, +10.67 to -30.67 degrees
 /// - hdl64e: HDL-64E, 64 lasers, each sensor with a calibration of its own
-/// - vls128: VLS-128 (Alpha Prime), 128 lasers, +15 to -25 degrees, looking into eight directions within +-6.354 degrees
-/// \param calibration_file of the hdl64e, see readCalibration()
-/// \throws std::runtime_error with one line if there is no sensor of that name, if the hdl64e comes without a
-///         calibration or another one with it, or if readCalibration() does
+/// - vls128: VLS-128 (Alpha Prime), 128 lasers, +15 to -25 degrees, in eight directions within +-6.354 degrees
+/// \param calibration_file of the hdl64e, see readCalibration ()
+/// \throws std::runtime_error with one line if the name is unknown, if the hdl64e comes without a calibration or
+///         another sensor with one, or if readCalibration () throws
 SensorModel makeSensorModel(const std::string& name, const std::filesystem::path& calibration_file = {});
 
 /// The HDL-64E's lasers in the order of their numbers, from the XML file that Velodyne delivers with each sensor
 /// (db.xml) and that PCL's HDLGrabber reads: angles in degrees, lengths in centimetres.
-/// \throws std::runtime_error with one line if it is missing, no such file, or does not describe each of the 64 lasers
+/// \throws std::runtime_error with one line if it is missing, malformed, or does not describe each of the 64 lasers
 std::vector<Laser> readCalibration(const std::filesystem::path& file);
 
 }  // namespace lisco_apps

@@ -15,8 +15,8 @@
 namespace lisco_apps {
 namespace {
 
-constexpr int kPatienceMs = 50;
-constexpr int kBufferBytes = 8 << 20;  ///< what a sensor sends in a second or more; the system may grant less
+constexpr int kMaxWaitMs = 50;
+constexpr int kBufferBytes = 8 << 20;  ///< of the socket: more than a second of packets; the system may grant less
 
 }  // namespace
 
@@ -42,9 +42,9 @@ UdpReceiver::~UdpReceiver() {
 
 PacketSource::Arrival UdpReceiver::next(Packet& packet) {
   pollfd waiting{socket_, POLLIN, 0};
-  if (::poll(&waiting, 1, kPatienceMs) <= 0) return Arrival::kNothing;
+  if (::poll(&waiting, 1, kMaxWaitMs) <= 0) return Arrival::kNothing;
   const ssize_t size = ::recv(socket_, buffer_.data(), buffer_.size(), MSG_DONTWAIT);
-  if (size < 0) return Arrival::kNothing;  // such as one with a wrong checksum
+  if (size < 0) return Arrival::kNothing;  // for example a wrong checksum
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   ++packets_;
   packet = {buffer_.data(), static_cast<std::size_t>(size),

@@ -9,12 +9,11 @@
 
 namespace lisco_apps {
 
-/// The packets that come to a UDP port of this machine (IPv4), while they come. It never ends of itself; a
-/// signal wakes next() at once.
+/// The packets that come to a UDP port of this machine (IPv4). Never ends by itself; a signal wakes next () at once.
 class UdpReceiver : public PacketSource {
  public:
   /// \param port 0: any that is free
-  /// \throws std::runtime_error with one line if the port cannot be had
+  /// \throws std::runtime_error with one line if the port cannot be bound
   explicit UdpReceiver(std::uint16_t port);
   ~UdpReceiver() override;
   UdpReceiver(const UdpReceiver&) = delete;
@@ -27,7 +26,7 @@ class UdpReceiver : public PacketSource {
  private:
   int socket_;
   std::uint16_t port_ = 0;
-  std::array<std::uint8_t, 2048> buffer_{};  ///< no sensor's packet is longer than an Ethernet frame
+  std::array<std::uint8_t, kMaxPacketBytes> buffer_{};
 };
 
 }  // namespace lisco_apps

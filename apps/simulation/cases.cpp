@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
-#include <limits>
 #include <stdexcept>
 #include <unordered_map>
 
@@ -16,18 +15,17 @@
 namespace lisco_simulation {
 namespace {
 
-/// What the random numbers of a cell are for; none of the scanner's purposes.
+/// Purposes of a cell's random numbers, distinct from the scanner's.
 enum Purpose : std::uint64_t { kForRange = 1000, kForNoise, kForDropOut };
 
-constexpr double kLeastRange = 0.01;  // metres: whatever the noise, a return has a direction
-constexpr double kFarBelow = -1e6;    // metres; a floor that no ray meets within a sensor's range
+constexpr double kNoFloor = -1e6;  // metres: beyond the range of any sensor
 
 struct Target {
   double range = 0;  ///< metres, <= 0: none
   std::uint32_t object = 0;
 };
 
-/// What a case may look at, cell by cell.
+/// A cell's ray, from which a case gives the target.
 struct Ray {
   std::size_t laser, step, cell;
   Vector direction;
@@ -35,20 +33,13 @@ struct Ray {
 };
 
 Cell cellAt(const Ray& ray, const Target& target) {
-  const Vector place = target.range * ray.direction;
-  return {static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z), target.object};
-}
-
-Cell noReturn() {
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  return {kNan, kNan, kNan, 0};
+  return cellAt(target.range * ray.direction, target.object);
 }
 
 /// \param target_of gives the target of a ray as the sensor measures it, noise included
 template <typename TargetOf>
 Scan scanEachCell(const Sensor& sensor, const Disturbance& disturbance, TargetOf&& target_of) {
-  Scan scan{sensor.lasers(), sensor.steps, {}};
-  scan.cells.assign(scan.lasers * scan.steps, noReturn());
+  Scan scan = emptyScan(sensor);
   for (std::size_t cell = 0; cell < scan.cells.size(); ++cell) {
     if (CellRandom(disturbance.seed, cell, kForDropOut).unit() < disturbance.drop_outs) continue;
     Ray ray{cell / scan.steps, cell % scan.steps, cell, {}, 0};
@@ -60,7 +51,7 @@ Scan scanEachCell(const Sensor& sensor, const Disturbance& disturbance, TargetOf
   return scan;
 }
 
-/// The range at which a ray meets a round wall about the sensor.
+/// The range of a ray at a round wall around the sensor.
 double rangeOfRoundWall(const Vector& direction, double radius) {
   return radius / std::hypot(direction.x, direction.y);
 }
@@ -69,16 +60,16 @@ std::uint32_t numberOf(std::size_t cell) {
   return static_cast<std::uint32_t>(cell + 1);
 }
 
-Scan scanRoom(const Sensor& sensor, const Disturbance& disturbance) {
-  constexpr double kLength = 4;  // halves
-  constexpr double kWidth = 3;
+Scan scanRoom(const Sensor& sensor, const Disturbance& disturbance, double /*gap*/) {
+  constexpr double kLength = 4;  // half of it, metres
+  constexpr double kWidth = 3;   // half of it
   constexpr double kFloor = -1.8;
   constexpr double kCeiling = 1.2;
   constexpr double kThick = 0.3;
   const double length = kLength + kThick;
   const double width = kWidth + kThick;
   Scene scene;
-  scene.floor_z = kFarBelow;
+  scene.floor_z = kNoFloor;
   scene.objects.push_back({"room",
                            {Solid::box({kLength, -width, kFloor}, {length, width, kCeiling}),
                             Solid::box({-length, -width, kFloor}, {-kLength, width, kCeiling}),
@@ -89,13 +80,13 @@ Scan scanRoom(const Sensor& sensor, const Disturbance& disturbance) {
   return scan(scene, sensor, disturbance);
 }
 
-Scan scanWall(const Sensor& sensor, const Disturbance& disturbance) {
+Scan scanWall(const Sensor& sensor, const Disturbance& disturbance, double /*gap*/) {
   return scanEachCell(sensor, disturbance, [](const Ray& ray) {
-    return Target{std::max(rangeOfRoundWall(ray.direction, 1) + ray.noise, kLeastRange), 1};
+    return Target{std::max(rangeOfRoundWall(ray.direction, 1) + ray.noise, kMinRange), 1};
   });
 }
 
-Scan scanRandom(const Sensor& sensor, const Disturbance& disturbance) {
+Scan scanRandom(const Sensor& sensor, const Disturbance& disturbance, double /*gap*/) {
   return scanEachCell(sensor, disturbance, [&](const Ray& ray) {
     return Target{1 + 59 * CellRandom(disturbance.seed, ray.cell, kForRange).unit(), numberOf(ray.cell)};
   });
@@ -104,38 +95,38 @@ Scan scanRandom(const Sensor& sensor, const Disturbance& disturbance) {
 Scan scanSheets(const Sensor& sensor, const Disturbance& disturbance, double gap) {
   constexpr double kRange = 5;
   return scanEachCell(sensor, disturbance, [&](const Ray& ray) {
-    // Balls rather than walls: ranges that differ by the gap are at least as far apart in all directions.
+    // Spheres: returns whose ranges differ by the gap are at least the gap apart in any direction.
     const bool farther = (ray.laser + ray.step) % 2 != 0;
     const double noise = std::fabs(ray.noise);
-    return farther ? Target{kRange + gap + noise, 2} : Target{std::max(kRange - noise, kLeastRange), 1};
+    return farther ? Target{kRange + gap + noise, 2} : Target{std::max(kRange - noise, kMinRange), 1};
   });
 }
 
-Scan scanBlocked(const Sensor& sensor, const Disturbance& disturbance) {
+Scan scanBlocked(const Sensor& sensor, const Disturbance& disturbance, double /*gap*/) {
   constexpr double kRange = 0.15;
-  constexpr double kMost = 0.29;
+  constexpr double kMaxRange = 0.29;
   return scanEachCell(sensor, disturbance, [&](const Ray& ray) {
-    return Target{std::min(std::max(kRange + ray.noise, kLeastRange), kMost), 1};
+    return Target{std::min(std::max(kRange + ray.noise, kMinRange), kMaxRange), 1};
   });
 }
 
-/// Places of which each is farther than some gap from every other one.
+/// A set of positions that are farther than a gap from each other.
 class Apart {
  public:
   explicit Apart(double gap) : gap_(gap) {}
 
-  /// \return false, and nothing is added, if the place is too near to another one
+  /// \return false, without adding it, if the position is too near to another one
   bool add(const Cell& cell) {
     const Key key = keyOf(cell);
     for (int x = -1; x <= 1; ++x)
       for (int y = -1; y <= 1; ++y)
         for (int z = -1; z <= 1; ++z) {
-          // Far-away cubes may share a number.
-          const auto [first, last] = places_.equal_range(numberOf({key.x + x, key.y + y, key.z + z}));
+          // Distant cubes may share a number, so distances are compared.
+          const auto [first, last] = positions_.equal_range(numberOf({key.x + x, key.y + y, key.z + z}));
           for (auto other = first; other != last; ++other)
             if (distance(other->second, cell) <= gap_) return false;
         }
-    places_.emplace(numberOf(key), cell);
+    positions_.emplace(numberOf(key), cell);
     return true;
   }
 
@@ -162,30 +153,30 @@ class Apart {
   }
 
   double gap_;
-  std::unordered_multimap<std::uint64_t, Cell> places_;
+  std::unordered_multimap<std::uint64_t, Cell> positions_;
 };
 
 Scan scanSingletons(const Sensor& sensor, const Disturbance& disturbance, double gap) {
   constexpr int kTrials = 8;
-  constexpr double kLeast = 2;
+  constexpr double kNearest = 2;  // metres
   Apart apart(gap);
   return scanEachCell(sensor, disturbance, [&](const Ray& ray) {
     CellRandom random(disturbance.seed, ray.cell, kForRange);
     for (int trial = 0; trial < kTrials; ++trial) {
-      const Target target{kLeast + (sensor.max_range - kLeast) * random.unit(), numberOf(ray.cell)};
+      const Target target{kNearest + (sensor.max_range - kNearest) * random.unit(), numberOf(ray.cell)};
       if (apart.add(cellAt(ray, target))) return target;
     }
     return Target{};
   });
 }
 
-Scan scanPoles(const Sensor& sensor, const Disturbance& disturbance) {
+Scan scanPoles(const Sensor& sensor, const Disturbance& disturbance, double /*gap*/) {
   constexpr double kPitch = 0.65;   // from pole to pole of a ring, metres
-  constexpr double kSlender = 250;  // range by radius: as wide as a step or two
+  constexpr double kSlender = 250;  // range by radius: a width of one or two steps
   constexpr double kRings[] = {3, 4.5, 6.75, 10, 15};
-  constexpr double kSteepest = 0.6;  // tangent of an elevation above and below those of all sensors
+  constexpr double kSteepest = 0.6;  // tangent of an elevation beyond those of all sensors
   Scene scene;
-  scene.floor_z = kFarBelow;
+  scene.floor_z = kNoFloor;
   for (const double range : kRings) {
     const int poles = static_cast<int>(2 * kPi * range / kPitch);
     for (int pole = 0; pole < poles; ++pole) {
@@ -205,19 +196,13 @@ struct Case {
   bool has_gap = false;
 };
 
-/// A case that needs no gap.
-template <Scan (*scan)(const Sensor&, const Disturbance&)>
-Scan withoutGap(const Sensor& sensor, const Disturbance& disturbance, double /*gap*/) {
-  return scan(sensor, disturbance);
-}
-
-constexpr Case kCases[] = {{"room", "a closed, empty room", withoutGap<scanRoom>},
-                           {"wall", "a wall 1 m away all around", withoutGap<scanWall>},
-                           {"random", "random ranges between 1 and 60 m", withoutGap<scanRandom>},
+constexpr Case kCases[] = {{"room", "a closed, empty room", scanRoom},
+                           {"wall", "a wall 1 m away all around", scanWall},
+                           {"random", "random ranges between 1 and 60 m", scanRandom},
                            {"sheets", "two interleaved sheets just over a gap apart", scanSheets, true},
                            {"singletons", "returns farther than a gap from each other", scanSingletons, true},
-                           {"blocked", "a blocked sensor, all returns within 0.3 m", withoutGap<scanBlocked>},
-                           {"poles", "a comb of thin vertical poles", withoutGap<scanPoles>}};
+                           {"blocked", "a blocked sensor, all returns within 0.3 m", scanBlocked},
+                           {"poles", "a comb of thin vertical poles", scanPoles}};
 
 const Case& caseOf(const std::string& name) {
   const auto* const found =

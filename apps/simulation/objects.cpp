@@ -8,7 +8,7 @@
 namespace lisco_simulation {
 namespace {
 
-/// Adds four wheels of a car, standing on the floor and a little out of the body.
+/// Adds the four wheels of a car, on the floor, slightly protruding.
 void addWheels(std::vector<Solid>& solids, double front_axle, double rear_axle, double half_width) {
   constexpr double kRadius = 0.32;
   for (const double axle : {front_axle, rear_axle})
@@ -47,7 +47,7 @@ Thing sensorCar() {
                                 {-kHalf + 0.1, kHalf - 0.4, -kSide + 0.05, kSide - 0.05, 0.85}));
   solids.push_back(
       Solid::block({-kHalf + 0.1, kHalf - 0.5, -kSide + 0.05, kSide - 0.05, 0.85}, {-0.7, 0.7, -0.55, 0.55, 1.35}));
-  solids.push_back(Solid::cylinder({0, 0, 1.35}, {0, 0, 1.65}, 0.05));  // what holds the sensor
+  solids.push_back(Solid::cylinder({0, 0, 1.35}, {0, 0, 1.65}, 0.05));  // the sensor's mount
   addWheels(solids, kHalf - 0.6, -kHalf + 0.6, kSide);
   return {{"sensor car", solids}, 2 * kHalf};
 }
@@ -57,7 +57,7 @@ Thing vehicleTop(double drop) {
   constexpr double kBack = -1.1;
   constexpr double kSide = 0.7;
   std::vector<Solid> solids = {Solid::box({kBack, -kSide, -drop - 0.05}, {kFront, kSide, -drop})};
-  // Each bar stands on the roof with both ends.
+  // Both ends of a bar stand on the roof.
   constexpr double kBar = 0.02;
   constexpr double kBarSide = 0.6;
   for (const double x : {-0.55, 0.5}) {
@@ -177,7 +177,7 @@ Thing table(Random& random) {
   for (const double x : {-length + 0.06, length - 0.06})
     for (const double y : {-width + 0.06, width - 0.06})
       solids.push_back(Solid::box({x - 0.03, y - 0.03, 0}, {x + 0.03, y + 0.03, kHeight - 0.04}));
-  // A screen or a pile of books, more often than not.
+  // Often a screen or a pile of books.
   if (random.chance(0.7)) {
     const double x = random.between(-0.5, 0.5) * length;
     solids.push_back(random.chance(0.5) ? Solid::box({x - 0.25, 0, kHeight}, {x + 0.25, 0.05, kHeight + 0.42})
@@ -232,7 +232,7 @@ Thing boxes(Random& random) {
     const double width = random.between(0.2, 0.32);
     const double height = random.between(0.28, 0.5);
     solids.push_back(
-        Solid::box({-length, -width, 0}, {length, width, height}).turned(random.between(-0.3, 0.3)).moved({0, 0, z}));
+        Solid::box({-length, -width, 0}, {length, width, height}).rotated(random.between(-0.3, 0.3)).moved({0, 0, z}));
     z += height;
   }
   return {{"boxes", solids}, 0.85};

@@ -7,8 +7,7 @@
 
 namespace lisco_simulation {
 
-/// Random numbers that are the same on every machine, which those of the standard distributions are not: 53 bits of a
-/// 64-bit generator.
+/// Random numbers of 53 bits, the same on every machine, unlike those of the standard distributions.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
@@ -22,8 +21,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// Random numbers of one cell: known from the seed, the cell and what they are for, in whatever order cells are cast
-/// (SplitMix64).
+/// Random numbers of one cell, determined by the seed, the cell and their purpose, in any order of cells (SplitMix64).
 class CellRandom {
  public:
   CellRandom(std::uint64_t seed, std::uint64_t cell, std::uint64_t purpose)
@@ -34,8 +32,7 @@ class CellRandom {
   /// 0 <= number < 1
   double unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
 
-  /// Mean 0, standard deviation 1, never beyond 6: the sum of twelve numbers of 16 bits. Unlike the textbook's formula
-  /// it needs no logarithm or cosine, whose last bits differ between machines.
+  /// Mean 0, standard deviation 1, within +-6, the same on every machine: the sum of twelve numbers of 16 bits.
   double gaussian() {
     std::uint64_t sum = 0;
     for (int word = 0; word < 3; ++word)

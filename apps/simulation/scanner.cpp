@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// What the random numbers of a cell are for; greater ones are for the leaves of one solid each.
+/// Purposes of a cell's random numbers; those from kForLeaves on are for one solid each.
 enum Purpose : std::uint64_t { kForNoise, kForDropOut, kForLeaves };
 
 struct Hit {
@@ -21,8 +21,8 @@ struct Hit {
   std::uint32_t object = 0;
 };
 
-/// Finds what a ray meets first. Solids are sorted into sectors of azimuth, in each by their nearest range, so that a
-/// ray is held against few of them.
+/// Finds the first hit of a ray. Solids are sorted into sectors of azimuth and in each by nearest range, so that few
+/// are tested per ray.
 class Caster {
  public:
   explicit Caster(const Scene& scene) : floor_z_(scene.floor_z), sectors_(kSectors) {
@@ -37,7 +37,7 @@ class Caster {
       });
   }
 
-  /// \param seed, cell known by them is how deep the ray gets into leaves
+  /// \param seed, cell determine the depth of the ray into leaves
   Hit first(const Vector& direction, double azimuth, std::uint64_t seed, std::uint64_t cell) const {
     Hit hit;
     if (direction.z < 0) hit.range = floor_z_ / direction.z;
@@ -49,7 +49,7 @@ class Caster {
       if (inside.enter > inside.leave || inside.enter <= 0) continue;
       double range = inside.enter;
       if (solid.meanDepth() > 0) {
-        // The way to the first leaf is distributed exponentially.
+        // The depth of the first leaf is distributed exponentially.
         range -= solid.meanDepth() * std::log1p(-CellRandom(seed, cell, kForLeaves + candidate.solid).unit());
         if (range > inside.leave) continue;
       }
@@ -65,7 +65,7 @@ class Caster {
     const Solid* solid;
     std::uint32_t object;
   };
-  /// What of a solid's bounds is needed to pass it by.
+  /// The bounds of a solid as seen from the sensor.
   struct Candidate {
     double nearest;          ///< range, metres
     double lowest, highest;  ///< sine of the elevation
@@ -79,7 +79,7 @@ class Caster {
   static std::size_t sectorOf(double azimuth) { return static_cast<std::size_t>(sectorPosition(azimuth)) % kSectors; }
 
   void add(const Solid& solid, std::uint32_t object) {
-    constexpr double kMargin = 1e-6;  // metres; more than any rounding
+    constexpr double kMargin = 1e-6;  // metres, above any rounding error
     const auto index = static_cast<std::uint32_t>(solids_.size());
     solids_.push_back({&solid, object});
     const Vector& centre = solid.bounds().centre;
@@ -129,12 +129,20 @@ std::size_t Scan::returnsWithin(double range) const {
   }));
 }
 
-Scan scan(const Scene& scene, const Sensor& sensor, const Disturbance& disturbance) {
+Scan emptyScan(const Sensor& sensor) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  constexpr double kLeastRange = 0.01;  // metres: whatever the noise, a return has a direction
-  const Caster caster(scene);
   Scan scan{sensor.lasers(), sensor.steps, {}};
   scan.cells.assign(scan.lasers * scan.steps, {kNan, kNan, kNan, 0});
+  return scan;
+}
+
+Cell cellAt(const Vector& place, std::uint32_t object) {
+  return {static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z), object};
+}
+
+Scan scan(const Scene& scene, const Sensor& sensor, const Disturbance& disturbance) {
+  const Caster caster(scene);
+  Scan scan = emptyScan(sensor);
   for (std::size_t index = 0; index < scan.cells.size(); ++index) {
     const std::size_t laser = index / scan.steps;
     const std::size_t step = index % scan.steps;
@@ -143,9 +151,7 @@ Scan scan(const Scene& scene, const Sensor& sensor, const Disturbance& disturban
     if (hit.range > sensor.max_range) continue;
     if (CellRandom(disturbance.seed, index, kForDropOut).unit() < disturbance.drop_outs) continue;
     const double noise = disturbance.range_noise * CellRandom(disturbance.seed, index, kForNoise).gaussian();
-    const Vector place = std::max(hit.range + noise, kLeastRange) * direction;
-    scan.cells[index] = {static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z),
-                         hit.object};
+    scan.cells[index] = cellAt(std::max(hit.range + noise, kMinRange) * direction, hit.object);
   }
   return scan;
 }

@@ -12,25 +12,28 @@
 
 namespace lisco_simulation {
 
-/// Something that stands in a scene.
+/// An object of a scene.
 struct Object {
-  std::string kind;  ///< what it stands for: "car", "tree", ...
+  std::string kind;  ///< "car", "tree", ...
   std::vector<Solid> solids;
 };
 
-/// What is around the sensor, which is at (0, 0, 0) with x ahead, y to the left and z up.
+/// The surroundings of the sensor, which is at (0, 0, 0) with x ahead, y to the left and z up.
 struct Scene {
   std::vector<Object> objects;  ///< the object of index i has number i + 1
   double floor_z = -1.8;        ///< height of the floor or ground, an endless plane, metres
-  float ground_z = -1.6F;       ///< below this height lies what is taken for ground and left out of clustering
+  float ground_z = -1.6F;       ///< returns below this height are left out of clustering, metres
 };
 
-/// What makes a scan less than perfect. The same numbers give the same scan.
+/// Noise and drop-outs of a scan. Equal values give equal scans.
 struct Disturbance {
   std::uint64_t seed = 1;
   double range_noise = 0.02;  ///< standard deviation of a range, metres, >= 0
-  double drop_outs = 0.005;   ///< part of the returns that is lost, 0 <= part < 1
+  double drop_outs = 0.005;   ///< part of the returns that is lost, 0 to below 1
 };
+
+/// Shorter ranges are set to this, metres, so that noise keeps the direction of a return.
+constexpr double kMinRange = 0.01;
 
 /// One cell of a scan.
 struct Cell {
@@ -42,17 +45,21 @@ struct Cell {
 struct Scan {
   std::size_t lasers = 0;
   std::size_t steps = 0;
-  std::vector<Cell> cells;  ///< laser by laser from top to bottom, each step by step as the sensor turned
+  std::vector<Cell> cells;  ///< laser by laser from top to bottom, each step by step
 
   const Cell& at(std::size_t laser, std::size_t step) const { return cells[laser * steps + step]; }
   std::size_t returns() const;
   /// Returns with z >= ground_z.
   std::size_t returnsAbove(float ground_z) const;
-  /// Returns nearer to the sensor than so many metres.
+  /// Returns nearer to the sensor than `range` metres.
   std::size_t returnsWithin(double range) const;
 };
 
-/// Casts one ray per cell and takes what it meets first.
+/// A scan without returns.
+Scan emptyScan(const Sensor& sensor);
+Cell cellAt(const Vector& place, std::uint32_t object);
+
+/// Casts one ray per cell to the first object it meets.
 Scan scan(const Scene& scene, const Sensor& sensor, const Disturbance& disturbance);
 
 }  // namespace lisco_simulation

@@ -14,25 +14,25 @@
 namespace lisco_simulation {
 namespace {
 
-/// A thing and where in its group it stands. Braces around all of it draw its random numbers from left to right, which
-/// a function's arguments would leave to the compiler.
+/// A thing and its place in a group. Brace initialization draws the random numbers from left to right; the order of
+/// function arguments would depend on the compiler.
 struct Placed {
   Thing thing;
-  double away;     ///< from the sensor, counted from where the group begins, metres
+  double away;     ///< from the beginning of the group, away from the sensor, metres
   double across;   ///< to the left as seen from the sensor, metres
   double heading;  ///< of the thing's x axis, radians, 0: away from the sensor
 };
 
-/// Things that move away from the sensor in one direction, as one.
+/// Things in one direction from the sensor, at a common distance.
 class Group {
  public:
   Group(Scene& scene, double direction, double distance) : scene_(scene), direction_(direction), distance_(distance) {}
 
   void add(const Placed& placed) {
     Object object{placed.thing.object.kind, {}};
-    const Vector place = turned({distance_ + placed.away, placed.across, scene_.floor_z}, direction_);
+    const Vector place = rotated({distance_ + placed.away, placed.across, scene_.floor_z}, direction_);
     for (const Solid& solid : placed.thing.object.solids)
-      object.solids.push_back(solid.turned(placed.heading + direction_).moved(place));
+      object.solids.push_back(solid.rotated(placed.heading + direction_).moved(place));
     scene_.objects.push_back(std::move(object));
   }
 
@@ -41,29 +41,29 @@ class Group {
   double direction_, distance_;
 };
 
-constexpr double kRoomHeight = 3;
+constexpr double kRoomHeight = 3;  // metres
 
-/// With less, things of two groups would touch each other in the room.
-constexpr double kLeastRoomDistance = 1.5;
+/// Metres; with less, things of two groups would touch each other in the room.
+constexpr double kMinRoomDistance = 1.5;
 
 constexpr double kAhead = 0;
 constexpr double kLeft = kPi / 2;
 constexpr double kBehind = kPi;
 constexpr double kRight = -kPi / 2;
 
-/// Along the street, one way or the other; seen from a group beside it.
+/// A heading along the street, either way, for a group beside it.
 double alongStreet(Random& random) {
   const double heading = random.chance(0.5) ? kPi / 2 : -kPi / 2;
   return heading + random.between(-0.02, 0.02);
 }
 
-/// A strip along which things are put side by side, as long as there is room.
+/// A lane of limited length along which things are placed one after the other.
 class Lane {
  public:
   Lane(double first, double last) : next_(first), last_(last) {}
 
-  /// \param width of the next thing \param gap to the one after it \param middle where the thing is to stand
-  /// \return whether there is room for it
+  /// \param width of the next thing \param gap to the one after it \param middle receives its position
+  /// \return whether it fits
   bool take(double width, double gap, double& middle) {
     if (next_ + width > last_) return false;
     middle = next_ + width / 2;
@@ -125,7 +125,7 @@ void addManyObjects(Scene& scene, Random& random, double distance) {
 void addRoom(Scene& scene, Random& random, double distance) {
   constexpr double kDepth = 2.6;  // from the nearest things to the walls
   const double half = distance + kDepth;
-  // Walls and ceiling belong together.
+  // Walls and ceiling are one object.
   const double floor = scene.floor_z;
   const double top = floor + kRoomHeight;
   Object shell{"walls and ceiling", {}};
@@ -134,7 +134,7 @@ void addRoom(Scene& scene, Random& random, double distance) {
       Solid::box({-half - kThick, -half - kThick, top}, {half + kThick, half + kThick, top + kThick}));
   for (const double direction : {kAhead, kLeft, kBehind, kRight})
     shell.solids.push_back(
-        Solid::box({half, -half - kThick, floor}, {half + kThick, half + kThick, top}).turned(direction));
+        Solid::box({half, -half - kThick, floor}, {half + kThick, half + kThick, top}).rotated(direction));
   scene.objects.push_back(std::move(shell));
 
   for (const double direction : {kAhead, kLeft, kBehind, kRight}) {
@@ -151,7 +151,7 @@ void addRoom(Scene& scene, Random& random, double distance) {
     }
     for (Lane shelves(random.between(-3.4, -3.3), 3.4); shelves.take(1.6, random.between(0.5, 0.6), middle);)
       group.add({shelf(random, 1.6), kDepth, middle, 0});
-    // Between this group and the next, moving with both.
+    // Between this group and the next, at the distance of both.
     Group corner(scene, direction + kPi / 4, std::sqrt(2.0) * distance);
     const bool sideways = direction == kLeft || direction == kRight;
     corner.add({sideways ? column(random, kRoomHeight) : boxes(random), std::sqrt(2.0) * 1.4,
@@ -159,7 +159,7 @@ void addRoom(Scene& scene, Random& random, double distance) {
   }
 }
 
-/// What the sensor stands on; no ray of the paper's sensor meets it.
+/// Adds the mount of the sensor, out of view of the paper's sensor.
 void addMount(Scene& scene, int number) {
   Thing mount = number < 5 ? sensorCar() : Thing{{"sensor column", {Solid::cylinder({}, {0, 0, 1.65}, 0.12)}}, 0.24};
   Object object{mount.object.kind, {}};
@@ -172,7 +172,7 @@ void addMount(Scene& scene, int number) {
 Scene layOutScene(int number, unsigned seed, double distance) {
   if (number < 1 || number > kScenes)
     throw std::invalid_argument("there are scenes 1 to 5, but no scene " + std::to_string(number));
-  // Scenes 1 and 2 draw the same numbers, and so do 3 and 4.
+  // Scenes 1 and 2 draw the same numbers, as do 3 and 4.
   Random random(seed);
   Scene scene;
   addMount(scene, number);
@@ -189,12 +189,15 @@ Scene makeScene(int number, unsigned seed) {
   const Sensor sensor = makeSensor(sensorNames().front());
   Disturbance disturbance;
   disturbance.seed = seed;
-  // The further away things are, the fewer rays they stop. That holds but for a few returns, so the best is kept.
+  // Bisection: returns decrease with the distance, except for small fluctuations, so the best scene is kept.
   Scene best;
   std::size_t least_error = std::numeric_limits<std::size_t>::max();
-  double near = number == 5 ? kLeastRoomDistance : 0;
-  double far = 40;
-  for (int halving = 0; halving < 24; ++halving) {
+  constexpr int kMaxHalvings = 24;
+  constexpr double kMaxDistance = 40;      // metres
+  constexpr std::size_t kAccuracy = 1000;  // one return in so many
+  double near = number == 5 ? kMinRoomDistance : 0;
+  double far = kMaxDistance;
+  for (int halving = 0; halving < kMaxHalvings; ++halving) {
     const double distance = (near + far) / 2;
     Scene scene = layOutScene(number, seed, distance);
     const std::size_t wanted = kReturnsInPaper[number - 1];
@@ -204,7 +207,7 @@ Scene makeScene(int number, unsigned seed) {
     if (error >= least_error) continue;
     least_error = error;
     best = std::move(scene);
-    if (error <= wanted / 1000) break;
+    if (error <= wanted / kAccuracy) break;
   }
   return best;
 }
@@ -214,7 +217,7 @@ void addVehicle(Scene& scene, unsigned seed) {
   Disturbance disturbance;
   disturbance.seed = seed;
   scene.objects.emplace_back();
-  // The higher the sensor stands above the roof, the fewer rays the roof stops.
+  // Bisection: returns of the roof decrease with the height of the sensor above it.
   double low = 0.1;
   double high = 0.5;
   for (int halving = 0; halving < 16; ++halving) {

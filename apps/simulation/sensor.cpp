@@ -11,13 +11,13 @@ namespace {
 
 constexpr double kDegree = kPi / 180;
 
-/// A sensor before the numbers of its lasers and steps are chosen.
+/// A sensor with its own numbers of lasers and steps.
 struct Model {
   const char* name;
   std::size_t steps;
   std::vector<double> (*elevations)();        ///< degrees, from top to bottom
-  std::vector<double> repeated_stagger = {};  ///< of neighbouring lasers, degrees, again and again
-  /// Part of a step from the first laser's firing to the moment after the last one's; 0: all fire at once.
+  std::vector<double> repeated_stagger = {};  ///< of successive lasers, degrees, repeated
+  /// Part of a step in which all lasers fire one after the other; 0: all fire at once.
   double firing_share = 0;
 };
 
@@ -35,7 +35,7 @@ std::vector<double> upperAndLowerBlock() {
   return elevations;
 }
 
-/// By which factor `gaps` gaps must grow, one after the other, so that they span `span` after a gap of `first`.
+/// The factor by which each of `gaps` gaps must exceed the one before, the first of them `first`, to add up to `span`.
 double growth(double first, int gaps, double span) {
   double lo = 1;
   double hi = 10;
@@ -83,7 +83,7 @@ const std::vector<Model>& models() {
   return kModels;
 }
 
-/// The same profile with another number of lasers, between the same ends.
+/// A profile with another number of lasers between the same ends.
 std::vector<double> resampled(const std::vector<double>& profile, std::size_t lasers) {
   std::vector<double> elevations(lasers);
   const auto last = static_cast<double>(profile.size() - 1);
@@ -96,8 +96,7 @@ std::vector<double> resampled(const std::vector<double>& profile, std::size_t la
   return elevations;
 }
 
-/// When a laser fires, in firings since the first one of its column: the lowest, the lowest of the upper half, the
-/// second lowest, and so on.
+/// Rank of a laser in the order of firing: the lowest, the lowest of the upper half, the second lowest, and so on.
 double firing(std::size_t laser, std::size_t lasers) {
   const std::size_t from_below = lasers - 1 - laser;
   const std::size_t half = (lasers + 1) / 2;

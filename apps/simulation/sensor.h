@@ -14,37 +14,35 @@ namespace lisco_simulation {
 struct Sensor {
   std::string name;
   std::vector<double> elevation;  ///< of each laser, radians above the horizon, from top to bottom
-  std::vector<double> stagger;    ///< how far each laser is turned ahead of its column, radians, clockwise
+  std::vector<double> stagger;    ///< of each laser in its column, radians clockwise
   std::size_t steps = 0;          ///< of one rotation
-  double max_range = 120;         ///< metres; nothing comes back from beyond
+  double max_range = 120;         ///< metres; no returns beyond
 
   std::size_t lasers() const { return elevation.size(); }
 
-  /// Where a laser looks in a step, radians, counterclockwise from straight ahead, not wrapped. Step 0 looks straight
-  /// behind, so that what is ahead lies in the middle of a scan.
+  /// Azimuth of a laser in a step, radians counterclockwise from straight ahead, not wrapped. Step 0 is straight
+  /// behind, so that straight ahead is in the middle of a scan.
   double azimuth(std::size_t laser, std::size_t step) const;
-  /// The same as a direction of length 1.
+  /// The direction of a laser in a step, of length 1.
   Vector direction(std::size_t laser, std::size_t step) const;
 };
 
-/// The names makeSensor() knows, the default first.
+/// The names that makeSensor () accepts, the default first.
 std::vector<std::string> sensorNames();
 
-/// A sensor as its maker describes it:
+/// A sensor by its manual:
 /// - hdl64e: Velodyne HDL-64E, 64 lasers x 1125 steps (the paper's): 32 upper lasers 1/3 degree apart from +2 degrees
 ///   down, 32 lower ones 1/2 degree apart to -24.33. Its columns are straight, as in the paper.
 /// - hdl32e: Velodyne HDL-32E, 32 x 2170, +10.67 to -30.67 degrees. The lasers of a column fire one after the other,
-/// one
-///   of the lower and one of the upper half in turn, while the sensor turns on.
+///   alternately one of the lower and one of the upper half, while the sensor turns.
 /// - vlp16: Velodyne VLP-16, 16 x 1808, +-15 degrees, firing likewise.
-/// - vls128: Velodyne VLS-128, 128 x 1808, +15 to -25 degrees, 0.11 degrees apart around the horizon and ever further
-///   towards both ends. Neighbouring lasers look into eight directions within +-6.354 degrees.
-/// - os1-128: Ouster OS1-128, 128 x 1024, +-22.5 degrees. Neighbouring lasers look into four directions within +-4.23
-///   degrees.
-/// \param lasers 0: as many as the model has. Else the elevations are interpolated between the model's, from top to
-///        bottom (one laser: in their middle), and the pattern of the stagger is continued.
+/// - vls128: Velodyne VLS-128, 128 x 1808, +15 to -25 degrees, 0.11 degrees apart around the horizon and further apart
+///   towards both ends. The stagger of successive lasers takes eight values within +-6.354 degrees.
+/// - os1-128: Ouster OS1-128, 128 x 1024, +-22.5 degrees. The stagger takes four values within +-4.23 degrees.
+/// \param lasers 0: as many as the model has. Otherwise the elevations are interpolated between the model's, from top
+///         to bottom (one laser: in their middle), and the pattern of the stagger is continued.
 /// \param steps 0: as many as the model has
-/// \throws std::invalid_argument if there is no sensor of that name
+/// \throws std::invalid_argument if the name is unknown
 Sensor makeSensor(const std::string& name, std::size_t lasers = 0, std::size_t steps = 0);
 
 }  // namespace lisco_simulation

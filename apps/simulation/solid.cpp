@@ -10,7 +10,7 @@ namespace lisco_simulation {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Interval kNowhere{kInfinity, -kInfinity};
+constexpr Interval kEmpty{kInfinity, -kInfinity};
 
 }  // namespace
 
@@ -19,7 +19,7 @@ Solid Solid::block(const Rectangle& bottom, const Rectangle& top) {
   solid.addPlane({0, 0, -1}, {0, 0, bottom.z});
   solid.addPlane({0, 0, 1}, {0, 0, top.z});
   const double height = top.z - bottom.z;
-  // The normal of a side is square to its horizontal edge and to the way up along it.
+  // The normal of a side is perpendicular to its horizontal edge and to its slope.
   solid.addPlane({height, 0, bottom.front - top.front}, {bottom.front, 0, bottom.z});
   solid.addPlane({-height, 0, top.back - bottom.back}, {bottom.back, 0, bottom.z});
   solid.addPlane({0, height, bottom.left - top.left}, {0, bottom.left, bottom.z});
@@ -64,12 +64,12 @@ Solid Solid::ofLeaves(double mean_depth) const {
   return solid;
 }
 
-Solid Solid::turned(double angle) const {
+Solid Solid::rotated(double angle) const {
   Solid solid = *this;
-  for (Vector& row : solid.rows_) row = lisco_simulation::turned(row, angle);
-  solid.centre_ = lisco_simulation::turned(centre_, angle);
-  for (Plane& plane : solid.planes_) plane.normal = lisco_simulation::turned(plane.normal, angle);
-  solid.bounds_.centre = lisco_simulation::turned(bounds_.centre, angle);
+  for (Vector& row : solid.rows_) row = lisco_simulation::rotated(row, angle);
+  solid.centre_ = lisco_simulation::rotated(centre_, angle);
+  for (Plane& plane : solid.planes_) plane.normal = lisco_simulation::rotated(plane.normal, angle);
+  solid.bounds_.centre = lisco_simulation::rotated(bounds_.centre, angle);
   return solid;
 }
 
@@ -86,7 +86,7 @@ Interval Solid::along(const Vector& direction) const {
   for (const Plane& plane : planes_) {
     const double towards = dot(plane.normal, direction);
     if (towards == 0) {
-      if (plane.limit < 0) return kNowhere;
+      if (plane.limit < 0) return kEmpty;
     } else if (towards > 0) {
       inside.leave = std::min(inside.leave, plane.limit / towards);
     } else {
@@ -107,8 +107,8 @@ Interval Solid::along(const Vector& direction) const {
     c += centre * centre;
   }
   const double discriminant = b * b - a * c;
-  if (discriminant < 0) return kNowhere;
-  if (a == 0) return c <= 0 ? inside : kNowhere;  // along the axis of a cylinder
+  if (discriminant < 0) return kEmpty;
+  if (a == 0) return c <= 0 ? inside : kEmpty;  // along the axis of a cylinder
   const double half = std::sqrt(discriminant);
   return {std::max(inside.enter, (b - half) / a), std::min(inside.leave, (b + half) / a)};
 }

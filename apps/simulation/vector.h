@@ -8,7 +8,7 @@ namespace lisco_simulation {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// A place or a direction: x ahead, y to the left, z up; metres.
+/// A position or a direction: x ahead, y to the left, z up; metres.
 struct Vector {
   double x = 0, y = 0, z = 0;
 };
@@ -32,8 +32,8 @@ inline Vector cross(const Vector& a, const Vector& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// Turned about the vertical axis, counterclockwise seen from above.
-inline Vector turned(const Vector& a, double angle) {
+/// Rotates about the vertical axis, counterclockwise seen from above. \param angle radians
+inline Vector rotated(const Vector& a, double angle) {
   const double c = std::cos(angle);
   const double s = std::sin(angle);
   return {c * a.x - s * a.y, s * a.x + c * a.y, a.z};

@@ -7,9 +7,25 @@
 #include <limits>
 #include <utility>
 
-#include "view_of.h"
-
 namespace lisco_apps {
+namespace {
+
+/// Upper bound of the azimuth between a return and its column, radians: by the laser's place, by the delay of its
+/// firing, and by a margin.
+double staggerOf(const SensorModel& model) {
+  constexpr double kMaxSpeed = 360 * 20e-6;  // degrees per microsecond: 20 turns a second
+  constexpr double kJitter = 1;              // degrees by which an azimuth may step back
+  constexpr double kMinRange = 0.5;          // metres, of returns of lasers beside the axis
+  double bound = 0;
+  for (const Laser& laser : model.lasers) {
+    const double beside = std::asin(std::min(1., std::fabs(laser.side) / kMinRange));
+    const double offset = std::fabs(laser.azimuth_offset) + kMaxSpeed * laser.delay_us;
+    bound = std::max(bound, (offset + kJitter) * kRadiansPerDegree + beside);
+  }
+  return bound;
+}
+
+}  // namespace
 
 EndlessStream::EndlessStream(const StreamOptions& options, const Decoder& decoder, Listener& listener)
     : options_(options), decoder_(decoder), listener_(listener) {
@@ -17,7 +33,7 @@ EndlessStream::EndlessStream(const StreamOptions& options, const Decoder& decode
   parameters.tolerance = options.tolerance;
   parameters.min_size = options.min_size;
   parameters.max_size = options.max_size;
-  parameters.clockwise = true;  // as azimuths are counted; 0 is ahead, where x is
+  parameters.clockwise = true;  // as azimuths count, from +x
   parameters.stagger = std::min(staggerOf(decoder.model()), lisco::EndlessParameters::kMaxStagger);
   parameters.lasers = decoder.model().lasers.size();
   parameters.block_columns = kBlock;
@@ -26,7 +42,7 @@ EndlessStream::EndlessStream(const StreamOptions& options, const Decoder& decode
 
 bool EndlessStream::add(const Column& column, const Origin& origin) {
   const auto start = Clock::now();
-  const bool stands_still = has_begun_ && turns_.back().turn.columns() == kMostColumns;
+  const bool stands_still = has_begun_ && turns_.back().turn.columns() == kMaxColumns;
   if (stands_still) finish();
   if (cutter_.startsRotation(column.azimuth, column.after_break) || stands_still) {
     endTurn();
@@ -45,10 +61,6 @@ bool EndlessStream::add(const Column& column, const Origin& origin) {
   if (marks_.size() >= 2 * kBlock) marks_.erase(marks_.begin(), marks_.end() - kBlock);
   closeTurns(open.last_position);
   return true;
-}
-
-void EndlessStream::wait() {
-  clusterer_.update();
 }
 
 void EndlessStream::finish() {
@@ -77,7 +89,8 @@ void EndlessStream::endTurn() {
   listener_.turnEnds(turn);
 }
 
-/// A return of eighth n is delivered by the first column of eighth n + 8: its cluster has begun in n at the latest.
+/// Reports turns whose returns have all been delivered. A return in eighth n of a turn is delivered by the first column
+/// of eighth n + 8, as a cluster is cut after a turn.
 void EndlessStream::closeTurns(double position) {
   constexpr double kEighths = 8;
   while (!turns_.empty() && !(has_begun_ && turns_.size() == 1)) {
@@ -95,26 +108,26 @@ double EndlessStream::positionOf(const Column& column) {
   if (last_time_us_ && decoder_.turnUs() > 0 && !column.after_break) {
     turns = std::remainder(column.time_us - *last_time_us_, kHourUs) / decoder_.turnUs();
   } else if (column.after_break && decoder_.turnUs() > 0) {
-    turns = decoder_.order().gap() / decoder_.turnUs();  // 0 if nobody knows
+    turns = decoder_.order().gap() / decoder_.turnUs();  // 0 if unknown
   }
   last_time_us_ = column.time_us;
   return position_.next(column.azimuth, turns, column.after_break);
 }
 
-/// When the first column came that could not reach it.
+/// When the first column came that cannot reach a cluster; of a cut cluster, the last column.
 std::optional<Clock::time_point> EndlessStream::closedAt(double reach_end) const {
   if (is_finishing_ || marks_.empty()) return std::nullopt;
   const auto mark = std::find_if(marks_.begin(), marks_.end(), [&](const Mark& m) { return m.position >= reach_end; });
-  return mark == marks_.end() ? marks_.back().received : mark->received;  // a cut one is closed by the last one
+  return mark == marks_.end() ? marks_.back().received : mark->received;
 }
 
 void EndlessStream::deliver(const lisco::EndlessCluster& cluster) {
   DeliveredCluster delivered;
-  if (++delivered_ == 0) delivered_ = 1;  // after weeks; 0 is no cluster
+  if (++delivered_ == 0) delivered_ = 1;  // after 2^32 clusters; 0 is no cluster
   delivered.found.id = delivered_;
   cluster.forEachRun([&](const std::uint32_t* indices, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
-      // The turn whose indices reach furthest without reaching beyond; they may have started again at 0.
+      // The turn that holds the index; differences are right across the wrap-around of indices.
       auto open = turns_.rbegin();
       while (indices[i] - open->first_index >= open->turn.cells.size()) ++open;
       const std::size_t cell = indices[i] - open->first_index;

@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -10,37 +9,31 @@
 #include <vector>
 
 #include "lisco/endless_clusterer.h"
-#include "listener.h"
 #include "sensors/rotation_cutter.h"
 #include "stream.h"
-#include "turn.h"
 #include "turn_position.h"
 
 namespace lisco_apps {
 
-/// Clusters without end: each cluster is delivered once no later column can reach it, see lisco::EndlessClusterer.
-/// Clusters are numbered in the order of their delivery.
+/// Clusters without rotations: each cluster is delivered once no later column can reach it, see
+/// lisco::EndlessClusterer. Clusters are numbered in the order of delivery.
 class EndlessStream : public Stream {
  public:
-  /// \param decoder of the columns
   EndlessStream(const StreamOptions& options, const Decoder& decoder, Listener& listener);
 
   bool add(const Column& column, const Origin& origin) override;
-  void wait() override;
+  void wait() override { clusterer_.update(); }
   void finish() override;
-
-  /// Returns that were seen under another azimuth than their column's; each is a cluster of its own.
-  std::uint64_t strays() const { return clusterer_.outlierCount(); }
+  std::optional<std::uint64_t> outliers() const override { return clusterer_.outlierCount(); }
 
  private:
-  /// Columns that are read together: a millisecond or less of any of these sensors. One by one, they take three times
-  /// the time.
+  /// Columns that are read together: at most a millisecond of these sensors. One by one they take three times as long.
   static constexpr std::size_t kBlock = 16;
 
-  /// A turn that has clusters which may be open.
+  /// A turn some of whose clusters may be open.
   struct OpenTurn {
     Turn turn;
-    std::uint32_t first_index = 0;  ///< the source index of its first cell
+    std::uint32_t first_index = 0;  ///< source index of its first cell
     double last_position = 0;       ///< of its last column
   };
   /// A column that may close clusters.
@@ -62,11 +55,11 @@ class EndlessStream : public Stream {
   RotationCutter cutter_;
   TurnPosition position_;
   lisco::EndlessClusterer clusterer_;
-  std::deque<OpenTurn> turns_;  ///< the last one is the current one
+  std::deque<OpenTurn> turns_;  ///< the current one is last
   std::vector<OpenTurn> spare_;
   bool has_begun_ = false, is_finishing_ = false;
   std::uint64_t rotations_ = 0, missing_before_ = 0;
-  std::uint32_t next_index_ = 0;  ///< goes on at 0 after the last number there is
+  std::uint32_t next_index_ = 0;  ///< wraps around to 0
   std::optional<double> last_time_us_;
   std::int64_t time_us_ = 0;
   std::uint32_t delivered_ = 0;

@@ -2,19 +2,18 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 
 #include "turn.h"
 
 namespace lisco_apps {
 
-/// A folder that receives a labelled cloud of each turn: rotation_000001.pcd and so on, organized (a row for each laser
-/// from the top one to the bottom one, a column for each firing), fields x y z intensity label; label 0 is in no cluster.
+/// A folder that receives a labelled cloud of each turn: rotation_000001.pcd and so on, organized (a row per laser from
+/// top to bottom, a column per firing), fields x y z intensity label; label 0: in no cluster.
 class LabelledClouds {
  public:
   /// Makes the folder, and those above it, and removes the files of an earlier run.
-  /// \throws std::runtime_error with one line if that cannot be, or if it has files of such names by somebody else
+  /// \throws std::runtime_error with one line on failure, or if the folder has foreign files of such names
   explicit LabelledClouds(std::filesystem::path folder);
 
   /// \throws std::runtime_error with one line if it cannot be written

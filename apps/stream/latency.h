@@ -17,8 +17,7 @@ inline double millisecondsOf(Clock::duration time) {
   return std::chrono::duration<double, std::milli>(time).count();
 }
 
-/// How long something took, any number of times, in a fixed piece of memory: percentiles are right to 2%, from a
-/// nanosecond to hours.
+/// A histogram of durations in fixed memory: percentiles are accurate to 2%, from a nanosecond to hours.
 class Latency {
  public:
   void add(Clock::duration time) {
@@ -26,30 +25,32 @@ class Latency {
     const double bin = kBinsPerOctave * std::log2(ns);
     ++bins_[std::min(static_cast<std::size_t>(bin), kBins - 1)];
     ++count_;
-    most_ms_ = std::max(most_ms_, ns * 1e-6);
+    max_ms_ = std::max(max_ms_, ns * kMsPerNs);
   }
 
   std::uint64_t count() const { return count_; }
-  double mostMs() const { return most_ms_; }
+  double maxMs() const { return max_ms_; }
 
-  /// \param share 0..1 of all times are at most so long, milliseconds; 0 if there are none
+  /// \param share of the durations, 0 to 1
+  /// \return the duration, in milliseconds, that this share does not exceed; 0 if there are none
   double percentileMs(double share) const {
     const auto wanted = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(count_)));
     std::uint64_t up_to = 0;
     for (std::size_t bin = 0; bin < kBins; ++bin) {
       up_to += bins_[bin];
       if (up_to == 0 || up_to < wanted) continue;
-      return std::min(most_ms_, std::exp2((static_cast<double>(bin) + 1) / kBinsPerOctave) * 1e-6);
+      return std::min(max_ms_, std::exp2((static_cast<double>(bin) + 1) / kBinsPerOctave) * kMsPerNs);
     }
     return 0;
   }
 
  private:
+  static constexpr double kMsPerNs = 1e-6;
   static constexpr double kBinsPerOctave = 36;
-  static constexpr std::size_t kBins = 36 * 45;
+  static constexpr std::size_t kBins = 36 * 45;  ///< 45 octaves of nanoseconds are 9.8 hours
   std::array<std::uint64_t, kBins> bins_{};
   std::uint64_t count_ = 0;
-  double most_ms_ = 0;
+  double max_ms_ = 0;
 };
 
 }  // namespace lisco_apps

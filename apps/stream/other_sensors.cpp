@@ -4,12 +4,16 @@
 
 #include <cmath>
 
-#include "text.h"
+#include "io/text.h"
 
 namespace lisco_apps {
 namespace {
 
-/// The sensors that fit, by fits (decoder).
+constexpr std::uint64_t kMaxInspected = 100;  ///< foreign packets
+constexpr double kMaxOwnDeviation = 0.3;      ///< of the measured pace from the named sensor's
+constexpr double kMaxOtherDeviation = 0.1;    ///< and from that of a proposed one
+
+/// The sensors for whose decoders fits (decoder) holds.
 template <typename Fits>
 std::vector<std::string> sensorsThat(Fits&& fits) {
   std::vector<std::string> sensors;
@@ -22,17 +26,15 @@ std::vector<std::string> sensorsThat(Fits&& fits) {
 }
 
 std::string questionOf(const std::vector<std::string>& sensors) {
-  std::string names;
-  for (const std::string& sensor : sensors) names += (names.empty() ? "" : " or ") + sensor;
-  return names.empty() ? "; is it another --sensor?" : "; is it a " + names + "?";
+  return sensors.empty() ? "; is it another --sensor?" : "; is it a " + listOf(sensors, " or ") + "?";
 }
 
 }  // namespace
 
-void OtherSensors::look(const Packet& packet, Decoder::Kind kind, const Decoder& decoder) {
-  constexpr std::uint64_t kEnough = 100;
+void OtherSensors::inspect(const Packet& packet, Decoder::Kind kind, const Decoder& decoder) {
   const Decoder::Counts& counts = decoder.counts();
-  if (kind != Decoder::Kind::kForeign || counts.data > 0 || counts.foreign > kEnough || !by_layout_.empty()) return;
+  if (kind != Decoder::Kind::kForeign || counts.data > 0 || counts.foreign > kMaxInspected || !by_layout_.empty())
+    return;
   by_layout_ =
       sensorsThat([&](Decoder& other) { return other.decode(packet, [](const Column&) {}) == Decoder::Kind::kData; });
 }
@@ -41,11 +43,10 @@ std::string OtherSensors::paceWarning(const Decoder& decoder) {
   const double usual_us = decoder.order().usualGap();
   if (knows_pace_ || usual_us <= 0) return {};
   knows_pace_ = true;
-  constexpr double kUnlike = 0.3, kAlike = 0.1;
   const double own_us = decoder.packetPeriodUs();
-  if (std::fabs(usual_us / own_us - 1) < kUnlike) return {};
-  const std::vector<std::string> by_pace =
-      sensorsThat([&](const Decoder& other) { return std::fabs(usual_us / other.packetPeriodUs() - 1) < kAlike; });
+  if (std::fabs(usual_us / own_us - 1) < kMaxOwnDeviation) return {};
+  const std::vector<std::string> by_pace = sensorsThat(
+      [&](const Decoder& other) { return std::fabs(usual_us / other.packetPeriodUs() - 1) < kMaxOtherDeviation; });
   return formatted("packets come every %.0f us, but those of a %s every %.0f us", usual_us,
                    decoder.model().name.c_str(), own_us) +
          questionOf(by_pace);

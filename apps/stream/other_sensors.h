@@ -10,17 +10,17 @@
 
 namespace lisco_apps {
 
-/// Finds out whether packets are another sensor's than the one that was named, and whose they may be. The hdl64e is never
-/// proposed, since it needs a calibration.
+/// Detects packets of another sensor than the one named, and proposes which. Never proposes the hdl64e, which needs a
+/// calibration.
 class OtherSensors {
  public:
-  /// \param kind what the decoder made of the packet
-  void look(const Packet& packet, Decoder::Kind kind, const Decoder& decoder);
+  /// \param kind the decoder's result for the packet
+  void inspect(const Packet& packet, Decoder::Kind kind, const Decoder& decoder);
 
-  /// One line, once, if packets come at another pace than this sensor sends them; else empty.
+  /// One line, once, if packets come at another pace than this sensor's; otherwise empty.
   std::string paceWarning(const Decoder& decoder);
 
-  /// One line, if none of the packets was this sensor's.
+  /// One line, for the case that no packet was this sensor's.
   std::string nothingCame(const PacketSource& source, const Decoder& decoder) const;
 
  private:

@@ -12,7 +12,7 @@
 
 namespace lisco_apps {
 
-/// The packets of a capture at the pace at which they were recorded. Breaks of more than ten seconds are left out.
+/// The packets of a capture at the pace of their recording. Breaks of more than ten seconds are skipped.
 class PacedCapture : public PacketSource {
  public:
   explicit PacedCapture(std::unique_ptr<PacketSource> capture) : capture_(std::move(capture)) {}
@@ -25,15 +25,14 @@ class PacedCapture : public PacketSource {
       if (arrival != Arrival::kPacket) return arrival;
       const std::chrono::microseconds gap(waiting_.time_us - last_time_us_);
       const auto now = Clock::now();
-      const bool goes_on = packets_ > 0 && waiting_.time_us >= last_time_us_ && gap <= kLongestBreak;
+      const bool goes_on = packets_ > 0 && waiting_.time_us >= last_time_us_ && gap <= kMaxBreak;
       due_ = goes_on ? due_ + gap : now;
       last_time_us_ = waiting_.time_us;
       waits_ = true;
     }
-    // Whoever calls wants to see from time to time whether to go on.
-    const auto patience_ends = Clock::now() + kPatience;
-    if (due_ > patience_ends) {
-      std::this_thread::sleep_until(patience_ends);
+    const auto return_by = Clock::now() + kMaxWait;
+    if (due_ > return_by) {
+      std::this_thread::sleep_until(return_by);
       return Arrival::kNothing;
     }
     std::this_thread::sleep_until(due_);
@@ -44,8 +43,8 @@ class PacedCapture : public PacketSource {
   }
 
  private:
-  static constexpr std::chrono::seconds kLongestBreak{10};
-  static constexpr std::chrono::milliseconds kPatience{50};
+  static constexpr std::chrono::seconds kMaxBreak{10};
+  static constexpr std::chrono::milliseconds kMaxWait{50};
 
   std::unique_ptr<PacketSource> capture_;
   Packet waiting_;  ///< until it is due

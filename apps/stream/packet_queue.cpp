@@ -12,7 +12,7 @@
 namespace lisco_apps {
 namespace {
 
-/// Signals are the business of the thread that is there already.
+/// Starts a thread that leaves signals to the others.
 std::thread startWithoutSignals(void (*run)(void*), void* what) {
   sigset_t all, before;
   sigfillset(&all);
@@ -24,7 +24,7 @@ std::thread startWithoutSignals(void (*run)(void*), void* what) {
 
 }  // namespace
 
-PacketQueue::PacketQueue(std::unique_ptr<PacketSource> source) : source_(std::move(source)), slots_(kRoom) {
+PacketQueue::PacketQueue(std::unique_ptr<PacketSource> source) : source_(std::move(source)), slots_(kCapacity) {
   thread_ = startWithoutSignals([](void* queue) { static_cast<PacketQueue*>(queue)->receive(); }, this);
 }
 
@@ -48,8 +48,8 @@ void PacketQueue::receive() {
     ended_ = arrival == Arrival::kEnd;
     filled_.notify_one();
     if (ended_) return;
-    if (count_ == kRoom) continue;
-    Slot& slot = slots_[(first_ + count_) % kRoom];
+    if (count_ == kCapacity) continue;
+    Slot& slot = slots_[(first_ + count_) % kCapacity];
     slot.size = std::min(packet.size, slot.data.size());
     std::memcpy(slot.data.data(), packet.data, slot.size);
     slot.time_us = packet.time_us;
@@ -58,14 +58,14 @@ void PacketQueue::receive() {
 }
 
 PacketSource::Arrival PacketQueue::next(Packet& packet) {
-  constexpr std::chrono::milliseconds kPatience{50};
+  constexpr std::chrono::milliseconds kMaxWait{50};
   std::unique_lock<std::mutex> lock(mutex_);
   if (holds_slot_) {
-    first_ = (first_ + 1) % kRoom;
+    first_ = (first_ + 1) % kCapacity;
     --count_;
     holds_slot_ = false;
   }
-  if (!filled_.wait_for(lock, kPatience, [this] { return count_ > 0 || ended_; })) return Arrival::kNothing;
+  if (!filled_.wait_for(lock, kMaxWait, [this] { return count_ > 0 || ended_; })) return Arrival::kNothing;
   if (count_ == 0) return Arrival::kEnd;
   const Slot& slot = slots_[first_];
   holds_slot_ = true;

@@ -16,8 +16,8 @@
 
 namespace lisco_apps {
 
-/// Receives a source's packets in a thread of its own, so that none is lost while the ones before it are worked on, as
-/// long as that takes less than a second or so. What comes to a full queue is lost.
+/// Receives a source's packets in a thread of its own, which bridges pauses of the reader of about a second. Packets
+/// that come to a full queue are lost.
 class PacketQueue : public PacketSource {
  public:
   explicit PacketQueue(std::unique_ptr<PacketSource> source);
@@ -27,13 +27,13 @@ class PacketQueue : public PacketSource {
 
   Arrival next(Packet& packet) override;
 
-  /// Receives no more. next() gives what has been received, then the end.
+  /// Ends receiving. next () gives what has been received, then the end.
   void stop();
 
  private:
-  static constexpr std::size_t kRoom = 8192;  ///< packets: more than any of these sensors sends in a second
+  static constexpr std::size_t kCapacity = 8192;  ///< packets: more than any of these sensors sends in a second
   struct Slot {
-    std::array<std::uint8_t, 2048> data;
+    std::array<std::uint8_t, kMaxPacketBytes> data;
     std::size_t size;
     std::int64_t time_us;
   };
@@ -42,11 +42,11 @@ class PacketQueue : public PacketSource {
 
   std::unique_ptr<PacketSource> source_;
   std::vector<Slot> slots_;
-  std::mutex mutex_;  ///< guards the three after it
+  std::mutex mutex_;  ///< guards the slots and the next four
   std::condition_variable filled_;
   std::size_t first_ = 0, count_ = 0;
   bool ended_ = false;
-  bool holds_slot_ = false;  ///< the first slot is the reader's, until its next packet
+  bool holds_slot_ = false;  ///< whether the reader's current packet is in the first slot
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

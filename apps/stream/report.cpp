@@ -11,17 +11,21 @@
 
 #include <nlohmann/json.hpp>
 
-#include "text.h"
+#include "io/text.h"
 
 namespace lisco_apps {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Count = unsigned long long;
 
-/// Without digits that mean nothing.
+/// For %llu.
+unsigned long long number(std::uint64_t count) {
+  return count;
+}
+
+/// Rounded to 1 / per_unit, without a negative zero.
 double rounded(double value, double per_unit) {
-  return std::round(value * per_unit) / per_unit + 0.;  // no negative zero
+  return std::round(value * per_unit) / per_unit + 0.;
 }
 constexpr double kPerMetre = 1e4, kPerDegree = 1e3, kPerTurn = 1e5, kPerMillisecond = 1e4;
 
@@ -41,7 +45,7 @@ double azimuthAt(double position) {
   return std::fmod(rounded(360 * (position - std::floor(position)), kPerDegree), 360.);
 }
 double azimuthOf(double x, double y) {
-  return azimuthAt(std::atan2(-y, x) / (2 * 3.14159265358979323846));
+  return azimuthAt(std::atan2(-y, x) / (360 * kRadiansPerDegree));
 }
 
 void addShape(Json& json, const FoundCluster& cluster) {
@@ -49,6 +53,10 @@ void addShape(Json& json, const FoundCluster& cluster) {
   json["centroid"] = jsonOf(cluster.centroid());
   json["box"] = {{"min", jsonOf(cluster.lo())}, {"max", jsonOf(cluster.hi())}};
   json["nearest_range"] = rounded(cluster.nearestRange(), kPerMetre);
+}
+
+std::string lostIn(const Turn& turn) {
+  return turn.lost > 0 ? formatted(", %llu packets lost", number(turn.lost)) : "";
 }
 
 }  // namespace
@@ -74,21 +82,23 @@ void Report::count(const FoundCluster& cluster) {
   largest_of_turn_ = std::max(largest_of_turn_, cluster.size());
 }
 
-void Report::countTurn(const Turn& turn) {
+std::string Report::countTurn(const char* name, const Turn& turn) {
   ++turns_;
   columns_ += turn.columns();
   returns_ += turn.returns;
+  return formatted("%s %llu: %zu columns, %llu returns", name, number(turn.number), turn.columns(),
+                   number(turn.returns));
 }
 
 void Report::rotation(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) {
-  countTurn(turn);
+  const std::string heading = countTurn("rotation", turn);
   for (const FoundCluster& cluster : clusters) count(cluster);
   if (clouds_ != nullptr) clouds_->write(turn);
   if (format_ == Format::kText) {
-    const std::string lost = turn.lost > 0 ? formatted(", %llu packets lost", static_cast<Count>(turn.lost)) : "";
-    print(formatted("rotation %llu: %zu columns, %llu returns, %zu clusters, largest %zu, after %.2f ms%s",
-                    static_cast<Count>(turn.number), turn.columns(), static_cast<Count>(turn.returns), clusters.size(),
-                    largest_of_turn_, millisecondsOf(latency), lost.c_str()));
+    print(heading +
+          formatted(", %zu clusters, largest %zu, after %.2f ms", clusters.size(), largest_of_turn_,
+                    millisecondsOf(latency)) +
+          lostIn(turn));
   } else {
     Json json{{"rotation", turn.number},
               {"time", secondsOf(turn.time_us)},
@@ -127,13 +137,10 @@ void Report::cluster(const DeliveredCluster& cluster) {
 }
 
 void Report::turnEnds(const Turn& turn) {
-  countTurn(turn);
-  if (format_ == Format::kText) {
-    const std::string lost = turn.lost > 0 ? formatted(", %llu packets lost", static_cast<Count>(turn.lost)) : "";
-    print(formatted("turn %llu: %zu columns, %llu returns, %llu clusters delivered, largest %zu%s",
-                    static_cast<Count>(turn.number), turn.columns(), static_cast<Count>(turn.returns),
-                    static_cast<Count>(clusters_of_turn_), largest_of_turn_, lost.c_str()));
-  }
+  const std::string heading = countTurn("turn", turn);
+  if (format_ == Format::kText)
+    print(heading + formatted(", %llu clusters delivered, largest %zu", number(clusters_of_turn_), largest_of_turn_) +
+          lostIn(turn));
   clusters_of_turn_ = largest_of_turn_ = 0;
 }
 
@@ -142,11 +149,10 @@ void Report::turnIsLabelled(const Turn& turn) {
 }
 
 void Report::showStatus(const Decoder& decoder, const Stream& stream) {
-  constexpr std::chrono::milliseconds kBetween{200};
+  constexpr std::chrono::milliseconds kMinPause{200};
   const auto now = Clock::now();
-  if (!status_.isShown() || now - shown_at_ < kBetween) return;
+  if (!status_.isShown() || now - shown_at_ < kMinPause) return;
   shown_at_ = now;
-  const auto number = [](std::uint64_t count) { return static_cast<Count>(count); };
   const Decoder::Counts& counts = decoder.counts();
   const Latency& latency = stream.clusterLatency();
   if (counts.data == 0)
@@ -165,16 +171,14 @@ void Report::warn(const std::string& text) {
   std::fprintf(stderr, "lisco_stream: %s\n", text.c_str());
 }
 
-void Report::printStatistics(const PacketSource& source, const Decoder& decoder, const Stream& stream,
-                             std::optional<std::uint64_t> strays) {
+void Report::printStatistics(const PacketSource& source, const Decoder& decoder, const Stream& stream) {
   flush();
   shown_.clear();
   status_.clear();
   const auto rowOf = [](const char* name, const Latency& latency) {
     return formatted("  %-9s p50 %.4f, p99 %.4f, max %.4f (%llu times)\n", name, latency.percentileMs(0.5),
-                     latency.percentileMs(0.99), latency.mostMs(), static_cast<Count>(latency.count()));
+                     latency.percentileMs(0.99), latency.maxMs(), number(latency.count()));
   };
-  const auto number = [](std::uint64_t count) { return static_cast<Count>(count); };
   const Decoder::Counts& counts = decoder.counts();
   const double per_second = decoder.turnUs() > 0 ? 1e6 / decoder.turnUs() : 0;
   std::string table =
@@ -191,11 +195,12 @@ void Report::printStatistics(const PacketSource& source, const Decoder& decoder,
     table += formatted("            the sensor's clock was set %llu times\n", number(decoder.order().clockJumps()));
   table += formatted("rotations   %llu\ncolumns     %llu\nreturns     %llu\nclusters    %llu, of %llu returns\n",
                      number(turns_), number(columns_), number(returns_), number(clusters_), number(in_clusters_));
-  if (strays)
-    table += formatted("            %llu cut after a turn, %llu continued; %llu returns astray\n", number(cut_),
-                       number(continued_), number(*strays));
+  const std::optional<std::uint64_t> outliers = stream.outliers();
+  if (outliers)
+    table += formatted("            %llu cut after a turn, %llu continued; %llu outliers\n", number(cut_),
+                       number(continued_), number(*outliers));
   table += "latency in ms\n" + rowOf("column", stream.columnLatency()) +
-           rowOf(strays ? "delivery" : "rotation", stream.clusterLatency());
+           rowOf(outliers ? "delivery" : "rotation", stream.clusterLatency());
   std::fputs(table.c_str(), format_ == Format::kJson ? stderr : stdout);
   unflushed_ = true;
   flush();

@@ -6,20 +6,18 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "io/terminal_line.h"
 #include "labelled_pcd.h"
-#include "listener.h"
 #include "sensors/decoder.h"
 #include "sensors/packet_source.h"
 #include "stream.h"
-#include "terminal_line.h"
 
 namespace lisco_apps {
 
-/// Tells what is found as it is found: on stdout, in a folder of clouds, and how it goes on the terminal.
+/// Reports results as they are found: on stdout, as labelled clouds in a folder, and as a status line on the terminal.
 class Report : public Listener {
  public:
   enum class Format { kText, kJson };
@@ -32,34 +30,32 @@ class Report : public Listener {
   void turnEnds(const Turn& turn) override;
   void turnIsLabelled(const Turn& turn) override;
 
-  /// Lets the reader of stdout have what was told so far.
-  /// \throws std::runtime_error if it cannot be written
+  /// Flushes stdout. \throws std::runtime_error if it cannot be written
   void flush();
 
-  /// The line on the terminal, a few times in a second.
+  /// Updates the status line, at most five times a second.
   void showStatus(const Decoder& decoder, const Stream& stream);
-  /// A line on stderr.
+  /// Prints a line on stderr.
   void warn(const std::string& text);
 
-  /// The closing table, on stdout, or on stderr if JSON has that.
-  /// \param strays of an endless stream
-  void printStatistics(const PacketSource& source, const Decoder& decoder, const Stream& stream,
-                       std::optional<std::uint64_t> strays);
+  /// Prints the closing table on stdout, or on stderr if stdout is JSON.
+  void printStatistics(const PacketSource& source, const Decoder& decoder, const Stream& stream);
 
  private:
   void count(const FoundCluster& cluster);
-  void countTurn(const Turn& turn);
+  /// Counts a turn. \return its number, columns and returns as text
+  std::string countTurn(const char* name, const Turn& turn);
   void print(const std::string& line);
 
   Format format_;
   const LabelledClouds* clouds_;
   TerminalLine status_;
   const bool shares_terminal_ = isatty(STDOUT_FILENO) != 0;  ///< stdout and the status line
-  std::string shown_;                                        ///< there
+  std::string shown_;                                        ///< status
   Clock::time_point shown_at_;
   bool unflushed_ = false;
   std::uint64_t turns_ = 0, columns_ = 0, returns_ = 0, clusters_ = 0, in_clusters_ = 0, cut_ = 0, continued_ = 0;
-  std::uint64_t clusters_of_turn_ = 0;  ///< delivered while it came
+  std::uint64_t clusters_of_turn_ = 0;  ///< delivered since the turn began
   std::size_t largest_of_turn_ = 0;
 };
 

@@ -3,18 +3,36 @@
 #include "rotation_stream.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "lisco/sensor_hints.h"
-#include "view_of.h"
 
 namespace lisco_apps {
+namespace {
+
+/// What the sensor's model tells of a rotation before it comes.
+lisco::SensorHints hintsFor(const Decoder& decoder) {
+  lisco::SensorHints hints;
+  hints.clockwise = true;
+  hints.steps_per_turn = static_cast<int>(std::lround(std::min(decoder.columnsPerTurn(), double{kMaxColumns})));
+  const std::vector<Laser>& lasers = decoder.model().lasers;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < lasers.size(); ++i) steps.push_back(lasers[i - 1].elevation - lasers[i].elevation);
+  if (steps.empty()) return hints;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  hints.elevation_step = static_cast<float>(*middle * kRadiansPerDegree);
+  return hints;
+}
+
+}  // namespace
 
 RotationStream::RotationStream(const StreamOptions& options, const Decoder& decoder, Listener& listener)
     : options_(options), decoder_(decoder), listener_(listener) {}
 
 bool RotationStream::add(const Column& column, const Origin& origin) {
   auto start = Clock::now();
-  if (cutter_.startsRotation(column.azimuth, column.after_break) || turn_.columns() == kMostColumns) {
+  if (cutter_.startsRotation(column.azimuth, column.after_break) || turn_.columns() == kMaxColumns) {
     end();
     if (options_.rotations != 0 && rotations_ == options_.rotations) return false;
     start = Clock::now();
@@ -29,16 +47,12 @@ bool RotationStream::add(const Column& column, const Origin& origin) {
   return true;
 }
 
-void RotationStream::finish() {
-  end();
-}
-
-/// What the next rotation is expected to look like, which decides the speed only.
+/// The expected view of the next rotation, which affects the speed only.
 lisco::Parameters RotationStream::parameters() const {
   lisco::Parameters parameters;
-  parameters.sensor = viewOf(decoder_);
+  parameters.sensor = hintsFor(decoder_);
   if (turn_.columns() > 0) {
-    // The last rotation tells more: how far returns lie, and how the sensor really turns.
+    // Measured on the last rotation: ranges of returns, and how the sensor turns.
     const auto cell_at = [this](std::size_t laser, std::size_t column) {
       const Cell& cell = turn_.cells[column * turn_.lasers + laser];
       return cell.z >= options_.ground_z ? lisco::Return{cell.x, cell.y, cell.z, 0} : lisco::kNoReturn;
@@ -71,32 +85,32 @@ void RotationStream::end() {
   listener_.rotation(turn_, clusters_, latency);
 }
 
-/// Numbers the clusters as PCL orders them, and labels the cells.
+/// Numbers the clusters in PCL's order, and labels the cells.
 void RotationStream::collect() {
   constexpr std::uint32_t kUnseen = ~std::uint32_t{0}, kNone = kUnseen - 1;
   candidates_.clear();
-  label_of_subcluster_.assign(clusterer_.subclusterCount(), kUnseen);
+  rank_of_subcluster_.assign(clusterer_.subclusterCount(), kUnseen);
   clusterer_.forEachRun([&](const std::uint32_t*, std::size_t, std::uint32_t subcluster) {
-    std::uint32_t& place = label_of_subcluster_[subcluster];
-    if (place != kUnseen) return;
+    std::uint32_t& rank = rank_of_subcluster_[subcluster];
+    if (rank != kUnseen) return;
     const std::uint32_t size = clusterer_.sizeOf(subcluster);
     const bool is_cluster = size >= options_.min_size && size <= options_.max_size;
-    place = is_cluster ? static_cast<std::uint32_t>(candidates_.size()) : kNone;
-    if (is_cluster) candidates_.push_back({size, place});
+    rank = is_cluster ? static_cast<std::uint32_t>(candidates_.size()) : kNone;
+    if (is_cluster) candidates_.push_back({size, rank});
   });
-  // Not a stable sort: only PCL's own call, on the same sequence of sizes, gives PCL's order among clusters of one size.
+  // The sort is unstable: among equal sizes, only PCL's own call on the same sequence gives PCL's order.
   std::sort(candidates_.rbegin(), candidates_.rend(),
             [](const Candidate& a, const Candidate& b) { return a.size < b.size; });
-  label_of_place_.resize(candidates_.size());
+  label_of_rank_.resize(candidates_.size());
   clusters_.assign(candidates_.size(), {});
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     clusters_[i].id = static_cast<std::uint32_t>(i + 1);
-    label_of_place_[candidates_[i].place] = clusters_[i].id;
+    label_of_rank_[candidates_[i].rank] = clusters_[i].id;
   }
   clusterer_.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-    const std::uint32_t place = label_of_subcluster_[subcluster];
-    if (place == kNone) return;
-    const std::uint32_t label = label_of_place_[place];
+    const std::uint32_t rank = rank_of_subcluster_[subcluster];
+    if (rank == kNone) return;
+    const std::uint32_t label = label_of_rank_[rank];
     for (std::size_t i = 0; i < count; ++i) {
       turn_.labels[cells[i]] = label;
       clusters_[label - 1].add(turn_.cells[cells[i]]);

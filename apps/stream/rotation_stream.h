@@ -6,23 +6,20 @@
 #include <vector>
 
 #include "lisco/column_clusterer.h"
-#include "listener.h"
 #include "sensors/rotation_cutter.h"
 #include "stream.h"
-#include "turn.h"
 
 namespace lisco_apps {
 
-/// Clusters rotation by rotation, each while it comes. Its clusters are those of PCL's EuclideanClusterExtraction on
-/// the rotation as an organized cloud (a row for each laser, from the top one to the bottom one), in the same order.
+/// Clusters rotation by rotation, each while it comes: the clusters of PCL's EuclideanClusterExtraction on the rotation
+/// as an organized cloud (a row per laser, from top to bottom), in the same order.
 class RotationStream : public Stream {
  public:
-  /// \param decoder of the columns
   RotationStream(const StreamOptions& options, const Decoder& decoder, Listener& listener);
 
   bool add(const Column& column, const Origin& origin) override;
   void wait() override {}
-  void finish() override;
+  void finish() override { end(); }
 
  private:
   void begin(const Column& column);
@@ -42,12 +39,12 @@ class RotationStream : public Stream {
   std::vector<lisco::Return> returns_;
   std::vector<FoundCluster> clusters_;
 
-  /// A cluster of PCL's size, at its place in the order of the clusters' first points.
+  /// A subcluster of an accepted size; its rank is by first points.
   struct Candidate {
-    std::uint32_t size, place;
+    std::uint32_t size, rank;
   };
   std::vector<Candidate> candidates_;
-  std::vector<std::uint32_t> label_of_subcluster_, label_of_place_;
+  std::vector<std::uint32_t> rank_of_subcluster_, label_of_rank_;
 };
 
 }  // namespace lisco_apps

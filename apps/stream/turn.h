@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "lisco/return.h"
@@ -11,33 +12,29 @@
 
 namespace lisco_apps {
 
-/// The columns of one turn of the sensor, or of the part of it that came.
+/// The columns received of one turn of the sensor.
 struct Turn {
   std::uint64_t number = 0;  ///< from 1
   std::size_t lasers = 0;
   std::vector<Cell> cells;            ///< column by column, in each from the top laser to the bottom one
-  std::vector<std::uint32_t> labels;  ///< of the cells: their cluster's number, 0: in none
+  std::vector<std::uint32_t> labels;  ///< of the cells: cluster id, 0: in none
   double azimuth = 0;                 ///< of its first column, degrees clockwise
-  std::int64_t time_us = 0;           ///< when the packet of its last column came, microseconds since 1970
+  std::int64_t time_us = 0;           ///< of the packet of its last column, microseconds since 1970
   std::uint64_t returns = 0;          ///< above the ground
-  std::uint64_t lost = 0;             ///< packets that are missing in it, or between it and the next one
+  std::uint64_t lost = 0;             ///< packets missing in it, or between it and the next one
 
   std::size_t columns() const { return lasers == 0 ? 0 : cells.size() / lasers; }
 
-  /// Forgets the last turn, but keeps the memory.
+  /// Starts an empty turn. Keeps the memory.
   void begin(std::uint64_t new_number, std::size_t new_lasers, double new_azimuth) {
-    number = new_number;
-    lasers = new_lasers;
     cells.clear();
     labels.clear();
-    azimuth = new_azimuth;
-    time_us = 0;
-    returns = lost = 0;
+    *this = {new_number, new_lasers, std::move(cells), std::move(labels), new_azimuth, 0, 0, 0};
   }
 
   /// Adds a column.
-  /// \param ground_z returns below it are no part of any cluster, metres
-  /// \param first_index the source index of the column's first cell; those of the others follow
+  /// \param ground_z returns below it are not clustered, metres
+  /// \param first_index source index of the column's first cell; the others follow
   /// \param to_cluster receives the column without the ground
   void add(const std::vector<Cell>& column, float ground_z, std::uint32_t first_index,
            std::vector<lisco::Return>& to_cluster) {

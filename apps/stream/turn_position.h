@@ -7,14 +7,13 @@
 
 namespace lisco_apps {
 
-/// How far a sensor has turned, which never goes back: its whole part counts turns, the rest is the azimuth.
+/// The unwrapped position of a sensor, which never decreases: whole turns plus azimuth / 360 degrees.
 class TurnPosition {
  public:
   /// \param azimuth of the next column, degrees clockwise
-  /// \param turns_by_time how far the sensor has turned since the last column, by its clock and its speed; nullopt:
-  ///        unknown, it is then taken for less than a turn
-  /// \param after_break whether it was a turn at least
-  /// \return turns; the same as for the last column if the azimuth steps back
+  /// \param turns_by_time turns since the last column, by the sensor's clock and speed; nullopt: less than one
+  /// \param after_break whether at least one turn is missing before the column
+  /// \return turns; unchanged if the azimuth steps back
   double next(double azimuth, std::optional<double> turns_by_time, bool after_break) {
     const double direction = azimuth / 360;
     if (!started_) {
@@ -24,8 +23,7 @@ class TurnPosition {
     }
     double ahead = direction - position_;
     ahead -= std::floor(ahead);
-    constexpr double kLongestAhead = 350. / 360;  // further is a step back
-    const double turns = turns_by_time ? std::round(*turns_by_time - ahead) : ahead > kLongestAhead ? -1. : 0.;
+    const double turns = turns_by_time ? std::round(*turns_by_time - ahead) : ahead > kMaxAhead ? -1. : 0.;
     double advance = ahead + turns;
     if (after_break && advance < 1) advance = ahead + 1;
     if (advance > 0) position_ += advance;
@@ -33,6 +31,8 @@ class TurnPosition {
   }
 
  private:
+  static constexpr double kMaxAhead = 350. / 360;  ///< turns; more is a step back
+
   bool started_ = false;
   double position_ = 0;
 };

@@ -39,7 +39,7 @@ const std::array<lisco_apps::SensorModel, 4>& models() {
   return all;
 }
 
-/// A packet that is laid out as the sensor's are, whatever it says.
+/// A packet with the layout of the sensor's and random content.
 void makePacket(Input& input, const lisco_apps::SensorModel& model, std::vector<std::uint8_t>& packet) {
   packet.assign(kDataBytes, 0);
   const unsigned how = input.byte();

@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "bodies.h"
-#include "cloud_file.h"
+#include "io/cloud_file.h"
 #include "scratch_file.h"
 
 namespace lisco_test {
 
 void fuzzReaders(const std::uint8_t* data, std::size_t size) {
-  static const std::array<ScratchFile, 6> files{ScratchFile(".pcd"), ScratchFile(".ply"), ScratchFile(".obj"),
-                                                ScratchFile(".ifs"), ScratchFile(".bin"), ScratchFile(".csv")};
+  static const std::array<ScratchFile, 4> files{ScratchFile(".pcd"), ScratchFile(".ply"), ScratchFile(".bin"),
+                                                ScratchFile(".csv")};
   if (size == 0) return;
   const std::filesystem::path& file = files[data[0] % files.size()].holding(data + 1, size - 1);
   std::vector<std::uint32_t> labels;

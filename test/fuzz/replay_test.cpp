@@ -55,7 +55,7 @@ std::vector<Bytes> corpus() {
   return inputs;
 }
 
-TEST_P(Fuzz, WhatWasFoundBefore) {
+TEST_P(Fuzz, AcceptsTheCorpus) {
   const std::vector<Bytes> inputs = corpus();
   EXPECT_FALSE(inputs.empty());
   for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -65,7 +65,7 @@ TEST_P(Fuzz, WhatWasFoundBefore) {
 }
 
 // Random bytes, and the corpus with some of its bytes changed.
-TEST_P(Fuzz, AnyBytes) {
+TEST_P(Fuzz, AcceptsAnyBytes) {
   const std::vector<Bytes> inputs = corpus();
   for (std::uint64_t seed = 1; seed <= timesEffort(GetParam().random_inputs); ++seed) {
     Random random(seed);

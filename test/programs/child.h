@@ -17,10 +17,10 @@
 
 #include "program_test.h"
 
-/// A program that runs while its test goes on. It does not outlive the test, nor half a minute.
+/// A program that runs beside its test, killed at the end of the test.
 class Child {
  public:
-  /// Starts it with a folder as the current one; there, its output goes to child_out.txt and child_err.txt.
+  /// Starts a program in a folder, where its output goes to child_out.txt and child_err.txt.
   Child(const std::string& program, const std::vector<std::string>& arguments, const std::filesystem::path& folder)
       : folder_(folder) {
     std::vector<const char*> words{program.c_str()};
@@ -48,18 +48,18 @@ class Child {
   std::string err() const { return textOf("child_err.txt"); }
   void signal(int number) const { kill(process_, number); }
 
-  /// Waits until something holds. \return whether it does
+  /// Waits at most half a minute for a condition. \return whether it holds
   template <typename Condition>
   static bool waitUntil(Condition&& condition) {
-    const auto patience_ends = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    const auto give_up_at = std::chrono::steady_clock::now() + std::chrono::seconds(30);
     while (!condition()) {
-      if (std::chrono::steady_clock::now() > patience_ends) return false;
+      if (std::chrono::steady_clock::now() > give_up_at) return false;
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     return true;
   }
 
-  /// Waits for its end. \return what it has shown; status -1 if it did not end by itself
+  /// Waits for the end of the program. \return its result; status -1 if it does not end
   Outcome end() {
     int status = 0;
     const bool has_ended = waitUntil([&] { return waitpid(process_, &status, WNOHANG) != 0; });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// The programs where the machine fails them: no room on the disk, a folder that nobody may write to, a sudden end.
+// The programs on a full disk, without write permission, with inputs that change, and when killed.
 #include <signal.h>
 
 #include <fstream>
@@ -14,9 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Faults : public ProgramTest {
+class Programs : public ProgramTest {
  protected:
-  Faults() : ProgramTest(LISCO_CLUSTER) {}
+  Programs() : ProgramTest(LISCO_CLUSTER) {}
 
   void SetUp() override {
     ProgramTest::SetUp();
@@ -24,45 +24,44 @@ class Faults : public ProgramTest {
     inputs_ = filesLeft();
   }
 
-  /// Runs a command line that may write files of so many blocks of 512 bytes only: as on a disk that is full, but for the
-  /// error's name.
-  Outcome runWithLittleRoom(int blocks, const std::string& command) const {
+  /// Runs a command line that may write files of at most so many blocks of 512 bytes, which fails as on a full disk.
+  Outcome runWithLimitedDisk(int blocks, const std::string& command) const {
     return runLine("sh -c \"trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; " + command + "\"");
   }
 
   std::vector<std::string> inputs_;
 };
 
-TEST_F(Faults, ADiskThatIsFullLeavesNoHalfResults) {
+TEST_F(Programs, LeaveNoPartialResultsOnAFullDisk) {
   for (const int blocks : {0, 8, 300}) {
     SCOPED_TRACE(blocks);
-    const Outcome outcome = runWithLittleRoom(blocks, program_ + " scan.pcd -t 0.4 --clouds -o results 2>/dev/null");
+    const Outcome outcome = runWithLimitedDisk(blocks, program_ + " scan.pcd -t 0.4 --clouds -o results 2>/dev/null");
     EXPECT_EQ(outcome.status, 2);
     EXPECT_EQ(filesLeft(), inputs_);
   }
   EXPECT_EQ(run("scan.pcd -t 0.4 --clouds -o results").status, 0);
 }
 
-TEST_F(Faults, ADiskThatIsFullLeavesTheResultsThatWereThere) {
+TEST_F(Programs, KeepEarlierResultsOnAFullDisk) {
   ASSERT_EQ(run("scan.pcd -t 0.4 --clouds -o results").status, 0);
   const std::vector<std::string> files = filesLeft();
   const std::string table = textOf(folder_ / "results/clusters.csv");
-  EXPECT_EQ(runWithLittleRoom(8, program_ + " scan.pcd -t 0.7 --clouds -o results 2>/dev/null").status, 2);
+  EXPECT_EQ(runWithLimitedDisk(8, program_ + " scan.pcd -t 0.7 --clouds -o results 2>/dev/null").status, 2);
   EXPECT_EQ(filesLeft(), files);
   EXPECT_EQ(textOf(folder_ / "results/clusters.csv"), table);
 }
 
-TEST_F(Faults, OtherProgramsLeaveNoHalfFilesEither) {
+TEST_F(Programs, LeaveNoPartialFilesOnAFullDisk) {
   for (const std::string& command :
        {LISCO_SIMULATE + std::string(" --scene 3 -o other.pcd"),
-        LISCO_COMPARE + std::string(" scan.pcd -t 0.4 --check-only --rivals lisco --csv all.csv --json all.json")}) {
+        LISCO_COMPARE + std::string(" scan.pcd -t 0.4 --check-only --baselines lisco --csv all.csv --json all.json")}) {
     SCOPED_TRACE(command);
-    EXPECT_EQ(runWithLittleRoom(0, command + " >/dev/null 2>&1").status, 2);
+    EXPECT_EQ(runWithLimitedDisk(0, command + " >/dev/null 2>&1").status, 2);
     EXPECT_EQ(filesLeft(), inputs_);
   }
 }
 
-TEST_F(Faults, AFolderThatNobodyMayWriteTo) {
+TEST_F(Programs, RefuseAFolderWithoutWritePermission) {
   if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
   fs::create_directory(folder_ / "closed");
   fs::permissions(folder_ / "closed", fs::perms::owner_read | fs::perms::owner_exec);
@@ -70,18 +69,18 @@ TEST_F(Faults, AFolderThatNobodyMayWriteTo) {
   expectRefusal("scan.pcd -t 0.4 -o closed", {"closed: cannot be written: Permission denied"});
   for (const std::string& command :
        {LISCO_SIMULATE + std::string(" --scene 3 -o closed/other.pcd"),
-        LISCO_COMPARE + std::string(" scan.pcd -t 0.4 --check-only --rivals lisco --json closed/all.json"),
-        LISCO_COMPARE + std::string(" scan.pcd -t 0.4 --rivals lisco --plot closed/charts")}) {
+        LISCO_COMPARE + std::string(" scan.pcd -t 0.4 --check-only --baselines lisco --json closed/all.json"),
+        LISCO_COMPARE + std::string(" scan.pcd -t 0.4 --baselines lisco --plot closed/charts")}) {
     const Outcome outcome = runLine(command);
     EXPECT_EQ(outcome.status, 2) << command;
-    EXPECT_EQ(outcome.out, "") << command;  // said before the work, not after it
+    EXPECT_EQ(outcome.out, "") << command;  // reported before the work
     EXPECT_NE(outcome.err.find("cannot be written: Permission denied"), std::string::npos) << outcome.err;
   }
   fs::permissions(folder_ / "closed", fs::perms::owner_all);
 }
 
-// Somebody else writes the input, while it is read, again and again: a result or a refusal, never a sudden end.
-TEST_F(Faults, AFileThatChangesWhileItIsRead) {
+// Another process rewrites the input all the time: the program gives a result or refuses it.
+TEST_F(Programs, SurviveAFileThatChangesWhileRead) {
   ASSERT_EQ(runLine(std::string(LISCO_SIMULATE) + " --scene 3 --sensor os1-128 --seed 1 -o large.pcd").status, 0);
   const std::string whole = textOf(folder_ / "large.pcd");
   const pid_t writer = fork();
@@ -99,10 +98,10 @@ TEST_F(Faults, AFileThatChangesWhileItIsRead) {
   }
   kill(writer, SIGKILL);
   waitpid(writer, nullptr, 0);
-  EXPECT_EQ(statuses.count(2), 1U) << "it was never seen cut off";
+  EXPECT_EQ(statuses.count(2), 1U) << "no run read a truncated file";
 }
 
-TEST_F(Faults, AFileThatVanishesWhileItIsRead) {
+TEST_F(Programs, SurviveAFileThatVanishesWhileRead) {
   const std::string whole = textOf(folder_ / "scan.pcd");
   const pid_t writer = fork();
   if (writer == 0)
@@ -118,8 +117,8 @@ TEST_F(Faults, AFileThatVanishesWhileItIsRead) {
   waitpid(writer, nullptr, 0);
 }
 
-// Whenever it is killed, what is there is whole, and the next run cleans up.
-TEST_F(Faults, ASuddenEnd) {
+// Killed at any time, results are whole, and the next run removes the leftovers.
+TEST_F(Programs, LeaveWholeResultsWhenKilled) {
   ASSERT_EQ(run("scan.pcd -t 0.4 --clouds -o whole").status, 0);
   const std::size_t whole = filesLeft().size() - inputs_.size();
   fs::remove_all(folder_ / "whole");
@@ -133,7 +132,7 @@ TEST_F(Faults, ASuddenEnd) {
   EXPECT_EQ(filesLeft().size() - inputs_.size(), whole);
 }
 
-TEST_F(Faults, WhatOthersWriteAtTheSameTimeIsLeftAlone) {
+TEST_F(Programs, KeepFilesOfRunningProcesses) {
   fs::create_directories(folder_ / "results");
   const pid_t child = fork();
   if (child == 0) _exit(0);

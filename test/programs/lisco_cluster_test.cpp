@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// lisco_cluster as a user runs it.
+// lisco_cluster, run as a program.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "cloud_file.h"
+#include "io/cloud_file.h"
 #include "lisco/version.h"
 #include "program_test.h"
 
@@ -79,7 +79,7 @@ TEST_F(LiscoCluster, WritesOneCloudPerClusterOnRequest) {
   ASSERT_EQ(run("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results --clouds").status, 0);
   for (const char* name : {"cluster_0001.pcd", "cluster_0002.pcd"})
     EXPECT_EQ(lisco_apps::readCloudFile(folder_ / "results/clusters" / name)->size(), 60U) << name;
-  // A second run replaces them, and one without them leaves none behind, but what is somebody else's.
+  // A second run replaces the clouds; a run without clouds removes them and keeps foreign files.
   write("results/clusters/mine.txt", "keep me");
   ASSERT_EQ(run("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results --clouds").status, 0);
   EXPECT_TRUE(fs::exists(folder_ / "results/clusters/cluster_0002.pcd"));
@@ -197,8 +197,8 @@ TEST_F(LiscoCluster, RefusesBadOptionsInOneLine) {
   expectRefusal("walls.pcd --tolerance 0.3 -o file/results", {"file/results", "cannot be written"});
 }
 
-// What a beginner sees who has left the ground in, or has taken the tolerance for millimetres.
-TEST_F(LiscoCluster, AsksAboutAClusterOfMoreThanHalfOfTheReturns) {
+// The result of ground left in, or of a tolerance in millimetres.
+TEST_F(LiscoCluster, NotesAClusterOfMoreThanHalfOfTheReturns) {
   write("walls.pcd", twoWalls());
   EXPECT_EQ(run("walls.pcd --tolerance 0.3").out.find("note"), std::string::npos);
   const Outcome outcome = run("walls.pcd --tolerance 300");
@@ -207,14 +207,14 @@ TEST_F(LiscoCluster, AsksAboutAClusterOfMoreThanHalfOfTheReturns) {
       << outcome.out;
 }
 
-TEST_F(LiscoCluster, LeavesForeignFilesAlone) {
+TEST_F(LiscoCluster, KeepsForeignFiles) {
   write("walls.pcd", twoWalls());
   fs::create_directory(folder_ / "mine");
   write("mine/clusters.csv", "my own table");
   expectRefusal("walls.pcd --tolerance 0.3 -o mine", {"clusters.csv", "not written by this program"});
   EXPECT_EQ(textOf(folder_ / "mine/clusters.csv"), "my own table");
 
-  // Beside other things it is welcome, and may replace what it has written itself.
+  // A folder with other files is accepted, and results of an earlier run are replaced.
   fs::create_directory(folder_ / "shared");
   write("shared/notes.txt", "keep me");
   EXPECT_EQ(run("walls.pcd --tolerance 0.3 -o shared").status, 0);
@@ -222,7 +222,7 @@ TEST_F(LiscoCluster, LeavesForeignFilesAlone) {
   EXPECT_EQ(textOf(folder_ / "shared/notes.txt"), "keep me");
 }
 
-TEST_F(LiscoCluster, GoesOnAfterABadFileAmongMany) {
+TEST_F(LiscoCluster, ContinuesAfterABadFile) {
   write("a.pcd", twoWalls());
   write("b.bin", "odd");
   write("c.pcd", twoWalls());
@@ -238,7 +238,7 @@ TEST_F(LiscoCluster, GoesOnAfterABadFileAmongMany) {
   EXPECT_FALSE(fs::exists(folder_ / "results/b"));
 }
 
-TEST_F(LiscoCluster, GivesEachInputAFolderOfItsOwn) {
+TEST_F(LiscoCluster, WritesEachInputToItsOwnFolder) {
   write("x.pcd", twoWalls());
   write("x-2.pcd", twoWalls());
   write("x.bin", floats({5, 0, 0, 1}));
@@ -248,7 +248,7 @@ TEST_F(LiscoCluster, GivesEachInputAFolderOfItsOwn) {
     EXPECT_TRUE(fs::exists(folder_ / "results" / made / "labels.pcd")) << made;
 }
 
-TEST_F(LiscoCluster, MayWriteBesideItsInput) {
+TEST_F(LiscoCluster, WritesBesideItsInput) {
   write("x.pcd", twoWalls());
   for (int time = 0; time < 2; ++time) {
     const Outcome outcome = run(". --tolerance 0.3 -o .");
@@ -277,7 +277,7 @@ TEST_F(LiscoCluster, DrawsScansOfAnyShape) {
   EXPECT_TRUE(fs::exists(folder_ / "results/tall/range_image.png"));
 }
 
-TEST_F(LiscoCluster, FindsTheSameOnAnyNumberOfThreads) {
+TEST_F(LiscoCluster, GivesEqualResultsOnAnyNumberOfThreads) {
   for (const char* name : {"a.pcd", "b.pcd", "c.pcd", "d.pcd", "e.pcd"}) write(name, twoWalls());
   ASSERT_EQ(run(". --tolerance 0.3 -o one").status, 0);
   for (const char* threads : {"3", "0"}) {
@@ -303,7 +303,7 @@ TEST_F(LiscoCluster, ScanWithoutAnyReturnHasNoClusters) {
   EXPECT_TRUE(fs::exists(folder_ / "results/labels.pcd"));
 }
 
-TEST_F(LiscoCluster, TellsItsUseAndVersion) {
+TEST_F(LiscoCluster, PrintsHelpAndVersion) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.status, 0);
   for (const char* option :

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// lisco_compare as a user runs it.
+// lisco_compare, run as a program.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -54,8 +54,8 @@ LabelledPoint polar(double range, double azimuth, double elevation, unsigned lab
           static_cast<float>(range * std::sin(elevation * kDegree)), label};
 }
 
-/// A turn of 4 x 180 cells: three walls of 3 x 20 returns (labels 5, 6 and 7) 6 m away over a row of ground, which is 2 m
-/// below. The first two walls are 3 steps, 0.6 m, apart; the third is alone.
+/// A turn of 4 x 180 cells: three walls of 3 x 20 returns (labels 5, 6 and 7) 6 m away over a row of ground 2 m below.
+/// The first two walls are 3 steps, 0.6 m, apart; the third is alone.
 std::string threeWalls(bool with_labels = false) {
   std::vector<LabelledPoint> points;
   for (int row = 0; row < 4; ++row)
@@ -104,7 +104,7 @@ class LiscoCompare : public ProgramTest {
   static void expectSaid(const std::string& part, const std::string& text) {
     EXPECT_NE(text.find(part), std::string::npos) << "missing: " << part << "\n" << text;
   }
-  /// The columns of a rival's line in the first table after `from`, for regular expressions.
+  /// Whether a table has a line with this title whose other columns match a regular expression.
   static bool tableSays(const std::string& text, const std::string& title, const std::string& rest) {
     std::string escaped;
     for (const char c : title) escaped += (c == '(' || c == ')') ? std::string("\\") + c : std::string(1, c);
@@ -150,7 +150,7 @@ TEST_F(LiscoCompare, ReadsFoldersAndManyInputs) {
   write("two/a.bin", floats({5, 0, 0, 1, 5, 0.1F, 0, 1, 9, 0, 0, 1}));
   write("single.pcd", threeWalls());
   const Outcome outcome =
-      run("one two single.pcd --tolerance 0.3 --check-only --min-size 1 --rivals pcl,lisco --json all.json");
+      run("one two single.pcd --tolerance 0.3 --check-only --min-size 1 --baselines pcl,lisco --json all.json");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   const auto json = jsonIn("all.json");
   std::vector<std::string> names;
@@ -164,7 +164,7 @@ TEST_F(LiscoCompare, ReadsFoldersAndManyInputs) {
 
 TEST_F(LiscoCompare, WritesJson) {
   writeScan();
-  for (const char* runs : {"3", "2"}) {  // the second time over its own
+  for (const char* runs : {"3", "2"}) {  // the second run replaces the file
     ASSERT_EQ(run(std::string("walls.pcd --tolerance 0.3,0.7 --ground-z -1.5 --json walls.json --runs ") + runs).status,
               0);
     const auto json = jsonIn("walls.json");
@@ -185,15 +185,15 @@ TEST_F(LiscoCompare, WritesJson) {
     EXPECT_EQ(input["cases"][1]["tolerance"], 0.7);
     EXPECT_EQ(input["cases"][1]["clusters"], 2);
     for (const auto& one : input["cases"]) {
-      ASSERT_EQ(one["rivals"].size(), 6U);
-      for (const auto& rival : one["rivals"]) {
-        EXPECT_EQ(rival["identical"], true);
-        EXPECT_EQ(rival["must_agree"], rival["rival"] == "lisco");
-        EXPECT_EQ(rival["times_ms"].size(), static_cast<std::size_t>(std::stoi(runs)));
-        EXPECT_GT(rival["ratio"].get<double>(), 0);
+      ASSERT_EQ(one["baselines"].size(), 6U);
+      for (const auto& baseline : one["baselines"]) {
+        EXPECT_EQ(baseline["identical"], true);
+        EXPECT_EQ(baseline["must_agree"], baseline["baseline"] == "lisco");
+        EXPECT_EQ(baseline["times_ms"].size(), static_cast<std::size_t>(std::stoi(runs)));
+        EXPECT_GT(baseline["ratio"].get<double>(), 0);
         double sum = 0;
-        for (const auto& time : rival["times_ms"]) sum += time.get<double>();
-        EXPECT_NEAR(rival["mean_ms"].get<double>(), sum / std::stoi(runs), 1e-9);
+        for (const auto& time : baseline["times_ms"]) sum += time.get<double>();
+        EXPECT_NEAR(baseline["mean_ms"].get<double>(), sum / std::stoi(runs), 1e-9);
       }
     }
   }
@@ -206,7 +206,7 @@ TEST_F(LiscoCompare, WritesCsv) {
     ASSERT_EQ(run("'my, \"own\" walls.pcd' --tolerance 0.3,0.7 --ground-z -1.5 --csv walls.csv --runs 2").status, 0);
   const std::string csv = textOf(folder_ / "walls.csv");
   EXPECT_EQ(linesOf(csv), 1U + 2U * 6U);
-  EXPECT_EQ(csv.rfind("input,rows,columns,returns,ground_z,tolerance,min_size,reference_clusters,rival,clusters,"
+  EXPECT_EQ(csv.rfind("input,rows,columns,returns,ground_z,tolerance,min_size,reference_clusters,baseline,clusters,"
                       "identical,mislabelled,runs,mean_ms,",
                       0),
             0U)
@@ -221,7 +221,7 @@ TEST_F(LiscoCompare, WritesCsv) {
   while (std::getline(lines, line)) EXPECT_EQ(countOf(",", line), commas + 1) << line;
 }
 
-TEST_F(LiscoCompare, LeavesForeignFilesAlone) {
+TEST_F(LiscoCompare, KeepsForeignFiles) {
   writeScan();
   write("mine.json", "{\"my own\": \"notes\"}");
   write("mine.csv", "input,rows\n");
@@ -265,14 +265,14 @@ TEST_F(LiscoCompare, DrawsCharts) {
   }
 }
 
-TEST_F(LiscoCompare, LeavesForeignChartsAlone) {
+TEST_F(LiscoCompare, KeepsForeignCharts) {
   writeScan();
   fs::create_directory(folder_ / "mine");
   write("mine/time_over_tolerance_walls.png", "my own");
   expectRefusal("walls.pcd -t 0.3 --runs 2 --plot mine",
                 {"mine/time_over_tolerance_walls.png", "not written by this program"});
   EXPECT_EQ(textOf(folder_ / "mine/time_over_tolerance_walls.png"), "my own");
-  // Beside other things they are welcome.
+  // A folder with other files is accepted.
   fs::create_directory(folder_ / "shared");
   write("shared/notes.txt", "keep me");
   EXPECT_EQ(run("walls.pcd -t 0.3 --runs 2 --plot shared").status, 0);
@@ -283,7 +283,7 @@ TEST_F(LiscoCompare, LeavesForeignChartsAlone) {
   expectRefusal("walls.pcd -t 0.3 --runs 2 --plot file/charts", {"file/charts", "cannot be written"});
 }
 
-TEST_F(LiscoCompare, SaysWhenGnuplotIsMissing) {
+TEST_F(LiscoCompare, ReportsMissingGnuplot) {
   writeScan();
   const Outcome outcome = runLine("PATH=/nowhere " + program_ + " walls.pcd -t 0.3 --runs 2 --plot charts");
   EXPECT_EQ(outcome.status, 2);
@@ -292,15 +292,15 @@ TEST_F(LiscoCompare, SaysWhenGnuplotIsMissing) {
   EXPECT_FALSE(fs::exists(folder_ / "charts"));
 }
 
-TEST_F(LiscoCompare, HasNothingToDrawIfNobodyIsTimed) {
+TEST_F(LiscoCompare, DrawsNothingWithoutTimes) {
   writeScan();
-  const Outcome outcome = run("walls.pcd -t 0.3 --runs 2 --rivals pcl-default --plot charts");
+  const Outcome outcome = run("walls.pcd -t 0.3 --runs 2 --baselines pcl-default --plot charts");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(filesLeft(), std::vector<std::string>({"charts", "charts/.lisco_results", "walls.pcd"}));
 }
 
-TEST_F(LiscoCompare, OnlyChecksIfTold) {
+TEST_F(LiscoCompare, ComparesClustersOnlyWithCheckOnly) {
   writeScan();
   const Outcome outcome = run("walls.pcd -t 0.3 --check-only --csv walls.csv");
   EXPECT_EQ(outcome.status, 0);
@@ -323,12 +323,12 @@ TEST_F(LiscoCompare, ComparesUnorganizedReturns) {
       EXPECT_TRUE(tableSays(outcome.out, kTitles[i], kNotTimed + "  not possible: needs an organized cloud"))
           << outcome.out;
   }
-  const auto rival = jsonIn("walls.json")["inputs"][0]["cases"][0]["rivals"][4];
-  EXPECT_EQ(rival["rival"], "paper");
-  EXPECT_EQ(rival["failure"], "needs an organized cloud");
+  const auto baseline = jsonIn("walls.json")["inputs"][0]["cases"][0]["baselines"][4];
+  EXPECT_EQ(baseline["baseline"], "paper");
+  EXPECT_EQ(baseline["failure"], "needs an organized cloud");
   EXPECT_EQ(linesOf(textOf(folder_ / "walls.csv")), 1U + 6U);
   EXPECT_EQ(countOf(",\"needs an organized cloud\"\n", textOf(folder_ / "walls.csv")), 1U);
-  // One that must agree has to be able to.
+  // A baseline that must agree and fails counts as a mismatch.
   EXPECT_EQ(run("walls.pcd -t 0.3 --check-only --unorganized --must-agree paper").status, 1);
 }
 
@@ -337,7 +337,8 @@ TEST_F(LiscoCompare, RemovesTheGroundOfAllOrOfOne) {
   write("b.pcd", threeWalls());
   write("c=d.pcd", threeWalls());
   const auto returns = [&](const std::string& options) {
-    EXPECT_EQ(run("a.pcd b.pcd c=d.pcd -t 0.3 --check-only --rivals pcl,lisco --json all.json " + options).status, 0);
+    EXPECT_EQ(run("a.pcd b.pcd c=d.pcd -t 0.3 --check-only --baselines pcl,lisco --json all.json " + options).status,
+              0);
     std::vector<int> counts;
     const auto json = jsonIn("all.json");
     for (const auto& input : json["inputs"]) counts.push_back(input["returns"]);
@@ -369,7 +370,7 @@ TEST_F(LiscoCompare, ScoresTrueObjects) {
   expectSaid("true objects: 3; 3 whole, 0 split, 0 merged with others, 0 missed\n", unorganized.out);
 }
 
-TEST_F(LiscoCompare, ReportsAForcedMismatch) {
+TEST_F(LiscoCompare, ReportsAMismatch) {
   const std::vector<LabelledPoint> points = staggeredRows();
   write("staggered.pcd", pcdOf(points, 2));
   const Outcome outcome = run("staggered.pcd -t 0.5 --runs 2 --must-agree lisco,paper --json found.json");
@@ -381,7 +382,7 @@ TEST_F(LiscoCompare, ReportsAForcedMismatch) {
       << outcome.out;
   EXPECT_TRUE(tableSays(outcome.out, "Lisco for PCL", kTimed + "  identical")) << outcome.out;
   expectSaid(
-      "  Lisco as in the paper:\n    PCL finds 1 clusters, the rival 2; 1 of PCL's are not among them; "
+      "  Lisco as in the paper:\n    PCL finds 1 clusters, the method 2; 1 of PCL's are not among them; "
       "10 of 20 points differ\n",
       outcome.out);
 
@@ -389,7 +390,7 @@ TEST_F(LiscoCompare, ReportsAForcedMismatch) {
   ASSERT_TRUE(std::regex_search(
       outcome.out, first,
       std::regex("    first: point ([0-9]+) \\(([^,]*), ([^,]*), ([^)]*)\\) row ([0-9]+) column "
-                 "([0-9]+): by PCL in cluster 1 \\(20 points\\), by the rival in cluster [12] \\(10 points\\)\n")))
+                 "([0-9]+): by PCL in cluster 1 \\(20 points\\), by the method in cluster [12] \\(10 points\\)\n")))
       << outcome.out;
   const std::size_t index = std::stoul(first[1]);
   ASSERT_TRUE(index == 300 || index == 720 + 312) << index;  // the first of one of the rows
@@ -399,14 +400,14 @@ TEST_F(LiscoCompare, ReportsAForcedMismatch) {
   EXPECT_EQ(std::stoul(first[5]), index / 720);
   EXPECT_EQ(std::stoul(first[6]), index % 720);
   // Five ahead and five below it, and the one right below; the nearest is next to it in its row, 0.0873 m away.
-  expectSaid("    its 11 neighbours within 0.5 m, with their distances, clusters by PCL and clusters by the rival: " +
+  expectSaid("    its 11 neighbours within 0.5 m, with their distances, clusters by PCL and clusters by the method: " +
                  std::to_string(index + 1) + " (0.0873 m, 1, ",
              outcome.out);
 
   std::smatch pair;
   ASSERT_TRUE(std::regex_search(outcome.out, pair,
                                 std::regex("    the pair that decides: point ([0-9]+) .* and point ([0-9]+) .*, d2 = "
-                                           "([0-9.]+), r2 = 0.25: neighbours, which the rival keeps apart\n")))
+                                           "([0-9.]+), r2 = 0.25: neighbours, which the method keeps apart\n")))
       << outcome.out;
   const LabelledPoint a = points[std::stoul(pair[1])];
   const LabelledPoint b = points[std::stoul(pair[2])];
@@ -415,44 +416,44 @@ TEST_F(LiscoCompare, ReportsAForcedMismatch) {
   EXPECT_NEAR(std::stof(pair[3]), d2, 1e-6);
   EXPECT_LT(d2, 0.25F);
 
-  const auto rival = jsonIn("found.json")["inputs"][0]["cases"][0]["rivals"][4];
-  EXPECT_EQ(rival["rival"], "paper");
-  EXPECT_EQ(rival["must_agree"], true);
-  EXPECT_EQ(rival["identical"], false);
-  EXPECT_EQ(rival["clusters"], 2);
-  EXPECT_EQ(rival["difference"]["mislabelled"], 10);
-  EXPECT_EQ(rival["difference"]["clusters"], 1);
-  const std::string details = rival["difference"]["details"];
+  const auto baseline = jsonIn("found.json")["inputs"][0]["cases"][0]["baselines"][4];
+  EXPECT_EQ(baseline["baseline"], "paper");
+  EXPECT_EQ(baseline["must_agree"], true);
+  EXPECT_EQ(baseline["identical"], false);
+  EXPECT_EQ(baseline["clusters"], 2);
+  EXPECT_EQ(baseline["difference"]["mislabelled"], 10);
+  EXPECT_EQ(baseline["difference"]["clusters"], 1);
+  const std::string details = baseline["difference"]["details"];
   EXPECT_NE(details.find("point " + first[1].str() + " ("), std::string::npos);
-  EXPECT_NE(details.find("neighbours, which the rival keeps apart"), std::string::npos);
-  EXPECT_FALSE(rival.contains("times_ms"));
+  EXPECT_NE(details.find("neighbours, which the method keeps apart"), std::string::npos);
+  EXPECT_FALSE(baseline.contains("times_ms"));
 }
 
-TEST_F(LiscoCompare, DoesNotMindAMismatchOfOthers) {
+TEST_F(LiscoCompare, AcceptsAMismatchOfBaselinesThatNeedNotAgree) {
   write("staggered.pcd", pcdOf(staggeredRows(), 2));
   const Outcome outcome = run("staggered.pcd -t 0.5 --runs 2 --csv found.csv");
   EXPECT_EQ(outcome.status, 0);
   EXPECT_TRUE(tableSays(outcome.out, "Lisco as in the paper", kTimed + "  DIFFERENT: 10 points, 2 clusters"))
       << outcome.out;
   EXPECT_EQ(countOf(",1,paper,2,no,10,2,", textOf(folder_ / "found.csv")), 1U) << textOf(folder_ / "found.csv");
-  // Nor if there is nothing that must agree among those asked for.
-  EXPECT_EQ(run("staggered.pcd -t 0.5 --check-only --rivals pcl,paper").status, 0);
+  // Also without any baseline that must agree.
+  EXPECT_EQ(run("staggered.pcd -t 0.5 --check-only --baselines pcl,paper").status, 0);
 }
 
-TEST_F(LiscoCompare, StillReportsAMismatchIfNothingIsLeftToDraw) {
+TEST_F(LiscoCompare, ReportsAMismatchWithNothingToDraw) {
   write("staggered.pcd", pcdOf(staggeredRows(), 2));
-  const Outcome outcome = run("staggered.pcd -t 0.5 --runs 2 --rivals paper --must-agree paper --plot charts");
+  const Outcome outcome = run("staggered.pcd -t 0.5 --runs 2 --baselines paper --must-agree paper --plot charts");
   EXPECT_EQ(outcome.status, 1) << outcome.err;
 }
 
-TEST_F(LiscoCompare, OneMismatchAmongManyIsEnough) {
+TEST_F(LiscoCompare, FailsOnOneMismatchAmongMany) {
   write("a.pcd", threeWalls());
   write("b.pcd", pcdOf(staggeredRows(), 2));
   write("c.pcd", threeWalls());
   EXPECT_EQ(run("a.pcd b.pcd c.pcd -t 0.5 --check-only --must-agree paper").status, 1);
   EXPECT_EQ(run("a.pcd b.pcd c.pcd -t 0.05,0.5 --check-only --must-agree paper").status, 1);
   EXPECT_EQ(run("a.pcd c.pcd -t 0.5 --check-only --must-agree paper").status, 0);
-  // A mismatch goes before an input that cannot be read.
+  // A mismatch takes precedence over an unreadable input.
   EXPECT_EQ(run("b.pcd missing.pcd -t 0.5 --check-only --must-agree paper").status, 1);
 }
 
@@ -464,22 +465,22 @@ TEST_F(LiscoCompare, ShowsPclsDefaultWithoutTimingIt) {
       points.push_back(
           {column < 20 ? 5.0F : 9.0F, 0.1F * static_cast<float>(column - 20), 0.1F * static_cast<float>(row)});
   write("walls.pcd", pcdOf(points, 4));
-  const Outcome outcome = run("walls.pcd -t 0.3 --runs 2 --rivals lisco,pcl-default,pcl");
+  const Outcome outcome = run("walls.pcd -t 0.3 --runs 2 --baselines lisco,pcl-default,pcl");
   EXPECT_EQ(outcome.status, 0);
   EXPECT_TRUE(tableSays(outcome.out, "Lisco for PCL", kTimed + "  identical"));
   EXPECT_EQ(outcome.out.find("voxel grid"), std::string::npos);
-  EXPECT_EQ(outcome.err, "");  // nothing of what PCL thinks of it
+  EXPECT_EQ(outcome.err, "");  // PCL's own messages are silenced
 }
 
-TEST_F(LiscoCompare, NeedsNoReferenceAmongItsRivals) {
+TEST_F(LiscoCompare, RunsWithoutTheReference) {
   writeScan();
-  const Outcome outcome = run("walls.pcd -t 0.3 --runs 2 --rivals grid,lisco --json walls.json");
+  const Outcome outcome = run("walls.pcd -t 0.3 --runs 2 --baselines grid,lisco --json walls.json");
   EXPECT_EQ(outcome.status, 0);
   EXPECT_TRUE(tableSays(outcome.out, "Lisco for PCL", "2( +[0-9.]+){3} +-  identical")) << outcome.out;
-  EXPECT_TRUE(jsonIn("walls.json")["inputs"][0]["cases"][0]["rivals"][1]["ratio"].is_null());
+  EXPECT_TRUE(jsonIn("walls.json")["inputs"][0]["cases"][0]["baselines"][1]["ratio"].is_null());
 }
 
-TEST_F(LiscoCompare, GoesOnAfterABadFileAmongMany) {
+TEST_F(LiscoCompare, ContinuesAfterABadFile) {
   write("a.pcd", threeWalls());
   write("b.bin", "odd");
   write("none.pcd", pcdOf({{kNan, kNan, kNan}, {0, 0, 0}}, 1));
@@ -505,7 +506,7 @@ TEST_F(LiscoCompare, GoesOnAfterABadFileAmongMany) {
     expectPng(folder_ / ("charts/time_over" + std::string(chart) + ".png"));
 }
 
-TEST_F(LiscoCompare, SurvivesAnyScale) {
+TEST_F(LiscoCompare, AcceptsAnyScale) {
   std::vector<LabelledPoint> points;
   for (int i = 0; i < 12; ++i) points.push_back({1e-30F * static_cast<float>(i + 1), 1e-30F, 0});
   for (int i = 0; i < 12; ++i) points.push_back({1e17F, 0.1F * static_cast<float>(i), 1});
@@ -533,10 +534,10 @@ TEST_F(LiscoCompare, RefusesBadOptionsInOneLine) {
   for (const char* size : {"0", "-1", "ten"}) expectRefusal(scan + "--min-size " + size, {"--min-size must be"});
   for (const char* seconds : {"0", "-1", "nan", "x"})
     expectRefusal(scan + "--max-seconds " + seconds, {"--max-seconds must be"});
-  expectRefusal(scan + "--rivals pcl,nobody", {"--rivals knows no 'nobody'", "pcl-octree", "lisco"});
-  expectRefusal(scan + "--rivals ''", {"--rivals knows no ''"});
-  expectRefusal(scan + "--must-agree nobody", {"--must-agree knows no 'nobody'", "paper"});
-  expectRefusal(scan + "--rivals pcl,lisco --must-agree grid", {"--must-agree", "grid", "--rivals"});
+  expectRefusal(scan + "--baselines pcl,unknown", {"--baselines knows no 'unknown'", "pcl-octree", "lisco"});
+  expectRefusal(scan + "--baselines ''", {"--baselines knows no ''"});
+  expectRefusal(scan + "--must-agree unknown", {"--must-agree knows no 'unknown'", "paper"});
+  expectRefusal(scan + "--baselines pcl,lisco --must-agree grid", {"--must-agree", "grid", "--baselines"});
   for (const char* ground : {"low", "nan", "walls=", "walls=low", "''"})
     expectRefusal(scan + "--ground-z " + ground, {"--ground-z must be a number"});
   expectRefusal(scan + "--json ''", {"--json is empty"});
@@ -550,8 +551,7 @@ TEST_F(LiscoCompare, RefusesBadOptionsInOneLine) {
   expectRefusal(scan + "--ground-z 5", {"walls.pcd: no returns to cluster"});
 }
 
-// What cannot be written is said at once, not after all the runs.
-TEST_F(LiscoCompare, FindsOutBeforeTheRunsWhatCannotBeWritten) {
+TEST_F(LiscoCompare, ChecksOutputsBeforeTheRuns) {
   writeScan();
   for (const char* option : {"--json missing/out.json", "--csv missing/out.csv", "--json walls.pcd/out.json"}) {
     expectRefusal(std::string("walls.pcd -t 0.3 --runs 2 ") + option, {"/out.", "cannot be written"});
@@ -559,6 +559,14 @@ TEST_F(LiscoCompare, FindsOutBeforeTheRunsWhatCannotBeWritten) {
   }
   EXPECT_EQ(run("walls.pcd -t 0.3 --runs 2 --plot walls.pcd/charts").out, "");
   EXPECT_EQ(run("walls.pcd -t 0.3 --runs 2 --json same --csv ./same").out, "");
+}
+
+TEST_F(LiscoCompare, AcceptsTheFormerNameOfBaselines) {
+  writeScan();
+  const Outcome outcome = run("walls.pcd -t 0.3 --check-only --rivals pcl,lisco");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out.find("voxel grid"), std::string::npos) << outcome.out;
+  EXPECT_EQ(run("--help").out.find("rivals"), std::string::npos);
 }
 
 TEST_F(LiscoCompare, ShowsNoProgressInAPipe) {
@@ -569,12 +577,12 @@ TEST_F(LiscoCompare, ShowsNoProgressInAPipe) {
   EXPECT_EQ(outcome.out.find('\033'), std::string::npos);
 }
 
-TEST_F(LiscoCompare, TellsItsUseAndVersion) {
+TEST_F(LiscoCompare, PrintsHelpAndVersion) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.status, 0);
   EXPECT_EQ(help.err, "");
   for (const char* option :
-       {"--tolerance",  "--min-size",    "--ground-z", "--runs",      "--max-seconds", "--check-only", "--rivals",
+       {"--tolerance",  "--min-size",    "--ground-z", "--runs",      "--max-seconds", "--check-only", "--baselines",
         "--must-agree", "--unorganized", "--json",     "--csv",       "--plot",        "--help",       "--version",
         "Exit code",    "pcl-tutorial",  "pcl-octree", "pcl-default", "grid",          "paper"})
     EXPECT_NE(help.out.find(option), std::string::npos) << option;

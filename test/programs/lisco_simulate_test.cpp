@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// lisco_simulate as a user runs it.
+// lisco_simulate, run as a program.
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -13,7 +13,7 @@
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/io/pcd_io.h>
 
-#include "cloud_file.h"
+#include "io/cloud_file.h"
 #include "program_test.h"
 
 namespace {
@@ -24,7 +24,7 @@ class LiscoSimulate : public ProgramTest {
  protected:
   LiscoSimulate() : ProgramTest(LISCO_SIMULATE) {}
 
-  /// The number that stands before some words, or -1.
+  /// The number before some words, or -1.
   static long numberBefore(const std::string& text, const std::string& words) {
     const std::size_t end = text.find(words);
     if (end == std::string::npos) return -1;
@@ -32,8 +32,7 @@ class LiscoSimulate : public ProgramTest {
     return begin < end ? std::stol(text.substr(begin, end - begin)) : -1;
   }
 
-  /// A file has a first line from which it can be made again.
-  /// \param first the option with which its arguments begin
+  /// Checks that the arguments in the first line of a file make it again. \param first the first of these options
   void expectMadeAgain(const std::string& file, const std::string& first) const {
     const std::string text = textOf(folder_ / file);
     const std::string line = text.substr(0, text.find('\n'));
@@ -62,7 +61,7 @@ TEST_F(LiscoSimulate, WritesTheFiveScenesOfThePaper) {
       EXPECT_NE(outcome.out.find(std::string(" x ") + kind), std::string::npos) << kind << ": " << outcome.out;
     EXPECT_NE(outcome.out.find("cluster it with --ground-z -1.6\n"), std::string::npos) << outcome.out;
 
-    // What the summary says is what is in the file, as these programs read it.
+    // The summary agrees with the file.
     const auto cloud = lisco_apps::readCloudFile(folder_ / file);
     EXPECT_EQ(cloud->height, 64U);
     EXPECT_EQ(cloud->width, 1125U);
@@ -108,14 +107,14 @@ TEST_F(LiscoSimulate, WritesTheObjectOfEveryReturn) {
   expectMadeAgain("scan.pcd", "--scene");
 }
 
-TEST_F(LiscoSimulate, HasTheSameScanForTheSameSeedOnly) {
+TEST_F(LiscoSimulate, GivesEqualScansForEqualSeedsOnly) {
   for (const char* arguments : {"-o one.pcd", "-o same.pcd --seed 1", "-o other.pcd --seed 2"})
     ASSERT_EQ(run(std::string("--scene 2 --sensor vlp16 ") + arguments).status, 0);
   EXPECT_TRUE(textOf(folder_ / "one.pcd") == textOf(folder_ / "same.pcd"));
   EXPECT_FALSE(textOf(folder_ / "one.pcd") == textOf(folder_ / "other.pcd"));
 }
 
-TEST_F(LiscoSimulate, KnowsSensorsOfAnySize) {
+TEST_F(LiscoSimulate, SimulatesSensorsOfAnySize) {
   struct Size {
     std::uint32_t lasers, steps;
   };
@@ -140,7 +139,7 @@ TEST_F(LiscoSimulate, KnowsSensorsOfAnySize) {
   }
 }
 
-TEST_F(LiscoSimulate, DisturbsAsAsked) {
+TEST_F(LiscoSimulate, AppliesNoiseAndDropOuts) {
   ASSERT_EQ(run("--scene 5 --noise 0 --drop-outs 0 -o exact.pcd").status, 0);
   ASSERT_EQ(run("--scene 5 --noise 0.3 --drop-outs 0.5 -o poor.pcd").status, 0);
   const auto exact = lisco_apps::readCloudFile(folder_ / "exact.pcd");
@@ -156,7 +155,7 @@ TEST_F(LiscoSimulate, DisturbsAsAsked) {
   EXPECT_NEAR(std::sqrt(squares / returns), 0.3, 0.01);
 }
 
-TEST_F(LiscoSimulate, SeesItsOwnVehicleIfAsked) {
+TEST_F(LiscoSimulate, AddsTheVehicle) {
   const Outcome outcome = run("--scene 3 --vehicle -o scan.pcd");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("1 x vehicle"), std::string::npos) << outcome.out;
@@ -192,14 +191,14 @@ TEST_F(LiscoSimulate, WritesTheWorstCases) {
     EXPECT_NE(outcome.out.find("returns   " + std::to_string(returns) + "\n"), std::string::npos) << outcome.out;
     expectMadeAgain("scan.pcd", "--case");
   }
-  // The gap is made use of, and stands in the file.
+  // The gap is used, and recorded in the file.
   ASSERT_EQ(run("--case sheets --gap 0.25 -o near.pcd").status, 0);
   ASSERT_EQ(run("--case sheets -o far.pcd").status, 0);
   EXPECT_FALSE(textOf(folder_ / "near.pcd") == textOf(folder_ / "far.pcd"));
   expectMadeAgain("near.pcd", "--case");
 }
 
-TEST_F(LiscoSimulate, HelpsAndNamesItsVersion) {
+TEST_F(LiscoSimulate, PrintsHelpAndVersion) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.status, 0);
   for (const char* word : {"Usage: lisco_simulate", "--scene", "--case", "singletons", "--gap", "--vehicle", "--sensor",
@@ -210,7 +209,7 @@ TEST_F(LiscoSimulate, HelpsAndNamesItsVersion) {
   EXPECT_EQ(version.out.rfind("lisco_simulate ", 0), 0U) << version.out;
 }
 
-TEST_F(LiscoSimulate, RefusesWhatItDoesNotUnderstand) {
+TEST_F(LiscoSimulate, RefusesBadOptionsInOneLine) {
   expectRefusal("", {"--scene"});
   expectRefusal("-o scan.pcd", {"--scene"});
   for (const char* scene : {"0", "6", "abc", "1x", "-1", "''"})
@@ -243,7 +242,7 @@ TEST_F(LiscoSimulate, RefusesWhatItDoesNotUnderstand) {
   expectRefusal("--scene 1 -o scan.pcd stray", {"'stray' is no option", "see --help"});
 }
 
-TEST_F(LiscoSimulate, OverwritesOnlyWhatItHasWritten) {
+TEST_F(LiscoSimulate, OverwritesOnlyItsOwnFiles) {
   write("mine.pcd", "VERSION 0.7\nFIELDS x y z\n");
   expectRefusal("--scene 1 -o mine.pcd", {"mine.pcd", "not written by this program"});
   expectRefusal("--scene 1 -o nowhere/scan.pcd", {"nowhere/scan.pcd", "cannot be written"});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// lisco_stream as a user runs it: captures, and packets as they come.
+// lisco_stream, run as a program: on captures and on live packets.
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -83,7 +83,7 @@ std::vector<Json> withoutTimes(std::vector<Json> lines) {
   return lines;
 }
 
-/// A number of the closing table: the one at the beginning of a row of this name, or else the one before this word.
+/// A number of the closing table: the first in the row of this name, otherwise the one before this word.
 long long statOf(const std::string& table, const std::string& word) {
   std::istringstream rows(table);
   for (std::string row; std::getline(rows, row);)
@@ -114,7 +114,7 @@ class LiscoStream : public ProgramTest {
     return pcdOf(textOf(folder_ / folder / name));
   }
 
-  /// The labels of each cloud are those that lisco_cluster gives it.
+  /// Compares the labels of each cloud with lisco_cluster's.
   void expectLabelsOfBatch(const std::string& folder, std::size_t clouds, const std::string& options) const {
     const Outcome batch = runLine(std::string(LISCO_CLUSTER) + " " + folder + " " + options + " -o batch");
     ASSERT_EQ(batch.status, 0) << batch.err;
@@ -126,7 +126,7 @@ class LiscoStream : public ProgramTest {
     }
   }
 
-  /// The lines of mode rotation say the same as the table and the clouds.
+  /// Checks that lines of mode rotation, table and clouds agree.
   void expectRotationsAgree(const std::vector<Json>& lines, const std::string& table, const std::string& folder) const {
     std::size_t columns = 0, returns = 0, clusters = 0, in_clusters = 0;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -161,7 +161,7 @@ class LiscoStream : public ProgramTest {
     EXPECT_NE(table.find(", of " + std::to_string(in_clusters) + " returns"), std::string::npos) << table;
   }
 
-  /// The lines of mode endless say the same as the table and the clouds.
+  /// Checks that lines of mode endless, table and clouds agree.
   void expectDeliveriesAgree(const std::vector<Json>& lines, const std::string& table,
                              const std::string& folder) const {
     std::map<std::uint32_t, std::size_t> sizes;
@@ -183,7 +183,7 @@ class LiscoStream : public ProgramTest {
   }
 };
 
-/// Objects around the sensor, in the units of its distances; they drift from rotation to rotation.
+/// Objects around the sensor that drift from rotation to rotation.
 Measured objectsAround(std::size_t firing, std::size_t laser, bool) {
   const std::size_t place = firing / 40;
   if (place % 3 == 2 || laser % 16 == 15) return {};
@@ -272,7 +272,7 @@ TEST_P(StreamOfCapture, DeliversEachClusterOnce) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   expectDeliveriesAgree(linesOf(outcome.out), outcome.err, "clouds");
   EXPECT_EQ(statOf(outcome.err, "lost"), 0);
-  EXPECT_NE(outcome.err.find("0 returns astray"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("0 outliers"), std::string::npos) << outcome.err;
 }
 
 TEST_P(StreamOfCapture, PrintsText) {
@@ -285,10 +285,9 @@ TEST_P(StreamOfCapture, PrintsText) {
   }
 }
 
-// --- Packets as they come ------------------------------------------------------------------------------------------
+// --- Live packets ---------------------------------------------------------------------------------------------------
 
-/// Sends packets to a UDP port of this machine, about as fast as a sensor does, but not faster than a busy machine takes
-/// them.
+/// Sends packets to a UDP port of this machine at about the pace of a sensor.
 void sendTo(std::uint16_t port, const std::vector<Bytes>& payloads) {
   const int from = socket(AF_INET, SOCK_DGRAM, 0);
   ASSERT_GE(from, 0);
@@ -303,7 +302,7 @@ void sendTo(std::uint16_t port, const std::vector<Bytes>& payloads) {
   close(from);
 }
 
-/// The port on which it says it listens.
+/// The port that the program reports.
 std::uint16_t portOf(const Child& child) {
   const std::string said = "listening on UDP port ";
   EXPECT_TRUE(Child::waitUntil([&] { return child.err().find('\n') != std::string::npos; }));
@@ -312,14 +311,14 @@ std::uint16_t portOf(const Child& child) {
                                  : static_cast<std::uint16_t>(std::stoul(child.err().substr(at + said.size())));
 }
 
-/// Runs the program with a free port, sends it packets, and ends it by Ctrl-C when it has told all it can tell before.
+/// Runs the program on a free port, sends it packets, and ends it by Ctrl-C after all lines that come before the end.
 Outcome receive(const fs::path& folder, const std::vector<Bytes>& payloads, const std::vector<std::string>& arguments,
                 std::size_t lines_before_end) {
   std::vector<std::string> all{"--port", "0"};
   all.insert(all.end(), arguments.begin(), arguments.end());
   Child child(LISCO_STREAM, all, folder);
   sendTo(portOf(child), payloads);
-  // Packets may have been lost on the way, and lines with them.
+  // Until no more lines come, as lost packets may have cost some.
   std::size_t lines = 0, before = 0;
   do {
     before = lines;
@@ -331,7 +330,7 @@ Outcome receive(const fs::path& folder, const std::vector<Bytes>& payloads, cons
   return child.end();
 }
 
-/// The same, again if the system has lost packets on the way, as it may.
+/// Repeats receive (), up to three times, if the system has lost packets.
 Outcome receiveAll(const fs::path& folder, const std::vector<Bytes>& payloads,
                    const std::vector<std::string>& arguments, std::size_t lines_before_end, long long data_packets) {
   Outcome outcome{};
@@ -371,7 +370,7 @@ TEST_F(LiscoStream, GivesTheSameLiveAsFromACapture) {
 }
 
 TEST_P(StreamOfCapture, GivesTheSameByUdp) {
-  // Live, nobody knows beforehand how fast the sensor will turn on the whole; nor of what comes through a pipe.
+  // Live packets and pipes are decoded without the step of the whole capture.
   std::vector<Bytes> payloads;
   lisco_apps::CaptureFile file(capture());
   lisco_apps::Packet packet;
@@ -395,7 +394,7 @@ TEST_P(StreamOfCapture, GivesTheSameByUdp) {
   }
 }
 
-TEST_F(LiscoStream, EndsByItselfAfterSoManyRotations) {
+TEST_F(LiscoStream, EndsAfterTheWantedRotations) {
   PacketEncoder encoder("hdl32e");
   const std::vector<Bytes> payloads = packetsOf(encoder, 500);
   for (const char* mode : {"rotation", "endless"}) {
@@ -406,11 +405,11 @@ TEST_F(LiscoStream, EndsByItselfAfterSoManyRotations) {
     const Outcome outcome = child.end();
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(statOf(outcome.out, "rotations"), 2);
-    EXPECT_LE(statOf(outcome.out, "columns"), 2 * 1800);  // the system may have lost some
+    EXPECT_LE(statOf(outcome.out, "columns"), 2 * 1800);  // the system may lose packets
   }
 }
 
-TEST_F(LiscoStream, SaysThatNothingCame) {
+TEST_F(LiscoStream, ReportsThatNoPacketCame) {
   const Outcome outcome = receive(folder_, {}, {"--sensor", "vlp16", "-t", "1"}, 0);
   EXPECT_EQ(outcome.status, 2);
   EXPECT_NE(outcome.err.find("no data packet of a vlp16 has come"), std::string::npos) << outcome.err;
@@ -418,7 +417,7 @@ TEST_F(LiscoStream, SaysThatNothingCame) {
 
 // --- Ctrl-C, and the pace ------------------------------------------------------------------------------------------
 
-TEST_F(LiscoStream, DeliversOnCtrlCWhatHasCome) {
+TEST_F(LiscoStream, ClustersReceivedPacketsOnCtrlC) {
   writeCapture("a.pcap", packetsOf(PacketEncoder("hdl32e"), 4000));  // 2 s
   for (const bool endless : {false, true})
     for (const int number : {SIGINT, SIGTERM}) {
@@ -456,9 +455,9 @@ TEST_F(LiscoStream, KeepsThePaceOfTheCapture) {
   EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(290));
 }
 
-// --- What goes wrong -----------------------------------------------------------------------------------------------
+// --- Errors --------------------------------------------------------------------------------------------------------
 
-TEST_F(LiscoStream, EndsWhereTheCaptureBreaksOff) {
+TEST_F(LiscoStream, EndsAtTheTruncationOfACapture) {
   const std::vector<Bytes> payloads = packetsOf(PacketEncoder("hdl32e"), 400);
   writeCapture("whole.pcap", payloads);
   const std::string whole = textOf(folder_ / "whole.pcap");
@@ -478,7 +477,7 @@ TEST_F(LiscoStream, EndsWhereTheCaptureBreaksOff) {
   }
 }
 
-TEST_F(LiscoStream, CountsWhatIsLostLateAndForeign) {
+TEST_F(LiscoStream, CountsLostLateAndForeignPackets) {
   std::vector<Bytes> payloads = packetsOf(PacketEncoder("hdl32e"), 700);
   std::swap(payloads[100], payloads[101]);                         // one late
   payloads.erase(payloads.begin() + 200, payloads.begin() + 230);  // 30 lost
@@ -496,7 +495,7 @@ TEST_F(LiscoStream, CountsWhatIsLostLateAndForeign) {
     const std::vector<Json> lines = linesOf(outcome.out);
     if (mode == std::string("endless")) {
       expectDeliveriesAgree(lines, outcome.err, "clouds");
-      EXPECT_NE(outcome.err.find("0 returns astray"), std::string::npos) << outcome.err;
+      EXPECT_NE(outcome.err.find("0 outliers"), std::string::npos) << outcome.err;
       continue;
     }
     expectRotationsAgree(lines, outcome.err, "clouds");
@@ -507,7 +506,7 @@ TEST_F(LiscoStream, CountsWhatIsLostLateAndForeign) {
   }
 }
 
-TEST_F(LiscoStream, SaysIfItIsAnotherSensor) {
+TEST_F(LiscoStream, ProposesTheRightSensor) {
   writeCapture("vlp16.pcap", packetsOf(PacketEncoder("vlp16"), 100));
   writeCapture("vls128.pcap", packetsOf(PacketEncoder("vls128"), 100));
   expectRefusal("vlp16.pcap --sensor vls128 -t 1", {"no data packet of a vls128", "100 foreign", "is it a vlp16"});
@@ -534,10 +533,10 @@ TEST_F(LiscoStream, ReadsAnHdl64eByItsCalibration) {
   const Outcome endless = run(options + "--calibration db.xml --json --stats -o clouds --mode endless");
   ASSERT_EQ(endless.status, 0) << endless.err;
   expectDeliveriesAgree(linesOf(endless.out), endless.err, "clouds");
-  EXPECT_NE(endless.err.find(" 0 returns astray"), std::string::npos) << endless.err;
+  EXPECT_NE(endless.err.find(" 0 outliers"), std::string::npos) << endless.err;
 }
 
-TEST_F(LiscoStream, GoesOnIfTheSensorStandsStill) {
+TEST_F(LiscoStream, ContinuesWhileTheSensorStandsStill) {
   PacketEncoder encoder("hdl32e");
   encoder.step = 0;
   std::vector<Bytes> payloads;
@@ -588,7 +587,7 @@ TEST_F(LiscoStream, RefusesBadInputInOneLine) {
   expectRefusal("a.pcap" + options + " -o a.pcap/b", {"cannot be written"});
 }
 
-TEST_F(LiscoStream, SaysIfItsOutputCannotBeWritten) {
+TEST_F(LiscoStream, ReportsUnwritableOutput) {
   writeCapture("a.pcap", packetsOf(PacketEncoder("vlp16"), 200));
   const Outcome outcome = runLine("sh -c '" + program_ + " a.pcap --sensor vlp16 -t 0.5 --json >/dev/full'");
   EXPECT_EQ(outcome.status, 2);
@@ -604,7 +603,7 @@ TEST_F(LiscoStream, ReplacesOnlyItsOwnFiles) {
   ASSERT_EQ(run(options + " --rotations 1").status, 0);
   EXPECT_FALSE(fs::exists(folder_ / "clouds/rotation_000003.pcd"));  // of the run before
   EXPECT_EQ(textOf(folder_ / "clouds/mine.txt"), "keep me");
-  write("clouds/rotation_000009.pcd", "somebody else's");
+  write("clouds/rotation_000009.pcd", "foreign");
   expectRefusal(options, {"rotation_000009.pcd", "was not written by this program"});
   EXPECT_TRUE(fs::exists(folder_ / "clouds/rotation_000001.pcd"));
 }

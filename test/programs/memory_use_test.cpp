@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// memory_use as a user runs it.
+// memory_use, run as a program.
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -37,7 +37,7 @@ class MemoryUse : public ProgramTest {
   }
 };
 
-TEST_F(MemoryUse, TellsTheOutputFromWhatIsBeyondIt) {
+TEST_F(MemoryUse, SeparatesTheOutputFromOtherMemory) {
   ASSERT_EQ(
       runLine(std::string(LISCO_SIMULATE) + " --case singletons --sensor vlp16 --drop-outs 0 -o apart.pcd").status, 0);
   ASSERT_EQ(runLine(std::string(LISCO_SIMULATE) + " --case wall --sensor vlp16 --drop-outs 0 -o wall.pcd").status, 0);
@@ -51,7 +51,7 @@ TEST_F(MemoryUse, TellsTheOutputFromWhatIsBeyondIt) {
     EXPECT_EQ(number("cells"), kCells);
     EXPECT_EQ(number("returns"), kCells);
     EXPECT_EQ(row.at("identical"), "yes");
-    // Every return is in a cluster, and malloc () makes pieces a little larger than it was asked for.
+    // Every return is in a cluster, and malloc () rounds sizes up.
     EXPECT_GE(number("index_bytes"), 4 * kCells);
     EXPECT_LE(number("index_bytes"), 4 * kCells + 24 * number("clusters") + 8192);
     const double growth = 1 + std::ceil(std::log2(number("clusters")));
@@ -60,7 +60,7 @@ TEST_F(MemoryUse, TellsTheOutputFromWhatIsBeyondIt) {
     EXPECT_GE(number("most_bytes"), number("kept_bytes"));
     EXPECT_GT(number("first_allocations_beyond"), 0);
     EXPECT_LE(number("second_allocations_beyond"), 0);
-    EXPECT_GE(number("second_allocations_beyond"), -growth) << "but for a vector that was made large at once";
+    EXPECT_GE(number("second_allocations_beyond"), -growth) << "unless a vector was allocated at its final size";
     EXPECT_EQ(number("reused_allocations_beyond"), 0);
   }
   EXPECT_EQ(rows[0].at("clusters"), "28928");
@@ -69,7 +69,7 @@ TEST_F(MemoryUse, TellsTheOutputFromWhatIsBeyondIt) {
   EXPECT_EQ(outcome.err, "");
 }
 
-TEST_F(MemoryUse, HelpsAndRefuses) {
+TEST_F(MemoryUse, PrintsHelpAndRefusesBadOptions) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.status, 0);
   for (const char* word : {"Usage: memory_use", "--tolerance", "--csv", "PCLBase", "must be 0"})

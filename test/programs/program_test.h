@@ -13,16 +13,16 @@
 #include <string>
 #include <vector>
 
-/// What a run of a program has shown.
+/// The result of a program.
 struct Outcome {
   int status;
   std::string out, err;
 };
 
-/// Programs as their users run them, each test in a folder of its own.
+/// A test that runs a program in a temporary folder.
 class ProgramTest : public testing::Test {
  protected:
-  /// \param program path of the program that most of a suite's tests run
+  /// \param program path of the program that run () runs
   explicit ProgramTest(std::string program) : program_(std::move(program)) {}
 
   void SetUp() override {
@@ -45,7 +45,7 @@ class ProgramTest : public testing::Test {
     std::ofstream(folder_ / name, std::ios::binary) << content;
   }
 
-  /// Runs a command line with this folder as the current one.
+  /// Runs a command line in the folder.
   Outcome runLine(const std::string& command) const {
     const std::string whole = "cd '" + folder_.string() + "' && " + command + " >out.txt 2>err.txt </dev/null";
     const int status = std::system(whole.c_str());
@@ -65,7 +65,7 @@ class ProgramTest : public testing::Test {
     return files;
   }
 
-  /// One clear line on stderr that says all of these, exit code 2, and no file but the inputs.
+  /// Expects one line on stderr with all of these words, exit code 2, and no new files.
   void expectRefusal(const std::string& arguments, const std::vector<std::string>& words) const {
     SCOPED_TRACE(arguments);
     const std::vector<std::string> before = filesLeft();

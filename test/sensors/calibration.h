@@ -9,8 +9,8 @@
 
 namespace lisco_test {
 
-/// The calibration file of an HDL-64E as its maker delivers it.
-/// \param values by their names, of the laser of this number
+/// A calibration file of an HDL-64E.
+/// \param values values by name of a laser's number
 inline std::string calibrationXml(const std::function<std::map<std::string, double>(int)>& values, int lasers = 64) {
   std::ostringstream xml;
   xml << R"(<?xml version="1.0" encoding="UTF-8" standalone="yes" ?><!DOCTYPE boost_serialization>
@@ -26,7 +26,7 @@ inline std::string calibrationXml(const std::function<std::map<std::string, doub
   return xml.str();
 }
 
-/// Values of the size that such files have, unlike for each laser, and unsorted by elevation.
+/// Realistic values, different for each laser and not sorted by elevation.
 inline std::map<std::string, double> usualCalibration(int laser) {
   const double upper = laser < 32 ? 0 : 1;
   return {{"rotCorrection_", -5.3 + 1.3 * (laser % 8) + 0.01 * laser},

@@ -56,7 +56,7 @@ TEST_F(CaptureFileTest, GivesPayloadsAndTimes) {
   }
 }
 
-TEST_F(CaptureFileTest, KnowsSeveralKindsOfNetwork) {
+TEST_F(CaptureFileTest, ReadsSeveralKindsOfNetworks) {
   const Bytes udp = udpOf(payload(1));
   const Bytes v4 = ipv4Of(udp), v6 = ipv6Of(udp), long_v6 = ipv6Of(udp, true);
   struct {
@@ -82,14 +82,14 @@ TEST_F(CaptureFileTest, KnowsSeveralKindsOfNetwork) {
   }
 }
 
-TEST_F(CaptureFileTest, BelievesUdpRatherThanIp) {
+TEST_F(CaptureFileTest, ChecksTheLengthOfUdpInsteadOfIp) {
   Bytes packet = ethernetOf(ipv4Of(udpOf(payload(1))));
   packet[14 + 2] = 0x04;  // as the VLP-16 has it in its position packets
   CaptureFile file(write(captureOf({{packet}})));
   EXPECT_EQ(rest(file), std::vector<Bytes>{payload(1)});
 }
 
-TEST_F(CaptureFileTest, LeavesOutWhatIsForeign) {
+TEST_F(CaptureFileTest, SkipsForeignFrames) {
   const Bytes udp = udpOf(payload(1));
   Frame cut = frame(1);
   cut.data.pop_back();
@@ -125,7 +125,7 @@ TEST_F(CaptureFileTest, ReadsPcapng) {
   EXPECT_EQ(Bytes(read.data, read.data + read.size), payload(1, 22));
 }
 
-TEST_F(CaptureFileTest, RefusesWhatIsNoCapture) {
+TEST_F(CaptureFileTest, RefusesOtherFiles) {
   const std::string missing = (folder_ / "missing.pcap").string();
   EXPECT_EQ(refusalOf([&] { CaptureFile file(missing); }), missing + ": No such file or directory");
   const auto refusal = [&](const Bytes& content) { return refusalOf([&] { CaptureFile file(write(content)); }); };
@@ -136,7 +136,7 @@ TEST_F(CaptureFileTest, RefusesWhatIsNoCapture) {
             std::string::npos);
 }
 
-TEST_F(CaptureFileTest, EndsWhereTheFileBreaksOff) {
+TEST_F(CaptureFileTest, EndsAtTruncation) {
   const Bytes whole = captureOf({frame(1), frame(2), frame(3)});
   const std::size_t record = 16 + frame(1).data.size();
   for (std::size_t size = 24; size <= whole.size(); ++size) {
@@ -148,7 +148,7 @@ TEST_F(CaptureFileTest, EndsWhereTheFileBreaksOff) {
   }
 }
 
-TEST_F(CaptureFileTest, SurvivesAnyBytes) {
+TEST_F(CaptureFileTest, AcceptsAnyBytes) {
   constexpr std::uint64_t kSeed = 11;
   Random random(kSeed);
   const std::vector<Bytes> frames{ethernetOf(ipv4Of(udpOf(payload(1))), 0x0800, 1),

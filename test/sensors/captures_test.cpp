@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Captures of real sensors against organized scans that others decoded of them.
+// Captures of real sensors against organized scans decoded by other software.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -102,8 +102,8 @@ class RealCapture : public testing::TestWithParam<Case> {
     EXPECT_EQ(source.foreign(), 0U);
   }
 
-  /// Decodes the rotation of the scan and holds it against it: the same cells without returns, the same intensities.
-  /// \return by how much the coordinates differ at most, metres
+  /// Compares the rotation of the scan with the scan: the same cells without returns, the same intensities.
+  /// \return largest difference of a coordinate, metres
   double differenceFromScan(Decoder& decoder) const {
     const Scan scan = readPcd(dataFolder() / "scans" / (std::string(GetParam().scan) + ".pcd"));
     double most = 0;
@@ -145,7 +145,7 @@ TEST_P(RealCapture, GivesTheReturnsOfTheScan) {
   EXPECT_EQ(decoder.order().clockJumps(), 0U);
 }
 
-TEST_P(RealCapture, GivesThemExactlyByTheStepOfTheWholeCapture) {
+TEST_P(RealCapture, GivesExactReturnsByTheStepOfTheWholeCapture) {
   const lisco_apps::SensorModel model = lisco_apps::makeSensorModel(GetParam().sensor);
   CaptureFile source(file());
   Decoder decoder(model);
@@ -153,7 +153,7 @@ TEST_P(RealCapture, GivesThemExactlyByTheStepOfTheWholeCapture) {
   EXPECT_LE(differenceFromScan(decoder), 1e-9);
 }
 
-TEST_P(RealCapture, IsSeenAsAnotherSensors) {
+TEST_P(RealCapture, IsForeignToOtherSensors) {
   for (const std::string other : {"vlp16", "hdl32e", "vls128"}) {
     if (other == GetParam().sensor) continue;
     Decoder decoder(lisco_apps::makeSensorModel(other));

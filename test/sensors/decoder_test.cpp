@@ -22,7 +22,7 @@ using Kind = Decoder::Kind;
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// A column that stays.
+/// A copy of a column.
 struct SavedColumn {
   std::vector<Cell> cells;
   double azimuth, time_us;
@@ -161,12 +161,12 @@ TEST_P(EachSensor, KeepsTheStrongerOfTwoReturns) {
   };
   EXPECT_EQ(only({5000, 30}, {6000, 40}).intensity, 40);
   EXPECT_EQ(only({5000, 50}, {6000, 40}).intensity, 50);
-  EXPECT_EQ(only({5000, 0}, {0, 40}).intensity, 0) << "what did not return is not stronger";
+  EXPECT_EQ(only({5000, 0}, {0, 40}).intensity, 0) << "a missing return is not stronger";
   EXPECT_EQ(only({0, 50}, {6000, 0}).intensity, 0);
   EXPECT_TRUE(isNoReturn(only({0, 50}, {0, 60})));
 }
 
-TEST_P(EachSensor, CountsWhatIsForeign) {
+TEST_P(EachSensor, CountsForeignPackets) {
   Decoder decoder = this->decoder();
   PacketEncoder encoder(GetParam());
   const Bytes good = encoder.next(constantWorld({5000, 1}));
@@ -193,7 +193,7 @@ TEST_P(EachSensor, CountsWhatIsForeign) {
   EXPECT_EQ(decoder.counts().data, 1U);
 }
 
-TEST_P(EachSensor, SeesThatPacketsAreOfAnotherSensor) {
+TEST_P(EachSensor, DetectsPacketsOfAnotherSensor) {
   for (const std::string other : {"vlp16", "hdl32e", "hdl64e", "vls128"}) {
     if (other == GetParam()) continue;
     Decoder decoder = this->decoder();
@@ -211,7 +211,7 @@ TEST_P(EachSensor, SeesThatPacketsAreOfAnotherSensor) {
   }
 }
 
-TEST_P(EachSensor, LeavesOutLatePackets) {
+TEST_P(EachSensor, DropsLatePackets) {
   Decoder decoder = this->decoder();
   PacketEncoder encoder(GetParam());
   std::vector<Bytes> payloads;
@@ -236,7 +236,7 @@ TEST_P(EachSensor, MarksABreak) {
   EXPECT_EQ(decoder.order().clockJumps(), 1U);
 }
 
-TEST_P(EachSensor, SurvivesAnyBytes) {
+TEST_P(EachSensor, AcceptsAnyBytes) {
   constexpr std::uint64_t kSeed = 3;
   Random random(kSeed);
   Decoder decoder = this->decoder();
@@ -262,7 +262,7 @@ TEST_P(EachSensor, SurvivesAnyBytes) {
   }
 }
 
-TEST_F(DecoderTest, FindsTheAxes) {
+TEST_F(DecoderTest, UsesTheSensorsAxes) {
   Decoder decoder(makeSensorModel("vlp16"));
   PacketEncoder encoder("vlp16");
   // The laser 15 degrees up is the last one of a firing.
@@ -281,7 +281,7 @@ TEST_F(DecoderTest, FindsTheAxes) {
   }
 }
 
-TEST_F(DecoderTest, TurnsOnWhileTheLasersFire) {
+TEST_F(DecoderTest, AppliesTheDelaysOfLasers) {
   // By the manuals: a VLP-16's laser fires each 2.304 us, an HDL-32E's each 1.152 us.
   const struct {
     const char* name;
@@ -300,7 +300,7 @@ TEST_F(DecoderTest, TurnsOnWhileTheLasersFire) {
   EXPECT_NEAR(Decoder(makeSensorModel("vls128")).stagger(), 2 * 6.354, 1e-9);
 }
 
-TEST_F(DecoderTest, FollowsAMotorThatChangesItsSpeed) {
+TEST_F(DecoderTest, FollowsChangesOfSpeed) {
   Decoder decoder(makeSensorModel("hdl32e"));
   PacketEncoder encoder("hdl32e");
   std::vector<SavedColumn> columns;
@@ -314,13 +314,13 @@ TEST_F(DecoderTest, FollowsAMotorThatChangesItsSpeed) {
   }
 }
 
-TEST_F(DecoderTest, DoesNotTrustFactoryBytes) {
+TEST_F(DecoderTest, AcceptsWrongFactoryBytes) {
   Decoder decoder(makeSensorModel("vlp16"));
   PacketEncoder encoder("vlp16");
   encoder.model_byte = 0x21;
   EXPECT_EQ(columnsOf(decoder, encoder.next(constantWorld({5000, 1}))).size(), 24U);
   EXPECT_EQ(decoder.counts().says_other_model, 1U);
-  // Blocks that do not come in pairs are no dual returns, whatever the mode says.
+  // Blocks that do not come in pairs are single returns in any mode.
   Bytes payload = encoder.next(constantWorld({5000, 1}));
   payload[1204] = 0x39;
   EXPECT_EQ(columnsOf(decoder, payload).size(), 24U);
@@ -367,8 +367,8 @@ TEST_F(DecoderTest, RefusesUnknownSensorsAndBadCalibrations) {
             std::string::npos);
 }
 
-TEST_F(DecoderTest, KeepsPointsBeforeTheSensor) {
-  // A distance that a correction turns around is none.
+TEST_F(DecoderTest, DropsNegativeDistances) {
+  // A correction may make a distance negative.
   Decoder decoder(makeSensorModel("hdl64e", calibration(calibrationXml([](int laser) {
                                     auto values = usualCalibration(laser);
                                     values["distCorrection_"] = -100;

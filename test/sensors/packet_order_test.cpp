@@ -52,7 +52,7 @@ TEST(PacketOrder, FindsLatePacketsAndCopies) {
   EXPECT_EQ(order.clockJumps(), 0U);
 }
 
-TEST(PacketOrder, NoticesThatTheClockWasSet) {
+TEST(PacketOrder, DetectsAClockThatWasSet) {
   PacketOrder order;
   constexpr double kMinute = 60e6 / kPeriodUs;
   EXPECT_EQ(placesOf(order, {0, 1, kMinute, kMinute + 1, 2, 3}, 1e6),
@@ -61,7 +61,7 @@ TEST(PacketOrder, NoticesThatTheClockWasSet) {
   EXPECT_EQ(order.missing(), 0U);
 }
 
-TEST(PacketOrder, NoticesThatARecordingStartsAgain) {
+TEST(PacketOrder, DetectsARestartedRecording) {
   PacketOrder order;
   std::vector<double> periods;
   for (int i = 0; i < 100; ++i) periods.push_back(i);
@@ -72,7 +72,7 @@ TEST(PacketOrder, NoticesThatARecordingStartsAgain) {
   EXPECT_EQ(order.clockJumps(), 1U);
 }
 
-TEST(PacketOrder, GoesOnIfTheClockStands) {
+TEST(PacketOrder, AcceptsAClockThatStands) {
   PacketOrder order;
   const std::vector<Place> places = placesOf(order, std::vector<double>(40, 3.));
   for (std::size_t i = 0; i < places.size(); ++i)
@@ -81,7 +81,7 @@ TEST(PacketOrder, GoesOnIfTheClockStands) {
   EXPECT_EQ(order.missing(), 0U);
 }
 
-TEST(PacketOrder, TellsTheUsualGap) {
+TEST(PacketOrder, MeasuresTheUsualGap) {
   PacketOrder order;
   std::vector<double> periods;
   for (int i = 0; i < 20; ++i) periods.push_back(2.4 * i + (i > 5 ? 7 : 0));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Packets and captures, made by what the sensors' manuals say.
+// Packets and captures by the sensors' manuals.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace lisco_test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// What one laser reports.
+/// The measurement of one laser.
 struct Measured {
   std::uint16_t distance = 0;  ///< in the sensor's units, 0: no return
   std::uint8_t intensity = 0;
@@ -50,7 +50,7 @@ class PacketEncoder {
   std::size_t firing_ = 0;
 };
 
-/// All lasers measure this.
+/// A world in which all lasers measure the same.
 PacketEncoder::World constantWorld(Measured measured);
 
 lisco_apps::Packet asPacket(const Bytes& payload, std::int64_t time_us = 0);
@@ -64,7 +64,7 @@ Bytes ipv6Of(const Bytes& content, bool with_options = false);
 Bytes ethernetOf(const Bytes& content, std::uint16_t type = 0x0800, std::size_t tags = 0);
 Bytes operator+(Bytes first, const Bytes& second);
 
-/// A frame, when it was captured, and how much of it was left out.
+/// A frame, the time of its capture, and its truncation.
 struct Frame {
   Bytes data;
   std::int64_t time_us = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// The numbers of PCL's grabber, where it decodes what we do: no capture of an HDL-64E is at hand.
+// The decoder against PCL's grabber on packets of an HDL-64E, of which there is no capture.
 #include <pcl/io/hdl_grabber.h>
 #include <pcl/point_types.h>
 
@@ -19,7 +19,7 @@ class Grabber : public pcl::HDLGrabber {
  public:
   explicit Grabber(const std::string& calibration_file) : HDLGrabber(calibration_file) {}
 
-  /// In our axes.
+  /// In the decoder's axes.
   pcl::PointXYZ point(std::uint16_t azimuth, std::size_t laser, Measured measured) const {
     pcl::PointXYZI point;
     computeXYZI(point, azimuth, {measured.distance, measured.intensity}, laser_corrections_[laser]);

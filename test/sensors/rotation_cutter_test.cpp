@@ -56,7 +56,7 @@ TEST(RotationCutter, CutsAtAnAngle) {
     }
 }
 
-TEST(RotationCutter, ForgivesStepsBack) {
+TEST(RotationCutter, AllowsStepsBack) {
   constexpr std::uint64_t kSeed = 5;
   Random random(kSeed);
   for (int run = 0; run < 200; ++run) {
@@ -75,7 +75,7 @@ TEST(RotationCutter, ForgivesStepsBack) {
   }
 }
 
-TEST(RotationCutter, ForgivesMissingColumns) {
+TEST(RotationCutter, AllowsMissingColumns) {
   constexpr std::uint64_t kSeed = 6;
   Random random(kSeed);
   for (int run = 0; run < 200; ++run) {
@@ -84,7 +84,7 @@ TEST(RotationCutter, ForgivesMissingColumns) {
     double angle = direction * 100;
     for (int i = 0; i < 2000; ++i) {
       const double before = angle;
-      // Not at once, so that it is known which way it turns.
+      // After some columns, which establish the direction of turning.
       angle += direction * (i > 20 && random.chance(0.01) ? random.between(0, 349) : 0.2);
       const bool starts = i == 0 || rotationAt(angle, 0, direction) != rotationAt(before, 0, direction);
       EXPECT_EQ(cutter.startsRotation(wrapped(angle)), starts)
@@ -93,7 +93,7 @@ TEST(RotationCutter, ForgivesMissingColumns) {
   }
 }
 
-TEST(RotationCutter, StartsAnewAfterABreak) {
+TEST(RotationCutter, StartsARotationAfterABreak) {
   for (const double direction : {1., -1.}) {
     RotationCutter cutter;
     EXPECT_TRUE(cutter.startsRotation(0));
@@ -105,7 +105,7 @@ TEST(RotationCutter, StartsAnewAfterABreak) {
   }
 }
 
-TEST(RotationCutter, StaysWithASensorThatStandsStill) {
+TEST(RotationCutter, KeepsTheRotationWhileTheSensorStandsStill) {
   RotationCutter cutter;
   EXPECT_TRUE(cutter.startsRotation(359.99));
   for (int i = 0; i < 1000; ++i) EXPECT_FALSE(cutter.startsRotation(i % 2 == 0 ? 0. : 359.99));

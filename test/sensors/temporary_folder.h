@@ -11,7 +11,7 @@
 
 namespace lisco_test {
 
-/// Tests with a folder of their own.
+/// A test with a temporary folder.
 class InTemporaryFolder : public testing::Test {
  protected:
   void SetUp() override {
@@ -24,7 +24,7 @@ class InTemporaryFolder : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// What the exception says that this throws.
+/// The message of the exception that a call throws.
 template <typename Call>
 std::string refusalOf(Call&& call) {
   try {

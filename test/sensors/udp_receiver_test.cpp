@@ -40,7 +40,7 @@ void send(const Bytes& payload, std::uint16_t port) {
   ::close(out);
 }
 
-TEST(UdpReceiver, GivesWhatComes) {
+TEST(UdpReceiver, GivesPackets) {
   UdpReceiver receiver(0);
   ASSERT_NE(receiver.port(), 0);
   const auto before = std::chrono::system_clock::now().time_since_epoch();
@@ -54,7 +54,7 @@ TEST(UdpReceiver, GivesWhatComes) {
   EXPECT_EQ(receiver.packets(), 4U);
 }
 
-TEST(UdpReceiver, GivesTheColumnsThatWereSent) {
+TEST(UdpReceiver, GivesTheColumnsSent) {
   UdpReceiver receiver(0);
   Decoder live(makeSensorModel("vls128")), direct(makeSensorModel("vls128"));
   std::vector<float> came, sent;
@@ -80,16 +80,16 @@ TEST(UdpReceiver, GivesTheColumnsThatWereSent) {
   EXPECT_EQ(live.order().missing() + live.counts().late, 0U);
 }
 
-TEST(UdpReceiver, DoesNotWaitForLong) {
+TEST(UdpReceiver, ReturnsWithin100Milliseconds) {
   UdpReceiver receiver(0);
   Packet packet;
   const auto start = Clock::now();
   EXPECT_EQ(receiver.next(packet), Arrival::kNothing);
-  // It says 100 ms; a busy machine may be late.
+  // 100 ms by contract; a busy machine may take longer.
   EXPECT_LT(Clock::now() - start, std::chrono::seconds(2));
 }
 
-TEST(UdpReceiver, SaysThatAPortIsTaken) {
+TEST(UdpReceiver, RefusesAPortInUse) {
   const UdpReceiver first(0);
   const std::string port = std::to_string(first.port());
   EXPECT_EQ(refusalOf([&] { UdpReceiver second(first.port()); }),

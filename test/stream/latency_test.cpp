@@ -13,7 +13,7 @@ using lisco_apps::Latency;
 
 TEST(Latency, IsZeroWithoutTimes) {
   EXPECT_EQ(Latency().percentileMs(0.5), 0);
-  EXPECT_EQ(Latency().mostMs(), 0);
+  EXPECT_EQ(Latency().maxMs(), 0);
 }
 
 TEST(Latency, GivesPercentilesToTwoPercent) {
@@ -24,16 +24,16 @@ TEST(Latency, GivesPercentilesToTwoPercent) {
   EXPECT_NEAR(latency.percentileMs(0.5), 5, 0.1);
   EXPECT_NEAR(latency.percentileMs(0.99), 9.9, 0.2);
   EXPECT_EQ(latency.percentileMs(1), 10);
-  EXPECT_EQ(latency.mostMs(), 10);
+  EXPECT_EQ(latency.maxMs(), 10);
 }
 
-TEST(Latency, TakesAnyTime) {
+TEST(Latency, AcceptsAnyDuration) {
   Latency latency;
   latency.add(std::chrono::nanoseconds(-5));
   latency.add(std::chrono::nanoseconds(0));
   latency.add(std::chrono::hours(100000));
   EXPECT_NEAR(latency.percentileMs(0.5), 1e-6, 1e-7);
-  EXPECT_EQ(latency.mostMs(), 3.6e11);
+  EXPECT_EQ(latency.maxMs(), 3.6e11);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ using lisco_apps::Packet;
 using lisco_apps::PacketQueue;
 using lisco_apps::PacketSource;
 
-/// So many packets that hold their number, then nothing or the end.
+/// `count` numbered packets, then nothing or the end.
 class Numbers : public PacketSource {
  public:
   Numbers(std::size_t count, bool ends) : count_(count), ends_(ends) {}
@@ -46,14 +46,14 @@ TEST(PacketQueue, GivesAllPacketsInOrderThenTheEnd) {
   EXPECT_EQ(queue.packets(), 5000U);
 }
 
-TEST(PacketQueue, SaysThatNothingComes) {
+TEST(PacketQueue, ReportsThatNoPacketComes) {
   PacketQueue queue(std::make_unique<Numbers>(1, false));
   Packet packet;
   EXPECT_EQ(queue.next(packet), PacketSource::Arrival::kPacket);
   EXPECT_EQ(queue.next(packet), PacketSource::Arrival::kNothing);
 }
 
-TEST(PacketQueue, GivesWhatHasComeAfterItWasStopped) {
+TEST(PacketQueue, GivesReceivedPacketsAfterStop) {
   PacketQueue queue(std::make_unique<Numbers>(100, false));
   Packet packet;
   ASSERT_EQ(queue.next(packet), PacketSource::Arrival::kPacket);
@@ -65,7 +65,7 @@ TEST(PacketQueue, GivesWhatHasComeAfterItWasStopped) {
   EXPECT_EQ(queue.packets(), 100U);
 }
 
-TEST(PacketQueue, LosesOnlyWhatDoesNotFit) {
+TEST(PacketQueue, LosesOnlyPacketsBeyondItsCapacity) {
   PacketQueue queue(std::make_unique<Numbers>(100000, true));
   Packet packet;
   std::int64_t last = 0;

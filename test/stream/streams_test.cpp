@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Both ways of clustering a stream, on columns as no sensor sends them.
+// Both kinds of streams on irregular columns.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,8 +25,8 @@ using lisco_apps::Stream;
 using lisco_apps::StreamOptions;
 using lisco_apps::Turn;
 
-/// Checks that what it is told agrees.
-class Witness : public lisco_apps::Listener {
+/// Checks that the results of a stream agree with each other.
+class ConsistencyChecker : public lisco_apps::Listener {
  public:
   void rotation(const Turn& turn, const std::vector<FoundCluster>& clusters, lisco_apps::Clock::duration) override {
     EXPECT_EQ(turn.number, ++turns);
@@ -39,7 +39,7 @@ class Witness : public lisco_apps::Listener {
   }
   void cluster(const DeliveredCluster& cluster) override {
     EXPECT_EQ(cluster.found.id, ++found);
-    told_[cluster.found.id] = cluster.found.size();
+    delivered_[cluster.found.id] = cluster.found.size();
   }
   void turnEnds(const Turn& turn) override {
     EXPECT_EQ(turn.number, ++turns);
@@ -47,13 +47,13 @@ class Witness : public lisco_apps::Listener {
   }
   void turnIsLabelled(const Turn& turn) override {
     EXPECT_EQ(turn.number, ++labelled_);
-    for (const auto& [label, size] : labelsOf(turn)) seen_[label] += size;
+    for (const auto& [label, size] : labelsOf(turn)) sizes_by_label_[label] += size;
   }
 
-  /// When a stream without end has ended.
+  /// To be called after the end of an endless stream.
   void expectAllLabelled() const {
     EXPECT_EQ(labelled_, turns);
-    EXPECT_EQ(seen_, told_);
+    EXPECT_EQ(sizes_by_label_, delivered_);
   }
 
   std::uint64_t turns = 0, columns = 0, found = 0;
@@ -68,10 +68,10 @@ class Witness : public lisco_apps::Listener {
   }
 
   std::uint64_t labelled_ = 0;
-  std::map<std::uint32_t, std::size_t> told_, seen_;  ///< sizes
+  std::map<std::uint32_t, std::size_t> delivered_, sizes_by_label_;  ///< sizes
 };
 
-/// Columns of a VLP-16 that mostly turns on; sometimes it does not, or its clock does not.
+/// Columns of a VLP-16 with jumps of its azimuth and clock.
 void feed(Stream& stream, Random& random, std::size_t columns) {
   std::vector<Cell> cells(16);
   double azimuth = 0, time_us = 0;
@@ -98,7 +98,7 @@ void feed(Stream& stream, Random& random, std::size_t columns) {
   }
 }
 
-TEST(Streams, TakeColumnsAsNoSensorSendsThem) {
+TEST(Streams, AcceptIrregularColumns) {
   constexpr std::uint64_t kSeed = 5;
   for (const float tolerance : {0.1F, 1.5F}) {
     StreamOptions options;
@@ -109,7 +109,7 @@ TEST(Streams, TakeColumnsAsNoSensorSendsThem) {
     decoder.setStep(0.8);
     constexpr std::size_t kColumns = 30000;
 
-    Witness of_rotations;
+    ConsistencyChecker of_rotations;
     lisco_apps::RotationStream rotations(options, decoder, of_rotations);
     Random random(kSeed);
     feed(rotations, random, kColumns);
@@ -118,7 +118,7 @@ TEST(Streams, TakeColumnsAsNoSensorSendsThem) {
     EXPECT_EQ(rotations.columnLatency().count(), kColumns);
     EXPECT_EQ(rotations.clusterLatency().count(), of_rotations.turns);
 
-    Witness of_endless;
+    ConsistencyChecker of_endless;
     lisco_apps::EndlessStream endless(options, decoder, of_endless);
     Random again(kSeed);
     feed(endless, again, kColumns);
@@ -133,7 +133,7 @@ TEST(Streams, TakeColumnsAsNoSensorSendsThem) {
 
 TEST(Streams, OfNoColumnsFindNothing) {
   Decoder decoder(lisco_apps::makeSensorModel("vlp16"));
-  Witness witness;
+  ConsistencyChecker witness;
   lisco_apps::RotationStream rotations({}, decoder, witness);
   lisco_apps::EndlessStream endless({}, decoder, witness);
   for (Stream* stream : {static_cast<Stream*>(&rotations), static_cast<Stream*>(&endless)}) {

@@ -20,7 +20,7 @@ TEST(TurnPosition, UnrollsTheAzimuth) {
     EXPECT_NEAR(position.next(degree % 360, kStep, false), degree / 360., 1e-12);
 }
 
-TEST(TurnPosition, StaysIfTheAzimuthStepsBack) {
+TEST(TurnPosition, IsUnchangedIfTheAzimuthStepsBack) {
   for (const std::optional<double> by_time : {std::optional<double>(kStep), std::optional<double>()}) {
     TurnPosition position;
     position.next(359, by_time, false);
@@ -31,7 +31,7 @@ TEST(TurnPosition, StaysIfTheAzimuthStepsBack) {
   }
 }
 
-TEST(TurnPosition, GoesFurtherIfColumnsAreMissing) {
+TEST(TurnPosition, SkipsMissingTurns) {
   TurnPosition position;
   position.next(10, kStep, false);
   EXPECT_NEAR(position.next(280, 0.74, false), 280. / 360, 1e-12);
@@ -39,7 +39,7 @@ TEST(TurnPosition, GoesFurtherIfColumnsAreMissing) {
   EXPECT_NEAR(position.next(100, 3.52, false), 5 + 100. / 360, 1e-12);  // 3 1/2 turns, by time
 }
 
-TEST(TurnPosition, GoesATurnFurtherAtLeastAfterABreak) {
+TEST(TurnPosition, AdvancesAtLeastATurnAfterABreak) {
   TurnPosition position;
   position.next(100, kStep, false);
   EXPECT_NEAR(position.next(110, std::nullopt, true), 1 + 110. / 360, 1e-12);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/far/constants.h"
+#include "core/far/far_range.h"
 
 namespace lisco {
 
@@ -14,23 +15,6 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-/// The horizontal distance from which on returns are far, metres; infinite if the hints are of no help.
-double minRangeFor(const Tolerance& tolerance, const SensorHints& hints, double steps) {
-  const double step = 2 * kPi / steps;
-  const bool is_rough = static_cast<double>(hints.roughness) > tolerance.reach();
-  const double spacing = std::sqrt((is_rough ? kRoughReturnsPerSquare : kReturnsPerSquare) * step *
-                                   static_cast<double>(hints.elevation_step));
-  // As near as that, unless a mask would reach over more than kMaxReach bins.
-  const double min_range =
-      tolerance.reach() * std::max({1 / spacing, kMinRangeInTolerances, 1 / std::sin((kMaxReach - 3) * step)});
-  const bool is_origin_valid = std::all_of(hints.origin.begin(), hints.origin.end(),
-                                           [](float coordinate) { return std::fabs(coordinate) <= kMaxRange; });
-  const bool is_useful = is_origin_valid && steps >= kMinSteps && steps <= kMaxSteps && tolerance.joinsAnything() &&
-                         spacing > 1e-5 && spacing < 10 && min_range > 1e-18 && min_range < 1e15 &&
-                         min_range < static_cast<double>(hints.far_distance);
-  return is_useful ? min_range : std::numeric_limits<double>::infinity();
-}
 
 }  // namespace
 
@@ -43,21 +27,13 @@ void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hint
   placed = end = 0;
   full = elevations_changed = false;
 
-  const auto new_steps = static_cast<std::size_t>(std::clamp(hints.steps_per_turn, 1, 1 << 30));
-  const double min_range = minRangeFor(tolerance, hints, static_cast<double>(new_steps));
-  range = FarRange();
-  range.origin = hints.origin;
-  range.min_range = range.interior_min = kInfinity;
-  if (std::isinf(min_range)) {
+  range = farRangeFor(tolerance, hints);
+  if (std::isinf(range.min_range)) {
     steps = 0;
     return;
   }
-  reach = static_cast<float>(tolerance.reach()) * 1.00001F;
-  range.min_range = static_cast<float>(min_range);
-  range.max_range = kMaxRange;
-  // Distances are rounded, and so are these sums.
-  range.interior_min = range.min_range * 1.00001F + reach;
-  range.interior_max = kMaxRange * 0.9999F - reach;
+  const auto new_steps = static_cast<std::size_t>(hints.steps_per_turn);
+  reach = paddedReach(tolerance);
   direction = hints.clockwise ? -1.0F : 1.0F;
   const std::size_t new_bins = (std::min(columns, new_steps) + kSector - 1) / kSector * kSector + 4 * kMargin;
   if (new_steps != steps || new_bins > bins) {

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <pcl/pcl_base.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include "io/clusters.h"
+#include "reference/paper_lisco.h"
+
+namespace lisco_apps {
+
+using ComparedPoint = pcl::PointXYZI;  ///< what drivers of LiDARs deliver
+using ComparedCloud = pcl::PointCloud<ComparedPoint>;
+
+/// The input of every baseline.
+struct Problem {
+  ComparedCloud::ConstPtr cloud;  ///< organized as read; NaN where there is no return, and at the ground
+  pcl::IndicesConstPtr returns;   ///< its returns, ascending, for baselines that need indices
+  double tolerance = 0;           ///< metres
+  unsigned min_size = 10;
+  unsigned max_size = std::numeric_limits<int>::max();
+};
+
+/// A method of clustering, from a cloud to PCL's vector of clusters.
+struct Baseline {
+  std::string key;                                         ///< on the command line and in CSV and JSON
+  std::string title;                                       ///< in tables and charts
+  std::function<void(const Problem&, Clusters&)> extract;  ///< appends clusters; keeps its memory from call to call
+  unsigned color = 0;                                      ///< in charts, 0xRRGGBB
+  bool timed = true;                                       ///< false: clusters are compared only
+  bool needs_rows = false;                                 ///< takes organized clouds only
+};
+
+/// Key of the reference, PCL with KdTree (false), whose clusters are the right ones.
+inline constexpr const char* kReferenceKey = "pcl";
+Baseline referenceBaseline();
+
+/// All baselines, the reference first, each with memory of its own.
+std::vector<Baseline> allBaselines();
+
+/// The angles of Algorithm 2: a turn by the steps, and the smallest difference of successive rows' median elevations.
+lisco_reference::NominalSensor nominalSensor(const ComparedCloud& cloud);
+
+}  // namespace lisco_apps

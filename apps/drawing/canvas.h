@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cairo.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "io/text.h"
+
+namespace lisco_apps {
+
+/// Parts of full brightness, 0 to 1.
+struct Color {
+  double red, green, blue;
+
+  Color shaded(double factor) const { return {red * factor, green * factor, blue * factor}; }
+  std::uint32_t argb() const {
+    const auto byte = [](double value) { return static_cast<std::uint32_t>(std::lround(value * 255)); };
+    return 0xFF000000U | byte(red) << 16 | byte(green) << 8 | byte(blue);
+  }
+};
+
+constexpr Color kBackground{0.055, 0.06, 0.075};
+constexpr Color kGround{0.24, 0.22, 0.19};
+constexpr Color kNoise{0.52, 0.52, 0.52};
+constexpr Color kText{0.93, 0.93, 0.93};
+constexpr Color kLine{0.30, 0.32, 0.36};
+/// Colours of clusters: distinct on a dark background, also with most kinds of colour blindness.
+constexpr Color kPalette[] = {{0.90, 0.62, 0.00}, {0.34, 0.71, 0.91}, {0.00, 0.72, 0.50}, {0.94, 0.89, 0.26},
+                              {0.20, 0.48, 0.95}, {0.90, 0.33, 0.10}, {0.90, 0.45, 0.75}, {0.62, 0.88, 0.30},
+                              {0.66, 0.46, 1.00}, {1.00, 0.75, 0.65}, {0.30, 0.90, 0.90}, {0.92, 0.18, 0.38}};
+
+/// A picture in memory, drawn by Cairo. Lengths in pixels, x to the right, y down; drawing starts from kBackground and
+/// is clipped to the picture.
+class Canvas {
+ public:
+  enum class Align { kLeft, kCenter, kRight };
+
+  /// \throws std::runtime_error if the size is beyond Cairo's limits
+  Canvas(int width, int height)
+      : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height), cairo_surface_destroy),
+        context_(cairo_create(surface_.get()), cairo_destroy),
+        width_(width),
+        height_(height) {
+    if (const cairo_status_t status = cairo_status(context_.get()); status != CAIRO_STATUS_SUCCESS)
+      throw std::runtime_error(std::string("cannot draw a picture: ") + cairo_status_to_string(status));
+    setColor(kBackground);
+    cairo_paint(context_.get());
+    cairo_select_font_face(context_.get(), "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  }
+
+  int width() const { return width_; }
+
+  /// Sets pixels directly; to be called between beginPixels () and endPixels ().
+  void fillPixels(int x, int y, int w, int h, std::uint32_t argb) {
+    unsigned char* const pixels = cairo_image_surface_get_data(surface_.get());
+    const int stride = cairo_image_surface_get_stride(surface_.get());
+    for (int row = std::max(0, y); row < std::min(height_, y + h); ++row)
+      for (int column = std::max(0, x); column < std::min(width_, x + w); ++column)
+        std::memcpy(pixels + static_cast<std::ptrdiff_t>(row) * stride + column * 4, &argb, 4);
+  }
+  void beginPixels() { cairo_surface_flush(surface_.get()); }
+  void endPixels() { cairo_surface_mark_dirty(surface_.get()); }
+
+  /// The colour of all that follows but pixels.
+  void setColor(const Color& color, double opacity = 1.0) {
+    cairo_set_source_rgba(context_.get(), color.red, color.green, color.blue, opacity);
+  }
+  void fillRectangle(double x, double y, double w, double h) {
+    cairo_rectangle(context_.get(), x, y, w, h);
+    cairo_fill(context_.get());
+  }
+  void strokeRectangle(double x, double y, double w, double h, double line_width) {
+    cairo_rectangle(context_.get(), x, y, w, h);
+    stroke(line_width);
+  }
+  void circle(double x, double y, double radius, double line_width) {
+    cairo_new_path(context_.get());
+    cairo_arc(context_.get(), x, y, radius, 0, 2 * M_PI);
+    stroke(line_width);
+  }
+  void line(double x0, double y0, double x1, double y1, double line_width) {
+    cairo_move_to(context_.get(), x0, y0);
+    cairo_line_to(context_.get(), x1, y1);
+    stroke(line_width);
+  }
+  /// \param x, y where the baseline begins, has its middle, or ends, as aligned
+  /// \return width of the text
+  double text(double x, double y, double size, const std::string& what, Align align = Align::kLeft) {
+    cairo_set_font_size(context_.get(), size);
+    cairo_text_extents_t extents;
+    cairo_text_extents(context_.get(), what.c_str(), &extents);
+    const double shift = align == Align::kLeft ? 0.0 : (align == Align::kCenter ? 0.5 : 1.0);
+    cairo_move_to(context_.get(), x - shift * extents.x_advance, y);
+    cairo_show_text(context_.get(), what.c_str());
+    return extents.x_advance;
+  }
+
+  /// \throws std::runtime_error with one line if the file cannot be written
+  void save(const std::filesystem::path& png) {
+    const cairo_status_t status = cairo_surface_write_to_png(surface_.get(), png.c_str());
+    if (status != CAIRO_STATUS_SUCCESS) fail(png, std::string("cannot be written: ") + cairo_status_to_string(status));
+  }
+
+ private:
+  void stroke(double line_width) {
+    cairo_set_line_width(context_.get(), line_width);
+    cairo_stroke(context_.get());
+  }
+
+  std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface_;
+  std::unique_ptr<cairo_t, decltype(&cairo_destroy)> context_;
+  int width_, height_;
+};
+
+}  // namespace lisco_apps

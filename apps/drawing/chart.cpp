@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "drawing/chart.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+
+#include "io/text.h"
+
+namespace lisco_apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// In single quotes, for gnuplot or the shell, which escape quotes inside differently.
+std::string quoted(const std::string& text, const char* quote_inside) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string(quote_inside) : std::string(1, c == '\n' ? ' ' : c);
+  return result + "'";
+}
+std::string forGnuplot(const std::string& text) {
+  return quoted(text, "''");
+}
+std::string forShell(const std::string& text) {
+  return quoted(text, "'\\''");
+}
+
+void writeScript(const Chart& chart, const fs::path& png, std::ostream& script) {
+  // Of the points alone: error bars may reach below 0, which a logarithmic axis cannot show.
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = 0;
+  for (const Chart::Line& line : chart.lines)
+    for (const Chart::Point& point : line.points) {
+      lowest = std::min(lowest, point.y);
+      highest = std::max(highest, point.y);
+    }
+  script << "set terminal pngcairo noenhanced font ',11' size 900,620 background '#ffffff'\n"
+         << "set output " << forGnuplot(png.string()) << '\n'
+         << "set title " << forGnuplot(chart.title) << '\n'
+         << "set xlabel " << forGnuplot(chart.x_label) << '\n'
+         << "set ylabel " << forGnuplot(chart.y_label) << '\n'
+         << "set logscale y\nset grid ytics xtics back linetype 1 linecolor rgb '#dcdcdc' linewidth 1\nset key outside "
+            "bottom center horizontal\n"
+         << "set offsets graph 0.02, graph 0.02\nset border 3\nset tics nomirror\nset bars small\n"
+         << "set format y '%g'\n"
+         << "set yrange [" << lowest / 2 << ':' << highest * 2 << "]\n"
+         << (chart.log_x ? "set logscale x\n" : "");
+  for (std::size_t i = 0; i < chart.lines.size(); ++i) {
+    script << "$line" << i << " << END\n";
+    for (const Chart::Point& point : chart.lines[i].points)
+      script << point.x << ' ' << point.y << ' ' << (std::isfinite(point.error) ? point.error : 0.0) << '\n';
+    script << "END\n";
+  }
+  for (std::size_t i = 0; i < chart.lines.size(); ++i)
+    script << (i == 0 ? "plot " : ", ") << "$line" << i << " using 1:2:3 with yerrorlines lw 2 pt " << 5 + i % 8
+           << " ps 0.8 lc rgb " << chart.lines[i].color << " title " << forGnuplot(chart.lines[i].title);
+  script << '\n';
+}
+
+}  // namespace
+
+void checkGnuplot() {
+  // Called while there is one thread only. NOLINTNEXTLINE(concurrency-mt-unsafe)
+  if (std::system("gnuplot --version >/dev/null 2>&1") != 0)
+    throw std::runtime_error("charts need gnuplot (Debian's package gnuplot-nox)");
+}
+
+void drawChart(const Chart& chart, const fs::path& png) {
+  if (chart.lines.empty()) return;
+  const fs::path script = png.string() + ".gnuplot";
+  std::ofstream stream(script);
+  stream.precision(10);
+  writeScript(chart, png, stream);
+  stream.close();
+  // NOLINTNEXTLINE(concurrency-mt-unsafe)
+  const bool drawn = stream && std::system(("gnuplot " + forShell(script.string()) + " >/dev/null 2>&1").c_str()) == 0;
+  std::error_code ignored;
+  fs::remove(script, ignored);
+  if (!drawn || !fs::exists(png)) fail(png, "cannot be drawn");
+}
+
+}  // namespace lisco_apps

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "io/options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <stdexcept>
+
+#include "lisco/version.h"
+
+namespace lisco_apps {
+
+namespace po = boost::program_options;
+
+namespace {
+
+/// The value of a whole text by std::stod or the like; `invalid` if it has none.
+template <typename Value, typename Parse>
+Value parsed(const std::string& text, Value invalid, Parse&& parse) {
+  try {
+    std::size_t end = 0;
+    const Value value = parse(text, &end);
+    return end == text.size() ? value : invalid;
+  } catch (const std::exception&) {
+    return invalid;
+  }
+}
+
+double parsedNumber(const std::string& text) {
+  return parsed(text, std::nan(""), [](const std::string& t, std::size_t* end) { return std::stod(t, end); });
+}
+
+}  // namespace
+
+unsigned countOf(const std::string& text, const char* option, int min, int max) {
+  const long long value = parsed(text, -1LL, [](const std::string& t, std::size_t* end) { return std::stoll(t, end); });
+  if (value < min || value > max)
+    throw std::runtime_error(std::string(option) + " must be a whole number from " + std::to_string(min) + " to " +
+                             std::to_string(max) + ", not '" + text + "'");
+  return static_cast<unsigned>(value);
+}
+
+double numberOf(const std::string& text, const char* option) {
+  const double value = parsedNumber(text);
+  if (!std::isfinite(value)) throw std::runtime_error(std::string(option) + " must be a number, not '" + text + "'");
+  return value;
+}
+
+double toleranceOf(const std::string& text) {
+  const double tolerance = parsedNumber(text);
+  if (!(tolerance > 0) || !std::isfinite(tolerance))
+    throw std::runtime_error("--tolerance must be a positive number of metres, not '" + text + "'");
+  return tolerance;
+}
+
+float heightOf(const std::string& text) {
+  const auto height = static_cast<float>(numberOf(text, "--ground-z"));
+  if (!std::isfinite(height)) throw std::runtime_error("--ground-z must be a number of metres, not '" + text + "'");
+  return height;
+}
+
+std::vector<std::string> itemsOf(const std::string& text) {
+  std::vector<std::string> items(1);
+  for (const char c : text)
+    if (c == ',')
+      items.emplace_back();
+    else
+      items.back() += c;
+  return items;
+}
+
+bool readCommandLine(int argc, char** argv, const char* program, po::options_description& shown,
+                     std::vector<std::string>* inputs, po::variables_map& given,
+                     const po::options_description& hidden) {
+  shown.add_options()("help,h", "print this and exit")("version", "print the version and exit");
+  po::options_description all;
+  all.add(shown).add(hidden);
+  std::vector<std::string> others;
+  all.add_options()("input", po::value<std::vector<std::string>>(inputs != nullptr ? inputs : &others));
+  po::positional_options_description positional;
+  positional.add("input", -1);
+  try {
+    po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), given);
+  } catch (const po::error& error) {
+    throw std::runtime_error(std::string(error.what()) + "; see --help");
+  }
+  if (given.count("help") != 0) {
+    std::cout << shown;
+    return false;
+  }
+  if (given.count("version") != 0) {
+    std::cout << program << ' ' << LISCO_VERSION << '\n';
+    return false;
+  }
+  po::notify(given);
+  if (!others.empty()) throw std::runtime_error("'" + others.front() + "' is no option; see --help");
+  return true;
+}
+
+void ClusterOptions::addTo(po::options_description& shown) {
+  // clang-format off
+  shown.add_options()
+    ("tolerance,t", po::value<std::string>(&tolerance_)->value_name("M"),
+     "points nearer to each other than this many metres belong together")
+    ("min-size", po::value<std::string>(&min_size_)->value_name("N"), "least returns of a cluster (default 10)")
+    ("max-size", po::value<std::string>(&max_size_)->value_name("N"), "most returns of a cluster (default: no limit)")
+    ("ground-z", po::value<std::string>(&ground_z_)->value_name("M"),
+     "leave out returns below this height in metres, in the input's coordinates (default: none)");
+  // clang-format on
+}
+
+void ClusterOptions::check(const po::variables_map& given) {
+  if (given.count("tolerance") == 0) throw std::runtime_error("--tolerance is missing; see --help");
+  tolerance = toleranceOf(tolerance_);
+  if (given.count("ground-z") != 0) ground_z = heightOf(ground_z_);
+  min_size = countOf(min_size_, "--min-size", 1);
+  if (given.count("max-size") != 0) max_size = countOf(max_size_, "--max-size", 1);
+  if (max_size < min_size) throw std::runtime_error("--max-size is smaller than --min-size");
+}
+
+GroundHeights::GroundHeights(const std::vector<std::string>& items) {
+  for (const std::string& item : items) {
+    const std::size_t equals = item.rfind('=');
+    const std::string name = equals == std::string::npos ? "" : item.substr(0, equals);
+    const std::string height = equals == std::string::npos ? item : item.substr(equals + 1);
+    of_name_[name] = heightOf(height);
+  }
+}
+
+std::vector<std::string> GroundHeights::namesNotIn(const std::vector<std::string>& names) const {
+  std::vector<std::string> unknown;
+  for (const auto& [name, height] : of_name_)
+    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) unknown.push_back(name);
+  return unknown;
+}
+
+float GroundHeights::of(const std::string& name) const {
+  for (const std::string& key : {name, std::string()}) {
+    const auto found = of_name_.find(key);
+    if (found != of_name_.end()) return found->second;
+  }
+  return -std::numeric_limits<float>::infinity();
+}
+
+}  // namespace lisco_apps

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "io/output_file.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <fstream>
+#include <system_error>
+
+#include "io/text.h"
+
+namespace lisco_apps {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Names of files and folders made aside end with these and the number of the process that makes them.
+constexpr const char* kFilePartial = ".partial";
+constexpr const char* kFolderPartial = ".lisco_partial_";
+constexpr std::size_t kSignatureBytes = 1024;  ///< the beginning of a file, which holds its signature
+
+/// Removes the leftovers of killed processes: entries of a folder whose names are `prefix` and the number of no running
+/// process.
+void removeAbandoned(const fs::path& folder, const std::string& prefix) {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() <= prefix.size() || name.compare(0, prefix.size(), prefix) != 0) continue;
+    char* end = nullptr;
+    const long process = std::strtol(name.c_str() + prefix.size(), &end, 10);
+    if (*end == '\0' && process > 0 && kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH)
+      fs::remove_all(entry.path(), ignored);
+  }
+}
+
+/// Runs an action at the end of its scope, unless its function is replaced by nullptr.
+struct AtEnd {
+  std::function<void()> run;
+
+  explicit AtEnd(std::function<void()> action) : run(std::move(action)) {}
+  ~AtEnd() {
+    if (run) run();
+  }
+  AtEnd(const AtEnd&) = delete;
+  AtEnd& operator=(const AtEnd&) = delete;
+};
+
+/// Checks that entries can be made in an existing folder.
+/// \param wanted named in the error
+void checkWritable(const fs::path& folder, const fs::path& wanted) {
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    fail(wanted, "cannot be written: " + std::generic_category().message(errno));
+}
+
+}  // namespace
+
+void checkMayWrite(const fs::path& file, const std::string& signature) {
+  std::error_code error;
+  const fs::path folder = fs::absolute(file).parent_path();
+  if (!fs::exists(file, error)) {
+    if (!fs::is_directory(folder, error)) fail(file, "cannot be written: there is no folder " + folder.string());
+    checkWritable(folder, file);
+    return;
+  }
+  if (!fs::is_regular_file(file, error)) fail(file, "is no file");
+  checkWritable(folder, file);
+  std::string beginning(kSignatureBytes, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+  beginning.resize(static_cast<std::size_t>(stream.gcount()));
+  if (beginning.find(signature) == std::string::npos)
+    fail(file, "exists and was not written by this program; choose another name");
+}
+
+void writeOwnFile(const fs::path& file, const std::string& content, const std::string& signature) {
+  checkMayWrite(file, signature);
+  const fs::path aside = file.string() + kFilePartial + std::to_string(getpid());
+  removeAbandoned(fs::absolute(file).parent_path(), file.filename().string() + kFilePartial);
+  errno = 0;
+  std::ofstream stream(aside, std::ios::binary);
+  stream << content;
+  stream.close();
+  std::error_code error(stream ? 0 : errno, std::generic_category());
+  if (stream) fs::rename(aside, file, error);
+  if (!stream || error) {
+    std::error_code ignored;
+    fs::remove(aside, ignored);
+    fail(file, "cannot be written" + (error ? ": " + error.message() : ""));
+  }
+}
+
+void checkMayWriteInto(const fs::path& folder, const std::vector<std::string>& names) {
+  std::error_code error;
+  fs::path existing = fs::absolute(folder).lexically_normal();
+  while (!fs::exists(existing, error) && existing.has_relative_path()) existing = existing.parent_path();
+  if (!fs::is_directory(existing, error)) fail(folder, "cannot be written: " + existing.string() + " is no folder");
+  checkWritable(existing, folder);
+  if (fs::exists(folder / kResultMarker)) return;
+  for (const std::string& name : names)
+    if (fs::exists(folder / name))
+      fail(folder / name, "exists and was not written by this program; choose another folder");
+}
+
+void writeOwnFolder(const fs::path& folder, const std::vector<std::string>& names,
+                    const std::function<void(const fs::path&)>& make, const std::function<void()>& tidy) {
+  try {
+    std::error_code ignored;
+    std::vector<fs::path> made;  // innermost first
+    for (fs::path p = fs::absolute(folder).lexically_normal(); !p.empty() && !fs::exists(p); p = p.parent_path())
+      made.push_back(p);
+    AtEnd undo([&] {
+      for (const fs::path& p : made) fs::remove(p, ignored);  // only if empty
+    });
+    fs::create_directories(folder);
+    checkMayWriteInto(folder, names);
+    removeAbandoned(folder, kFolderPartial);
+    const fs::path aside = folder / (kFolderPartial + std::to_string(getpid()));
+    fs::create_directory(aside);
+    const AtEnd remove_aside([&] { fs::remove_all(aside, ignored); });
+    make(aside);
+    std::ofstream marker(folder / kResultMarker);
+    marker << "The results in this folder were written by lisco and may be replaced by it.\n";
+    marker.close();
+    if (!marker) fail(folder / kResultMarker, "cannot be written");
+    tidy();
+    for (const std::string& name : names) {
+      if (!fs::is_directory(aside / name)) {
+        if (fs::exists(aside / name)) fs::rename(aside / name, folder / name);
+        continue;
+      }
+      fs::create_directory(folder / name);  // may exist, with other files in it
+      for (const auto& entry : fs::directory_iterator(aside / name))
+        fs::rename(entry.path(), folder / name / entry.path().filename());
+    }
+    undo.run = nullptr;
+  } catch (const fs::filesystem_error& error) {
+    fs::path path = error.path2().empty() ? error.path1() : error.path2();
+    if (path.filename().string().rfind(kFolderPartial, 0) == 0) path = folder;  // the user's name for it
+    fail(path, "cannot be written: " + error.code().message());
+  }
+}
+
+std::vector<fs::path> filesIn(const fs::path& folder, const std::string& prefix, const std::string& ending) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().filename().string().rfind(prefix, 0) == 0 && entry.path().extension() == ending)
+      files.push_back(entry.path());
+  return files;
+}
+
+std::string pcdHeader(const std::string& comment, const std::string& fields, const std::string& types,
+                      std::size_t columns, std::size_t rows) {
+  const auto per_field = [&](char value) {
+    std::string line = types;
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return c != ' '; }, value);
+    return line;
+  };
+  return comment + "\n# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS " + fields + "\nSIZE " +
+         per_field('4') + "\nTYPE " + types + "\nCOUNT " + per_field('1') + "\nWIDTH " + std::to_string(columns) +
+         "\nHEIGHT " + std::to_string(rows) + "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(columns * rows) +
+         "\nDATA binary\n";
+}
+
+}  // namespace lisco_apps

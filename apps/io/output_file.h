@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace lisco_apps {
+
+/// The file that marks a folder as holding results of these programs.
+inline constexpr const char* kResultMarker = ".lisco_results";
+
+/// Checks that a file may be written: its folder exists and is writable, and the file does not exist or was written by
+/// these programs.
+/// \param signature text near the beginning of every file of this kind that these programs write
+/// \throws std::runtime_error with one line that says why not
+void checkMayWrite(const std::filesystem::path& file, const std::string& signature);
+
+/// Writes a file, all or nothing: beside its place first, then moved there. Checks as checkMayWrite () does. Makes no
+/// folders.
+/// \param content must hold `signature` within its first kilobyte
+/// \throws std::runtime_error with one line that says why it cannot be written
+void writeOwnFile(const std::filesystem::path& file, const std::string& content, const std::string& signature);
+
+/// Checks that files of these names may be written into a folder: these programs have written there before, or the
+/// folder has nothing of these names, or can be made.
+/// \throws std::runtime_error with one line that names what would be overwritten, is no folder, or is not writable
+void checkMayWriteInto(const std::filesystem::path& folder, const std::vector<std::string>& names);
+
+/// Writes files and folders of files into a folder, all or nothing: they are made aside and moved into place at the
+/// end. Makes the folder and those above it, and removes them again on failure. Checks as checkMayWriteInto () does.
+/// \param make writes all, or some, of `names` into the folder it is given
+/// \param tidy called before the files are moved into place, to remove those of an earlier run
+/// \throws std::runtime_error with one line that says what cannot be written
+void writeOwnFolder(
+    const std::filesystem::path& folder, const std::vector<std::string>& names,
+    const std::function<void(const std::filesystem::path& aside)>& make, const std::function<void()>& tidy = [] {});
+
+/// The files of a folder whose names begin with `prefix` and have this ending.
+/// \throws std::filesystem::filesystem_error if it cannot be read
+std::vector<std::filesystem::path> filesIn(const std::filesystem::path& folder, const std::string& prefix,
+                                           const std::string& ending);
+
+/// The header of an organized binary PCD whose fields hold one value of four bytes each.
+/// \param comment first line, begins with '#'
+/// \param fields, types such as "x y z label" and "F F F U"
+std::string pcdHeader(const std::string& comment, const std::string& fields, const std::string& types,
+                      std::size_t columns, std::size_t rows);
+
+}  // namespace lisco_apps

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <set>
+
+#include <pcl/io/pcd_io.h>
+
+#include "io/formats.h"
+
+namespace lisco_apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMaxPointBytes = 1e6;
+constexpr double kMaxCompression = 300;  ///< points, or bytes of data, that a byte of compressed data may hold
+
+/// The number of values in a line of ASCII data.
+std::size_t valuesIn(std::string_view line) {
+  constexpr std::string_view kBetween = " \t\r";
+  std::size_t count = 0;
+  while (true) {
+    line.remove_prefix(std::min(line.find_first_not_of(kBetween), line.size()));
+    if (line.empty()) return count;
+    const std::string_view value = line.substr(0, line.find_first_of(kBetween));
+    line.remove_prefix(value.size());
+    count += value.find_first_not_of("\v\f") != std::string_view::npos ? 1 : 0;
+  }
+}
+
+/// Checks a PCD file before PCL reads it: PCL 1.13's reader crashes without a header, allocates all the memory that a
+/// wrong one promises, and reads beyond lines and compressed data that are too short.
+void checkHeader(const fs::path& file, const fs::path& content) {
+  std::ifstream stream(content, std::ios::binary);
+  const auto file_size = static_cast<double>(fs::file_size(content));
+  std::vector<std::string> names, sizes, types, counts;
+  double width = 0, height = 1, points = 0;
+  constexpr std::array<std::string_view, 11> kKeys{"VERSION", "FIELDS", "COLUMNS",   "SIZE",   "TYPE", "COUNT",
+                                                   "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
+  std::set<std::string> seen;  // keys so far; each may come once
+  std::string line;
+  bool is_header = false;
+  std::vector<std::string> words;
+  for (int i = 0; i < kMaxHeaderLines && !is_header && std::getline(stream, line); ++i) {
+    words = wordsOf(line);
+    if (words.empty() || words.front()[0] == '#') continue;
+    const std::string key = words.front();
+    if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end() || !seen.insert(key).second ||
+        line.find_first_of("\v\f") != std::string::npos)
+      break;
+    const auto values = [&] { return std::vector<std::string>(words.begin() + 1, words.end()); };
+    if (key == "FIELDS" || key == "COLUMNS") names = values();
+    if (key == "SIZE") sizes = values();
+    if (key == "TYPE") types = values();
+    if (key == "COUNT") counts = values();
+    if (key == "WIDTH") width = headerCount(words, 1);
+    if (key == "HEIGHT") height = headerCount(words, 1);
+    if (key == "POINTS") points = headerCount(words, 1);
+    is_header = key == "DATA";
+  }
+  if (!is_header && !seen.empty()) fail(file, "is damaged or truncated: its header breaks off");
+  if (!is_header || names.empty()) fail(file, "is no pcd file: it has no header");
+  if (words.size() != 2 || (words[1] != "ascii" && words[1] != "binary" && words[1] != "binary_compressed"))
+    fail(file, "is damaged: its header does not say how its data are written");
+  if (counts.empty()) counts.assign(names.size(), "1");
+  if (sizes.size() != names.size() || types.size() != names.size() || counts.size() != names.size())
+    fail(file, "is damaged: its header does not describe each of its fields");
+  double values_of_point = 0;
+  double stored = 0;  // bytes of a point; compressed files leave out the padding
+  const bool is_compressed = words[1] == "binary_compressed";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const double size = headerCount(sizes, i);
+    const double count = headerCount(counts, i);
+    if (!(size == 1 || size == 2 || size == 4 || size == 8) || !(count >= 1 && count <= kMaxPointBytes) ||
+        types[i].size() != 1 || (types[i] != "F" && types[i] != "U" && types[i] != "I") ||
+        (types[i] == "F" && size < 4))
+      fail(file, "is damaged: its header describes a field '" + names[i] + "' of no known kind");
+    if (!is_compressed || names[i] != "_") stored += size * count;
+    values_of_point += count;
+  }
+  if (!(stored <= kMaxPointBytes)) fail(file, "is damaged: its header describes points of no sensible size");
+  const double max_points = file_size * (is_compressed ? kMaxCompression : 1);  // each takes a byte at least
+  if (!(width * height <= max_points) || !(points <= max_points))
+    fail(file, "is truncated: it holds fewer points than its header says");
+  if (words[1] == "ascii") {
+    while (std::getline(stream, line))
+      if (const std::size_t values = valuesIn(line); values != 0 && static_cast<double>(values) < values_of_point)
+        fail(file, "is truncated: a line of it holds fewer values than a point has");
+    return;
+  }
+  if (!is_compressed && static_cast<double>(stream.tellg()) + stored * width * height > file_size)
+    fail(file, "is truncated: it holds fewer points than its header says");
+  std::uint32_t compressed[2]{};  // bytes compressed and decompressed
+  if (is_compressed &&
+      (!stream.read(reinterpret_cast<char*>(compressed), sizeof compressed) ||
+       static_cast<double>(stream.tellg()) + compressed[0] > file_size || compressed[1] < stored * width * height ||
+       compressed[1] > kMaxCompression * (compressed[0] + 1.0)))
+    fail(file, "is truncated: it holds fewer points than its header says");
+}
+
+}  // namespace
+
+Cloud::Ptr readPcd(const fs::path& file, Labels* object_of) {
+  pcl::PCDReader reader;
+  return readByPcl(reader, file, "pcd", checkHeader, object_of);
+}
+
+}  // namespace lisco_apps

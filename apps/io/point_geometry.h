@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cmath>
+
+#include "lisco/return.h"
+
+namespace lisco_apps {
+
+constexpr double kPi = 3.14159265358979323846;
+
+template <typename Point>
+bool isReturn(const Point& p) {
+  return lisco::isReturn(p.x, p.y, p.z);
+}
+
+/// Distance from (0, 0, 0), metres.
+template <typename Point>
+double rangeOf(const Point& p) {
+  return std::hypot(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
+}
+
+/// Radians counterclockwise from +x.
+template <typename Point>
+double azimuthOf(const Point& p) {
+  return std::atan2(static_cast<double>(p.y), static_cast<double>(p.x));
+}
+
+/// Radians above the horizon.
+template <typename Point>
+double elevationOf(const Point& p) {
+  return std::atan2(static_cast<double>(p.z), std::hypot(static_cast<double>(p.x), static_cast<double>(p.y)));
+}
+
+}  // namespace lisco_apps

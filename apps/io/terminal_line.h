@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <string>
+
+namespace lisco_apps {
+
+/// A line on the terminal (stderr) that each show () replaces. Shows nothing if stderr is no terminal.
+class TerminalLine {
+ public:
+  /// \param enabled false: shows nothing on a terminal either
+  explicit TerminalLine(bool enabled = true) : shown_(enabled && isatty(STDERR_FILENO) != 0) {}
+  ~TerminalLine() { clear(); }
+  TerminalLine(const TerminalLine&) = delete;
+  TerminalLine& operator=(const TerminalLine&) = delete;
+
+  bool isShown() const { return shown_; }
+
+  /// \param line cut to the terminal's width, as clear () empties one line only
+  void show(std::string line) {
+    if (!shown_) return;
+    winsize size{};
+    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
+      line.resize(std::min<std::size_t>(line.size(), size.ws_col - 1U));
+    std::fprintf(stderr, "\r\033[K%s", line.c_str());
+    std::fflush(stderr);
+  }
+
+  /// Empties the line; to be called before anything else is printed.
+  void clear() {
+    if (shown_) std::fputs("\r\033[K", stderr);
+  }
+
+ private:
+  bool shown_;
+};
+
+/// A TerminalLine with the share of the work that is done.
+class ProgressBar {
+ public:
+  /// \param enabled false: shows nothing
+  explicit ProgressBar(bool enabled = true) : line_(enabled) {}
+
+  /// \param share of the work that is done, 0 to 1
+  /// \param what is being worked on
+  void show(double share, const std::string& what) {
+    constexpr std::size_t kWidth = 20;  // characters
+    const auto filled = static_cast<std::size_t>(kWidth * std::clamp(share, 0.0, 1.0));
+    line_.show("[" + std::string(filled, '=') + std::string(kWidth - filled, ' ') + "] " +
+               std::to_string(static_cast<int>(100 * share)) + "% " + what);
+  }
+
+  void clear() { line_.clear(); }
+
+ private:
+  TerminalLine line_;
+};
+
+}  // namespace lisco_apps

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstdarg>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace lisco_apps {
+
+/// Throws the one-line error of a file or folder.
+[[noreturn]] inline void fail(const std::filesystem::path& file, const std::string& what) {
+  throw std::runtime_error(file.string() + ": " + what);
+}
+
+/// "a, b, c"
+inline std::string listOf(const std::vector<std::string>& items, const char* separator = ", ") {
+  std::string list;
+  for (const std::string& item : items) list += (list.empty() ? "" : separator) + item;
+  return list;
+}
+
+/// printf to a string.
+__attribute__((format(printf, 1, 2))) inline std::string formatted(const char* format, ...) {
+  va_list arguments, again;
+  va_start(arguments, format);
+  va_copy(again, arguments);
+  std::string text(static_cast<std::size_t>(std::vsnprintf(nullptr, 0, format, arguments)), '\0');
+  std::vsnprintf(text.data(), text.size() + 1, format, again);
+  va_end(again);
+  va_end(arguments);
+  return text;
+}
+
+}  // namespace lisco_apps

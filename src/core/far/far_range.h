@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/far/constants.h"
+#include "core/neighbour.h"
+#include "core/ring_block.h"
+#include "lisco/sensor_hints.h"
+
+namespace lisco {
+
+/// Tolerance::reach () in float, rounded up.
+inline float paddedReach(const Tolerance& tolerance) {
+  return static_cast<float>(tolerance.reach()) * 1.00001F;
+}
+
+/// Which returns are far: those that see the tolerance under few bins and lasers. None (min_range infinite) if the hints
+/// are of no help.
+inline FarRange farRangeFor(const Tolerance& tolerance, const SensorHints& hints) {
+  constexpr float kNone = std::numeric_limits<float>::infinity();
+  FarRange range;
+  range.origin = hints.origin;
+  range.min_range = range.interior_min = kNone;
+
+  const double steps = std::max(hints.steps_per_turn, 1);
+  const double step = 2 * kPi / steps;
+  const bool is_rough = static_cast<double>(hints.roughness) > tolerance.reach();
+  const double spacing = std::sqrt((is_rough ? kRoughReturnsPerSquare : kReturnsPerSquare) * step *
+                                   static_cast<double>(hints.elevation_step));
+  // As near as that, unless a mask would reach over more than kMaxReach bins.
+  const double min_range =
+      tolerance.reach() * std::max({1 / spacing, kMinRangeInTolerances, 1 / std::sin((kMaxReach - 3) * step)});
+  const bool is_origin_valid = std::all_of(hints.origin.begin(), hints.origin.end(),
+                                           [](float coordinate) { return std::fabs(coordinate) <= kMaxRange; });
+  const bool is_useful = is_origin_valid && steps >= kMinSteps && steps <= kMaxSteps && tolerance.joinsAnything() &&
+                         spacing > 1e-5 && spacing < 10 && min_range > 1e-18 && min_range < 1e15 &&
+                         min_range < static_cast<double>(hints.far_distance);
+  if (!is_useful) return range;
+  const float reach = paddedReach(tolerance);
+  range.min_range = static_cast<float>(min_range);
+  range.max_range = kMaxRange;
+  // Distances are rounded, and so are these sums.
+  range.interior_min = range.min_range * 1.00001F + reach;
+  range.interior_max = kMaxRange * 0.9999F - reach;
+  return range;
+}
+
+}  // namespace lisco
