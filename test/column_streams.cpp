@@ -15,7 +15,30 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Where a return lies, seen from the sensor.
+/// Positions of columns of which some have none of their own: counted from the last one given.
+class PositionsByRate {
+ public:
+  explicit PositionsByRate(const lisco::EndlessParameters& parameters) : per_turn_(parameters.columns_per_turn) {}
+
+  double give(double position) {
+    has_begun_ = true;
+    given_ = position;
+    columns_ = 0;
+    return position;
+  }
+  double next() {
+    if (!has_begun_) return give(0.0);
+    return given_ + ++columns_ / per_turn_;
+  }
+
+ private:
+  double per_turn_;
+  double given_ = 0;
+  double columns_ = 0;  ///< since the position given
+  bool has_begun_ = false;
+};
+
+/// Polar coordinates of a return as seen from the sensor.
 struct Polar {
   double rho, azimuth;
 };
@@ -27,7 +50,7 @@ Polar polarOf(const lisco::EndlessParameters& parameters, const lisco::Return& c
 }
 
 double azimuthOf(const lisco::EndlessParameters& parameters, double position) {
-  return parameters.start_azimuth + (parameters.clockwise ? -2 : 2) * kPi * position;
+  return parameters.start_azimuth + (parameters.clockwise ? -2 : 2) * kPi * (position - std::floor(position));
 }
 
 bool isReturnAt(const lisco::Return& cell) {
@@ -145,13 +168,14 @@ void goByRate(Random& random, ColumnStream& stream) {
   parameters.columns_per_turn = turns > 0.1 ? static_cast<double>(columns.size()) / turns : 50.0;
   const double by_rate = random.chance(0.5) ? 1.0 : random.unit();
   for (StreamColumn& column : columns) column.position -= first;
+  PositionsByRate positions(parameters);
   for (std::size_t i = 0; i < columns.size(); ++i) {
     stream.is_by_rate[i] = random.chance(by_rate);
     const double before = i > 0 ? columns[i - 1].position : 0.0;
     if (stream.is_by_rate[i])
-      turnColumn(parameters, columns[i], i > 0 ? before + 1 / parameters.columns_per_turn : 0.0);
+      turnColumn(parameters, columns[i], positions.next());
     else
-      turnColumn(parameters, columns[i], std::max(before, columns[i].position));
+      turnColumn(parameters, columns[i], positions.give(std::max(before, columns[i].position)));
   }
 }
 
@@ -215,14 +239,15 @@ ColumnStream partOf(const ColumnStream& stream, std::size_t first, std::size_t e
                       stream.columns.begin() + static_cast<std::ptrdiff_t>(end));
   part.is_by_rate.assign(stream.is_by_rate.begin() + static_cast<std::ptrdiff_t>(first),
                          stream.is_by_rate.begin() + static_cast<std::ptrdiff_t>(end));
+  PositionsByRate positions(part.parameters);
   for (std::size_t i = 0; i < part.columns.size(); ++i) {
     double& position = part.columns[i].position;
     position -= turns_earlier;
     if (i == 0 && position != 0) part.is_by_rate[0] = false;
     if (i > 0 && part.is_by_rate[i])
-      position = part.columns[i - 1].position + 1 / part.parameters.columns_per_turn;
-    else if (i > 0)
-      position = std::max(position, part.columns[i - 1].position);
+      position = positions.next();
+    else
+      position = positions.give(i > 0 ? std::max(position, part.columns[i - 1].position) : position);
   }
   return part;
 }

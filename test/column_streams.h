@@ -12,11 +12,11 @@
 
 namespace lisco_test {
 
-/// What the streams stay within, metres and turns: beyond, squares overflow or vanish, and positions are coarser than
-/// the margins of the comparison with the definition.
-constexpr double kSmallestRange = 1e-18;
-constexpr double kLargestRange = 1e17;
-constexpr double kLargestPosition = 1e9;
+/// Ranges (metres) and positions (turns) of the streams: all positions that the engine takes, and ranges whose squares
+/// overflow and underflow a float.
+constexpr double kSmallestRange = 1e-30;
+constexpr double kLargestRange = 1e30;
+constexpr double kLargestPosition = 1e12;
 
 /// A stream whose cells are numbered in the order of their columns.
 struct ColumnStream : EndlessStream {

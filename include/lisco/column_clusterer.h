@@ -33,8 +33,8 @@ class LISCO_EXPORT ColumnClusterer {
  public:
   ColumnClusterer();
   ~ColumnClusterer();
-  ColumnClusterer(const ColumnClusterer& other);
-  ColumnClusterer& operator=(const ColumnClusterer& other);
+  ColumnClusterer(const ColumnClusterer& other);             ///< with all columns added
+  ColumnClusterer& operator=(const ColumnClusterer& other);  ///< the same
 
   /// Starts a new rotation and forgets the last one. After an exception other than std::logic_error and
   /// std::invalid_argument (refused memory, a throwing callable), every other call either throws std::logic_error or
@@ -109,7 +109,7 @@ struct Parameters {
   /// that come one by one, or after these, are the work of one thread.
   std::size_t threads = 1;
 
-  static constexpr std::size_t kMaxThreads = 256;
+  static constexpr std::size_t kMaxThreads = 256;  ///< of a rotation
 };
 
 }  // namespace lisco

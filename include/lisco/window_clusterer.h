@@ -40,8 +40,8 @@ class LISCO_EXPORT WindowClusterer {
  public:
   WindowClusterer();
   ~WindowClusterer();
-  WindowClusterer(const WindowClusterer& other);
-  WindowClusterer& operator=(const WindowClusterer& other);
+  WindowClusterer(const WindowClusterer& other);             ///< with all columns added
+  WindowClusterer& operator=(const WindowClusterer& other);  ///< the same
 
   /// Starts a new stream and forgets the last one. After an exception other than std::logic_error and
   /// std::invalid_argument, every other call either throws std::logic_error or does nothing.
