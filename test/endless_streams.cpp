@@ -28,8 +28,10 @@ class EndlessOracle {
   explicit EndlessOracle(const lisco::EndlessParameters& parameters) : parameters_(parameters) {}
 
   std::vector<Delivery> operator()(const std::vector<StreamColumn>& columns) {
-    // Positions are counted from the first turn: exact, and rounding is then that of a stream that begins at 0.
-    if (!columns.empty()) first_turn_ = std::floor(columns.front().position);
+    // Large positions are counted from the first turn: exact, and rounding is then that of a stream that begins at 0.
+    constexpr double kLarge = 1e6;
+    if (!columns.empty() && std::fabs(columns.front().position) > kLarge)
+      first_turn_ = std::floor(columns.front().position);
     for (std::size_t c = 0; c < columns.size(); ++c) {
       const double position = columns[c].position - first_turn_;
       const auto eighth = static_cast<std::int64_t>(std::floor(8 * position));
