@@ -22,7 +22,9 @@ struct Parameters;
 ///   clusterer.begin({0.4F});                                // eps = 0.4 m
 ///   while (...) clusterer.addColumn(returns, lasers);       // upon reception of step s
 ///   clusterer.update();                                     // upon all steps processed, or before
-///   clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster) { ... });
+///   clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster) {
+///     ...
+///   });
 ///
 /// Returns that lie within eps of each other belong to the same subcluster. update() makes the subclusters exact for
 /// all columns added so far; more columns may follow it.
@@ -43,8 +45,8 @@ class LISCO_EXPORT ColumnClusterer {
 
   /// Event "reception of step s".
   /// \param cells cells[l] is what laser l measured; those that are no returns are skipped
-  /// \param lasers number of cells, may differ from column to column; the order of the lasers is free, and for speed the
-  ///        same in each column
+  /// \param lasers number of cells, may differ from column to column; the order of the lasers is free, and for speed
+  ///        the same in each column
   /// \throws std::logic_error before begin(); std::invalid_argument if there are more cells than Parameters::lasers
   void addColumn(const Return* cells, std::size_t lasers) {
     addColumns(1, lasers, [cells](std::size_t laser, std::size_t) { return cells[laser]; });
@@ -52,8 +54,8 @@ class LISCO_EXPORT ColumnClusterer {
 
   /// Adds several columns at once, read laser by laser as an organized cloud lies in memory. The result is that of
   /// addColumn.
-  /// \param cell_at callable as Return (std::size_t laser, std::size_t column), column in 0..columns-1; called by several
-  ///        threads at once if Parameters::threads allows it
+  /// \param cell_at callable as Return (std::size_t laser, std::size_t column), column in 0..columns-1; called by
+  ///        several threads at once if Parameters::threads allows it
   /// \throws as addColumn
   template <typename CellAt>
   void addColumns(std::size_t columns, std::size_t lasers, CellAt&& cell_at) {
@@ -74,8 +76,8 @@ class LISCO_EXPORT ColumnClusterer {
   /// \param column counted from begin()
   std::uint32_t subclusterAt(std::size_t laser, std::size_t column);
 
-  /// Calls visit(source_indices, count, subcluster) for all returns, in groups of the same subcluster, of one laser and of
-  /// consecutive columns: laser by laser, and the returns of each in the order of their columns. After update().
+  /// Calls visit(source_indices, count, subcluster) for all returns, in groups of the same subcluster, of one laser and
+  /// of consecutive columns: laser by laser, and the returns of each in the order of their columns. After update().
   template <typename Visit>
   void forEachRun(Visit&& visit) {
     visitRuns(RunVisitor(visit));
@@ -94,19 +96,19 @@ class LISCO_EXPORT ColumnClusterer {
 
 /// How a rotation is clustered. Only the tolerance changes the result.
 struct Parameters {
-  /// eps, metres. A negative value acts as its absolute value; 0 and NaN make no two returns neighbours; an infinite one
-  /// makes all returns neighbours whose squared distance does not overflow a float.
+  /// eps, metres. A negative value acts as its absolute value; 0 and NaN make no two returns neighbours; an infinite
+  /// one makes all returns neighbours whose squared distance does not overflow a float.
   float tolerance = 0.0F;
   SensorHints sensor;                    ///< what is known of the sensor
   std::size_t expected_returns = 65536;  ///< for which memory is reserved; more may come
   std::size_t lasers = 0;                ///< largest number of cells of a column; 0: any number
-  /// Columns read together, 1..64. With 64 the work is least, since the returns of a laser lie side by side in a cloud's
-  /// memory; with 1 each column's work is done at once. The work of a block is spread over the columns of the next ones.
-  /// Does not affect results: update() covers every column added.
+  /// Columns read together, 1..64. With 64 the work is least, since the returns of a laser lie side by side in a
+  /// cloud's memory; with 1 each column's work is done at once. The work of a block is spread over the columns of the
+  /// next ones. Does not affect results: update() covers every column added.
   std::size_t block_columns = 64;
-  /// Threads that share the work of the first addColumns () after begin (), which should bring a whole rotation, and of the
-  /// update () after it; 0: one for each core. No more are used than kMaxThreads, nor more than one for 64 columns. Columns
-  /// that come one by one, or after these, are the work of one thread.
+  /// Threads that share the work of the first addColumns () after begin (), which should bring a whole rotation, and of
+  /// the update () after it; 0: one for each core. No more are used than kMaxThreads, nor more than one for 64 columns.
+  /// Columns that come one by one, or after these, are the work of one thread.
   std::size_t threads = 1;
 
   static constexpr std::size_t kMaxThreads = 256;  ///< of a rotation

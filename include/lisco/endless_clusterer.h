@@ -52,14 +52,14 @@ struct EndlessParameters {
 ///
 ///   reach end = min (position + (asin (eps / rho) + 2 stagger) / 2 pi, (n + 4) / 8)
 ///
-/// and for rho <= (1 + kNearMargin) eps, (n + 4) / 8. Rounding puts the reach end up to 0.006 radians of rotation later,
-/// never earlier. When a column comes that is at or beyond the reach end of all returns of a cluster, the cluster is
-/// delivered. A cluster that began in eighth n and is still open when the first column of eighth n + 8 or later comes is
-/// delivered then, *cut*: its returns have no neighbours from there on, and clusters that would otherwise have been
-/// joined to it are *continued*. doc/streaming.md says more.
+/// and for rho <= (1 + kNearMargin) eps, (n + 4) / 8. Rounding puts the reach end up to 0.006 radians of rotation
+/// later, never earlier. When a column comes that is at or beyond the reach end of all returns of a cluster, the
+/// cluster is delivered. A cluster that began in eighth n and is still open when the first column of eighth n + 8 or
+/// later comes is delivered then, *cut*: its returns have no neighbours from there on, and clusters that would
+/// otherwise have been joined to it are *continued*. doc/streaming.md says more.
 ///
-/// Memory is bounded by the returns of two turns; nothing is allocated once the buffers have grown. Not thread safe; any
-/// number of instances may work side by side.
+/// Memory is bounded by the returns of two turns; nothing is allocated once the buffers have grown. Not thread safe;
+/// any number of instances may work side by side.
 class LISCO_EXPORT EndlessClusterer {
  public:
   /// Receives a cluster, which is valid during the call. Must not call the clusterer.
@@ -70,9 +70,9 @@ class LISCO_EXPORT EndlessClusterer {
   EndlessClusterer(const EndlessClusterer& other);             ///< with all columns added
   EndlessClusterer& operator=(const EndlessClusterer& other);  ///< the same
 
-  /// Starts a new stream; of the last one, nothing more is delivered. After an exception other than std::logic_error and
-  /// std::invalid_argument (refused memory, a throwing callback), every other call either throws std::logic_error or
-  /// does nothing.
+  /// Starts a new stream; of the last one, nothing more is delivered. After an exception other than std::logic_error
+  /// and std::invalid_argument (refused memory, a throwing callback), every other call either throws std::logic_error
+  /// or does nothing.
   /// \throws std::invalid_argument if the stagger is not within 0..kMaxStagger, the origin is not finite, or the start
   ///         azimuth is not within +-kMaxAzimuth; the stream before goes on then
   void begin(const EndlessParameters& parameters, Callback callback);
@@ -82,15 +82,15 @@ class LISCO_EXPORT EndlessClusterer {
   ///        back within the next turn and a half.
   /// \param position turns, at least that of the column before, within +-kMaxPosition. It is taken as it is given: the
   ///        definition above holds at 1e12 turns as it does at 0
-  /// \throws std::logic_error before begin (); std::invalid_argument if there are more cells than lasers, or the position
-  ///         is less than the one before or out of range
+  /// \throws std::logic_error before begin (); std::invalid_argument if there are more cells than lasers, or the
+  ///         position is less than the one before or out of range
   void addColumn(const Return* cells, std::size_t lasers, double position);
   /// The same at nextPosition ().
   /// \throws std::logic_error if columns_per_turn is not known
   void addColumn(const Return* cells, std::size_t lasers);
 
-  /// Position of the next column that is added without one: 1 / columns_per_turn after the last column, 0 for the first.
-  /// Counted from the last position given, so that rounding does not add up.
+  /// Position of the next column that is added without one: 1 / columns_per_turn after the last column, 0 for the
+  /// first. Counted from the last position given, so that rounding does not add up.
   double nextPosition() const;
 
   /// Delivers what can be delivered with the columns added so far, without waiting for the block to be complete.

@@ -34,8 +34,8 @@ struct LabelParameters {
 /// \param points the first point: x, y and z as floats, metres; NaN, infinite or all 0 where there is no return
 /// \param count number of points, below 2^31
 /// \param stride bytes from one point to the next, at least 12; points need not be aligned
-/// \param labels receives `count` labels: 0 for the largest cluster and so on, in the order of PCL's vector of clusters;
-///        -1 for points in no cluster
+/// \param labels receives `count` labels: 0 for the largest cluster and so on, in the order of PCL's vector of
+///        clusters; -1 for points in no cluster
 /// \return number of clusters
 /// \throws std::invalid_argument if the stride is below 12, count is 2^31 or more, lasers do not divide count, or a
 ///         pointer is null while count is not 0

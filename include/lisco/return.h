@@ -24,16 +24,16 @@ struct Return {
 /// A cell without a return (the paper's d = 0).
 inline constexpr Return kNoReturn{0.0F, 0.0F, 0.0F, 0U};
 
-/// Whether a cell holds a return: all coordinates finite, and not exactly (0, 0, 0), which is the paper's d = 0 and what
-/// many drivers write where nothing came back.
+/// Whether a cell holds a return: all coordinates finite, and not exactly (0, 0, 0), which is the paper's d = 0 and
+/// what many drivers write where nothing came back.
 inline bool isReturn(float x, float y, float z) {
   constexpr float kMax = std::numeric_limits<float>::max();
   const bool finite = std::fabs(x) <= kMax && std::fabs(y) <= kMax && std::fabs(z) <= kMax;
   return finite && !(x == 0.0F && y == 0.0F && z == 0.0F);
 }
 
-/// Cells of lasers and columns, read by compiled code through one function call per laser and block of columns. Refers to
-/// the callable that it is made of.
+/// Cells of lasers and columns, read by compiled code through one function call per laser and block of columns. Refers
+/// to the callable that it is made of.
 class CellSource {
  public:
   /// Coordinates (metres) and source indices of consecutive cells of one laser.
@@ -84,8 +84,8 @@ struct Run {
   std::uint32_t subcluster;  ///< 0..subclusterCount ()-1
 };
 
-/// Receives runs laser by laser: one function call per laser and block of columns. Refers to the callable that it is made
-/// of.
+/// Receives runs laser by laser: one function call per laser and block of columns. Refers to the callable that it is
+/// made of.
 class RunVisitor {
  public:
   /// \param visit callable as void (const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster)

@@ -29,13 +29,13 @@ struct WindowParameters {
 ///   while (...)
 ///     if (clusterer.addColumn(returns, lasers)) clusterer.forEachRun(...);
 ///
-/// H columns are a *pane*, which is clustered once, by itself. A new pane is compared with the older ones of its window,
-/// and pairs found are kept as edges between the subclusters of panes. A window's subclusters then need only these edges,
-/// no geometry. An edge expires with its older pane, so edges to younger panes are preferred and those between
-/// subclusters that younger edges join are dropped (a maximum spanning forest by age).
+/// H columns are a *pane*, which is clustered once, by itself. A new pane is compared with the older ones of its
+/// window, and pairs found are kept as edges between the subclusters of panes. A window's subclusters then need only
+/// these edges, no geometry. An edge expires with its older pane, so edges to younger panes are preferred and those
+/// between subclusters that younger edges join are dropped (a maximum spanning forest by age).
 ///
-/// Nothing is allocated once the buffers have grown to the largest window seen. Not thread safe; any number of instances
-/// may work side by side.
+/// Nothing is allocated once the buffers have grown to the largest window seen. Not thread safe; any number of
+/// instances may work side by side.
 class LISCO_EXPORT WindowClusterer {
  public:
   WindowClusterer();
@@ -63,9 +63,9 @@ class LISCO_EXPORT WindowClusterer {
   /// \param subcluster 0..subclusterCount()-1
   std::uint32_t sizeOf(std::uint32_t subcluster) const;
 
-  /// Calls visit(source_indices, count, subcluster) for all returns of the last window, in groups of the same subcluster,
-  /// of one laser and of consecutive columns: laser by laser, and the returns of each in the order of their columns.
-  /// Valid until the next window ends.
+  /// Calls visit(source_indices, count, subcluster) for all returns of the last window, in groups of the same
+  /// subcluster, of one laser and of consecutive columns: laser by laser, and the returns of each in the order of their
+  /// columns. Valid until the next window ends.
   template <typename Visit>
   void forEachRun(Visit&& visit) {
     visitRuns(RunVisitor(visit));

@@ -54,8 +54,8 @@ class EndlessSets {
   /// getH: the root of the set that holds a run.
   Element find(Element element);
 
-  /// merge: joins the sets of two runs. An open set that meets a delivered one stays open, marked as continued, and takes
-  /// over its runs' identity but not its returns.
+  /// merge: joins the sets of two runs. An open set that meets a delivered one stays open, marked as continued, and
+  /// takes over its runs' identity but not its returns.
   void merge(Element a, Element b);
 
  private:

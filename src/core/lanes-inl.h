@@ -51,7 +51,8 @@ HWY_INLINE std::uint64_t bitsAt(std::uint64_t bits, std::size_t k) {
   return bits >> k & ((std::uint64_t{1} << kLanes) - 1);
 }
 
-/// squaredDistance (neighbour.h) < squared_tolerance, lane by lane: separate multiplications and additions in its order.
+/// squaredDistance (neighbour.h) < squared_tolerance, lane by lane: separate multiplications and additions in its
+/// order.
 HWY_INLINE FloatMask areNeighbours(FloatVector dx, FloatVector dy, FloatVector dz, FloatVector squared_tolerance) {
   return hn::Lt(hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz)), squared_tolerance);
 }

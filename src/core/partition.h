@@ -45,8 +45,8 @@ class Partition {
     readRing(block, laser, first_column, columns, subclusters,
              [](const RingBlock&, const RingBlockInfo& info) { return info.returns; });
   }
-  /// \param choose callable as ColumnBits (const RingBlock&, RingBlockInfo&): the returns that may have neighbours; it may
-  ///        add to info.starts
+  /// \param choose callable as ColumnBits (const RingBlock&, RingBlockInfo&): the returns that may have neighbours; it
+  ///        may add to info.starts
   template <typename Choose>
   void readRing(RingBlock& block, std::size_t laser, std::uint32_t first_column, std::size_t columns,
                 DisjointSets& subclusters, Choose&& choose);

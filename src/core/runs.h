@@ -42,8 +42,8 @@ struct Runs {
            std::size_t columns, std::uint32_t first_element, DisjointSets& subclusters);
 };
 
-/// The ring blocks of several partitions by laser, those of one laser by column: the order in which an organized cloud lies
-/// in memory.
+/// The ring blocks of several partitions by laser, those of one laser by column: the order in which an organized cloud
+/// lies in memory.
 class LaserOrder {
  public:
   struct Entry {

@@ -45,7 +45,8 @@ class SensorEstimator {
   /// Two returns of adjacent lasers in one column.
   void addAlongColumn(const Return& a, const Return& b) { along_column_.push_back({a, b}); }
 
-  /// \param declared_origin position that the cloud states for its sensor; used if the cloud does not lie around (0, 0, 0)
+  /// \param declared_origin position that the cloud states for its sensor; used if the cloud does not lie around (0, 0,
+  /// 0)
   SensorHints estimate(const std::array<float, 3>& declared_origin) const;
 
  private:

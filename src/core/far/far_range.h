@@ -18,8 +18,8 @@ inline float paddedReach(const Tolerance& tolerance) {
   return static_cast<float>(tolerance.reach()) * 1.00001F;
 }
 
-/// Which returns are far: those that see the tolerance under few bins and lasers. None (min_range infinite) if the hints
-/// are of no help.
+/// Which returns are far: those that see the tolerance under few bins and lasers. None (min_range infinite) if the
+/// hints are of no help.
 inline FarRange farRangeFor(const Tolerance& tolerance, const SensorHints& hints) {
   constexpr float kNone = std::numeric_limits<float>::infinity();
   FarRange range;

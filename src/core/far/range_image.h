@@ -17,9 +17,9 @@ namespace lisco {
 
 /// The far returns of consecutive columns by laser and *azimuth bin*: a row per laser, a bin per step of the turn.
 ///
-/// A return lies in the bin of its measured azimuth, whatever its column; a bin holds one return of a laser. A far return
-/// whose bin is taken, or beyond the memory of the image, is *unplaced*: its neighbours are searched one by one, and it must
-/// be kept in the voxels as well. Lasers are reached by the elevations measured on them.
+/// A return lies in the bin of its measured azimuth, whatever its column; a bin holds one return of a laser. A far
+/// return whose bin is taken, or beyond the memory of the image, is *unplaced*: its neighbours are searched one by one,
+/// and it must be kept in the voxels as well. Lasers are reached by the elevations measured on them.
 ///
 /// Bins are counted from the first return's, less kMargin, in the sense of rotation; they do not wrap.
 struct RangeImage {

@@ -21,7 +21,8 @@ HWY_BEFORE_NAMESPACE();
 namespace lisco {
 namespace HWY_NAMESPACE {
 
-/// Cuts the runs in a sector's bins of some lasers into segments. Ranges of lasers follow each other, from the first on.
+/// Cuts the runs in a sector's bins of some lasers into segments. Ranges of lasers follow each other, from the first
+/// on.
 /// \param later added to bin numbers
 void cutSector(const RangeImage& image, std::int64_t number, float later, const RangeImage::Lasers& lasers,
                Sector& sector, DisjointSets& subclusters) {

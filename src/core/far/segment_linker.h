@@ -46,8 +46,8 @@ struct SegmentLinkerState {
 };
 
 /// Algorithm 4 on range images: joins far returns that are neighbours. Returns in the same bin of adjacent lasers are
-/// compared first, several at once, which joins most of what belongs together. Then each segment looks at the segments in
-/// its neighbor mask that are in another subcluster by then: bounds first, returns last.
+/// compared first, several at once, which joins most of what belongs together. Then each segment looks at the segments
+/// in its neighbor mask that are in another subcluster by then: bounds first, returns last.
 ///
 /// Finds all pairs of placed returns; pairs with an unplaced one are found by linkTo (). Serves one image.
 class SegmentLinker : private SegmentLinkerState {
@@ -68,8 +68,8 @@ class SegmentLinker : private SegmentLinkerState {
 
   /// Links all that has not been linked within the image. More returns may come later.
   void linkRest(RangeImage& image, DisjointSets& subclusters);
-  /// Links the returns of the image with those of another one of the same rotation; or, of itself, those at its end with
-  /// those a turn before. After linkRest () of both.
+  /// Links the returns of the image with those of another one of the same rotation; or, of itself, those at its end
+  /// with those a turn before. After linkRest () of both.
   void linkTo(RangeImage& image, RangeImage& other, DisjointSets& subclusters);
 
   /// Work done since prepare (), about in comparisons of registers.

@@ -74,8 +74,8 @@ class SegmentSearch {
     }
   }
 
-  /// Links another image with this one, whose bin 0 is this one's bin `later`: the image itself a turn later joins its end
-  /// with its beginning. Both share elevations.
+  /// Links another image with this one, whose bin 0 is this one's bin `later`: the image itself a turn later joins its
+  /// end with its beginning. Both share elevations.
   void linkAcross(const RangeImage& other, double later) {
     // Bins of different images differ by a fraction.
     const double reach = binsWithin(asinBound(image_.reach / image_.range.min_range)) + 1;
@@ -130,7 +130,8 @@ class SegmentSearch {
     return sector;
   }
 
-  /// getNeighborMask (Algorithm 2) of a laser's returns in a sector; chooses what is cheaper to compare, segments or bins.
+  /// getNeighborMask (Algorithm 2) of a laser's returns in a sector; chooses what is cheaper to compare, segments or
+  /// bins.
   void prepareMask(const Sector& sector, std::size_t laser) {
     const std::uint32_t begin = sector.begin[laser];
     const std::uint32_t end = sector.begin[laser + 1];

@@ -11,8 +11,8 @@ namespace lisco {
 
 namespace {
 
-/// Side of a voxel over eps, a little less than 1 / sqrt (3). Rounding moves a return by less than an eighth of a voxel, so
-/// that neighbours, which are 1.7323 sides apart at most, lie in voxels whose numbers differ by 2 at most.
+/// Side of a voxel over eps, a little less than 1 / sqrt (3). Rounding moves a return by less than an eighth of a
+/// voxel, so that neighbours, which are 1.7323 sides apart at most, lie in voxels whose numbers differ by 2 at most.
 constexpr double kSide = 0.9999 / 1.7320508075688772;
 /// 2^51: up to here, voxel numbers computed in double are exact enough.
 constexpr double kMaxNumber = 2251799813685248.0;

@@ -14,13 +14,13 @@
 
 namespace lisco {
 
-/// Voxels for near returns, which are seen under so wide a mask that angles do not narrow the search, and for clouds that
-/// were not seen from one place.
+/// Voxels for near returns, which are seen under so wide a mask that angles do not narrow the search, and for clouds
+/// that were not seen from one place.
 ///
 /// A voxel is so small (eps / sqrt (3)) that its returns belong together: a thousand near returns are a handful of
-/// voxels. 4 x 4 x 4 voxels are a *brick*: one bit of a word for each voxel in use, so that the voxels around one come from
-/// a few words. The returns of a run in a voxel are a *fragment*; fragments of a voxel that are all neighbours are a
-/// *clique*, nearly always all of the voxel.
+/// voxels. 4 x 4 x 4 voxels are a *brick*: one bit of a word for each voxel in use, so that the voxels around one come
+/// from a few words. The returns of a run in a voxel are a *fragment*; fragments of a voxel that are all neighbours are
+/// a *clique*, nearly always all of the voxel.
 struct VoxelGrid {
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   static constexpr std::uint32_t kBrickMask = (std::uint32_t{1} << 30) - 1;
@@ -91,8 +91,8 @@ struct VoxelGrid {
   }
 
   /// Makes few fragments of the many that a clique may have, so that points lie side by side: the newest is joined with
-  /// those that are not more than twice as large. Each of the others is then more than twice as large as the one before,
-  /// and no point moves often.
+  /// those that are not more than twice as large. Each of the others is then more than twice as large as the one
+  /// before, and no point moves often.
   void compactFragments(Clique& clique);
 
   Tolerance tolerance;

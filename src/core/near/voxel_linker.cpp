@@ -119,8 +119,8 @@ std::uint32_t commonRoot(VoxelGrid& grid, const Brick& brick, DisjointSets& subc
   return common ? root : kNone;
 }
 
-/// Links the new cliques of a brick with all cliques around them; each pair of new ones once. Bricks of one common root,
-/// which most are, are skipped as a whole.
+/// Links the new cliques of a brick with all cliques around them; each pair of new ones once. Bricks of one common
+/// root, which most are, are skipped as a whole.
 void linkNew(VoxelGrid& grid, const Brick& brick, DisjointSets& subclusters) {
   NearBrick near[kNeighbourBricks];
   const std::size_t count = findNear(grid, brick.key, near, [&](const Brick& other) {
