@@ -145,13 +145,18 @@ void goByRate(Random& random, ColumnStream& stream) {
   parameters.columns_per_turn = turns > 0.1 ? static_cast<double>(columns.size()) / turns : 50.0;
   const double by_rate = random.chance(0.5) ? 1.0 : random.unit();
   for (StreamColumn& column : columns) column.position -= first;
+  double given = 0;  // the last position that is not by rate
+  double columns_since_given = 0;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     stream.is_by_rate[i] = random.chance(by_rate);
-    const double before = i > 0 ? columns[i - 1].position : 0.0;
-    if (stream.is_by_rate[i])
-      turnColumn(parameters, columns[i], i > 0 ? before + 1 / parameters.columns_per_turn : 0.0);
-    else
-      turnColumn(parameters, columns[i], std::max(before, columns[i].position));
+    if (stream.is_by_rate[i]) {
+      if (i > 0) ++columns_since_given;
+      turnColumn(parameters, columns[i], given + columns_since_given / parameters.columns_per_turn);
+    } else {
+      given = std::max(i > 0 ? columns[i - 1].position : 0.0, columns[i].position);
+      columns_since_given = 0;
+      turnColumn(parameters, columns[i], given);
+    }
   }
 }
 
@@ -215,14 +220,19 @@ ColumnStream partOf(const ColumnStream& stream, std::size_t first, std::size_t e
                       stream.columns.begin() + static_cast<std::ptrdiff_t>(end));
   part.is_by_rate.assign(stream.is_by_rate.begin() + static_cast<std::ptrdiff_t>(first),
                          stream.is_by_rate.begin() + static_cast<std::ptrdiff_t>(end));
+  double given = 0;  // the last position that is not by rate
+  double columns_since_given = 0;
   for (std::size_t i = 0; i < part.columns.size(); ++i) {
     double& position = part.columns[i].position;
     position -= turns_earlier;
     if (i == 0 && position != 0) part.is_by_rate[0] = false;
-    if (i > 0 && part.is_by_rate[i])
-      position = part.columns[i - 1].position + 1 / part.parameters.columns_per_turn;
-    else if (i > 0)
-      position = std::max(position, part.columns[i - 1].position);
+    if (i > 0 && part.is_by_rate[i]) {
+      position = given + ++columns_since_given / part.parameters.columns_per_turn;
+    } else {
+      if (i > 0) position = std::max(position, part.columns[i - 1].position);
+      given = position;
+      columns_since_given = 0;
+    }
   }
   return part;
 }
