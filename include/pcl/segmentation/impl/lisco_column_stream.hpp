@@ -7,8 +7,8 @@
 #include <algorithm>
 
 #include <pcl/console/print.h>
-#include <pcl/segmentation/extract_clusters.h>          // comparePointClusters
-#include <pcl/segmentation/lisco_cluster_extraction.h>  // fitsIndexType
+#include <pcl/segmentation/extract_clusters.h>       // comparePointClusters
+#include <pcl/segmentation/lisco_cloud_clusterer.h>  // fitsIndexType
 #include <pcl/segmentation/lisco_column_stream.h>
 
 template <typename PointT>
