@@ -7,7 +7,7 @@
 #include <limits>
 #include <set>
 
-#include <pcl/segmentation/lisco_point_cloud2.h>
+#include <pcl/io/lisco_point_cloud2.h>
 
 #include "pcl_client.h"
 #include "pcl_clouds.h"

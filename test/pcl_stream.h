@@ -13,7 +13,9 @@
 #include <memory>
 #include <vector>
 
+#include <pcl/segmentation/lisco_endless_extraction.h>
 #include <pcl/segmentation/lisco_stream_extraction.h>
+#include <pcl/segmentation/lisco_window_extraction.h>
 
 #include "pcl_client.h"
 #include "pcl_clouds.h"

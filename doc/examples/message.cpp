@@ -8,9 +8,9 @@
 #include <vector>
 
 #include <pcl/PCLPointCloud2.h>
+#include <pcl/io/lisco_point_cloud2.h>
 #include <pcl/point_types.h>
 #include <pcl/segmentation/lisco_cluster_extraction.h>
-#include <pcl/segmentation/lisco_point_cloud2.h>
 
 // What the driver of a Velodyne sends: one row of points, x y z intensity ring time, 22 bytes each. Two posts.
 pcl::PCLPointCloud2 exampleMessage() {

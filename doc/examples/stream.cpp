@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <pcl/point_types.h>
+#include <pcl/segmentation/lisco_endless_extraction.h>
 #include <pcl/segmentation/lisco_stream_extraction.h>
 
 constexpr int kLasers = 16;

@@ -54,12 +54,12 @@ class LISCO_EXPORT ColumnClusterer {
 
   /// Adds several columns at once, read laser by laser as an organized cloud lies in memory. The result is that of
   /// addColumn.
-  /// \param cell_at callable as Return (std::size_t laser, std::size_t column), column in 0..columns-1; called by
-  ///        several threads at once if Parameters::threads allows it
+  /// \param cells callable as Return (std::size_t laser, std::size_t column), column in 0..columns-1, or block by block
+  ///        as CellSource has it; called by several threads at once if Parameters::threads allows it
   /// \throws as addColumn
-  template <typename CellAt>
-  void addColumns(std::size_t columns, std::size_t lasers, CellAt&& cell_at) {
-    receive(columns, lasers, CellSource(cell_at));
+  template <typename Cells>
+  void addColumns(std::size_t columns, std::size_t lasers, Cells&& cells) {
+    receive(columns, lasers, CellSource(cells));
   }
 
   /// Event "all steps processed", or a look in between: brings the subclusters up to date with all columns added.

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <type_traits>
 
 namespace lisco {
 
@@ -44,21 +45,11 @@ class CellSource {
     std::uint32_t* source_index;  ///< the same
   };
 
-  /// \param cell_at callable as Return (std::size_t laser, std::size_t column), by several threads at once where the
-  ///        reader says so
-  template <typename CellAt>
-  explicit CellSource(CellAt& cell_at)
-      : context_(std::addressof(cell_at)),
-        read_([](const void* context, std::size_t laser, std::size_t first, std::size_t count, const Destination& to) {
-          CellAt& at = *static_cast<CellAt*>(const_cast<void*>(context));
-          for (std::size_t i = 0; i < count; ++i) {
-            const Return cell = at(laser, first + i);
-            to.x[i] = cell.x;
-            to.y[i] = cell.y;
-            to.z[i] = cell.z;
-            to.source_index[i] = cell.source_index;
-          }
-        }) {}
+  /// \param cells callable as Return (std::size_t laser, std::size_t column), or, which reads a whole block, as
+  ///        void (std::size_t laser, std::size_t first, std::size_t count, const Destination& to); by several threads at
+  ///        once where the reader says so
+  template <typename Cells>
+  explicit CellSource(Cells& cells) : context_(std::addressof(cells)), read_(&readFrom<Cells>) {}
 
   /// Reads `count` cells of a laser from column `first` on.
   void read(std::size_t laser, std::size_t first, std::size_t count, const Destination& to) const {
@@ -73,6 +64,23 @@ class CellSource {
   }
 
  private:
+  template <typename Cells>
+  static void readFrom(const void* context, std::size_t laser, std::size_t first, std::size_t count,
+                       const Destination& to) {
+    Cells& cells = *static_cast<Cells*>(const_cast<void*>(context));
+    if constexpr (std::is_invocable_v<Cells&, std::size_t, std::size_t, std::size_t, const Destination&>) {
+      cells(laser, first, count, to);
+    } else {
+      for (std::size_t i = 0; i < count; ++i) {
+        const Return cell = cells(laser, first + i);
+        to.x[i] = cell.x;
+        to.y[i] = cell.y;
+        to.z[i] = cell.z;
+        to.source_index[i] = cell.source_index;
+      }
+    }
+  }
+
   const void* context_;
   void (*read_)(const void* context, std::size_t laser, std::size_t first, std::size_t count, const Destination& to);
 };

@@ -10,9 +10,9 @@
 #include <utility>
 
 #include <pcl/console/print.h>
+#include <pcl/io/lisco_point_cloud2.h>
 #include <pcl/point_types.h>
 #include <pcl/segmentation/extract_clusters.h>  // comparePointClusters
-#include <pcl/segmentation/lisco_point_cloud2.h>
 #include <pcl/impl/instantiate.hpp>
 
 #include "lisco/return.h"

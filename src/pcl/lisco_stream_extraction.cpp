@@ -4,5 +4,3 @@
 #include <pcl/segmentation/impl/lisco_stream_extraction.hpp>
 
 PCL_INSTANTIATE(LiscoStreamExtraction, PCL_XYZ_POINT_TYPES)
-PCL_INSTANTIATE(LiscoWindowExtraction, PCL_XYZ_POINT_TYPES)
-PCL_INSTANTIATE(LiscoEndlessExtraction, PCL_XYZ_POINT_TYPES)

@@ -17,55 +17,12 @@
 #include <pcl/search/kdtree.h>
 #include <pcl/search/search.h>
 #include <pcl/segmentation/extract_clusters.h>  // comparePointClusters, which its clients call too
-#include <pcl/segmentation/lisco_cluster_writer.h>
+#include <pcl/segmentation/lisco_cloud_clusterer.h>
 #include <pcl/segmentation/lisco_search_method.h>
 
-#include "lisco/column_clusterer.h"
 #include "lisco/export.h"
 
 namespace pcl {
-
-namespace detail {
-
-/** \brief What LiscoClusterExtraction and extractLiscoClusters () share: reads a PCL cloud into the
- * clustering engine and writes its subclusters as PCL's clusters. Keeps its memory from cloud to cloud.
- */
-class LISCO_EXPORT LiscoCloudClusterer {
- public:
-  /** \brief Clusters a cloud.
-   * \param[in] indices which of its points; nullptr: all
-   * \param[in] threads how many may share the work; 0: one for each core
-   * \param[in] caller named in front of a PCL_ERROR
-   * \return false, after a PCL_ERROR, if an index is not within the cloud or the cloud is too large for
-   * index_t
-   */
-  template <typename PointT>
-  bool cluster(const PointCloud<PointT>& cloud, const Indices* indices, float tolerance, unsigned int threads,
-               const char* caller);
-
-  /** \brief Appends the clusters of the last cloud whose size is within [min_size, max_size], in the order in
-   * which their first points appear in the indices; the indices of each ascend.
-   */
-  void collect(const Indices* indices, const PCLHeader& header, uindex_t min_size, uindex_t max_size,
-               std::vector<PointIndices>& clusters);
-
-  /** \brief Whether point numbers up to \a points fit into index_t and into the engine. */
-  static bool fitsIndexType(std::size_t points);
-
- private:
-  bool select(std::size_t points, const Indices* indices, const char* caller);
-
-  enum class Selection { kAll, kMany, kFew };  ///< few points are sorted out beforehand
-
-  lisco::ColumnClusterer clusterer_;
-  Selection selection_ = Selection::kAll;
-  std::vector<char> is_selected_;                   ///< per point of the cloud, of kMany
-  Indices few_points_;                              ///< of kFew, ascending
-  std::vector<std::uint32_t> subcluster_of_point_;  ///< only where the order of the indices is needed
-  LiscoClusterWriter writer_;
-};
-
-}  // namespace detail
 
 /** \brief Euclidean clusters of a rotating LiDAR's scan: the clusters of pcl::EuclideanClusterExtraction,
  * without a kd-tree.
@@ -82,9 +39,9 @@ class LISCO_EXPORT LiscoCloudClusterer {
  * extract () gives, byte for byte, the vector that EuclideanClusterExtraction with
  * pcl::search::KdTree<PointT> (false) gives: the same clusters, in the same order, with the same indices and
  * headers. Only where the rounding of PCL's tree misses a pair of neighbours (planted cases, tolerances over 1e19) are
- * PCL's clusters parts of these, the connected components of d2 < r2 in float: doc/contract.md. What it skips, PCL cannot use: points with a NaN or infinite coordinate, and points that are
- * exactly (0, 0, 0), which many drivers write for "no return". They are skipped whatever the cloud's is_dense
- * says, and appear in no cluster.
+ * PCL's clusters parts of these, the connected components of d2 < r2 in float: doc/contract.md. What it skips, PCL
+ * cannot use: points with a NaN or infinite coordinate, and points that are exactly (0, 0, 0), which many drivers write
+ * for "no return". They are skipped whatever the cloud's is_dense says, and appear in no cluster.
  *
  * Any cloud will do. It is fastest on organized scans (height = lasers, width = steps of the rotation); of an
  * unorganized cloud, the points in the sensor's order are better than shuffled ones. Using one object for

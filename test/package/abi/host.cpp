@@ -11,7 +11,9 @@
 
 #include <pcl/point_types.h>
 #include <pcl/segmentation/lisco_cluster_extraction.h>
+#include <pcl/segmentation/lisco_endless_extraction.h>
 #include <pcl/segmentation/lisco_stream_extraction.h>
+#include <pcl/segmentation/lisco_window_extraction.h>
 #include <Eigen/Core>
 
 namespace {

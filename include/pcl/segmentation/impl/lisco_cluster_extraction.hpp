@@ -5,55 +5,11 @@
 #include "lisco/cxx17.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 
-#include "lisco/sensor_hints.h"
-
-template <typename PointT>
-bool pcl::detail::LiscoCloudClusterer::cluster(const PointCloud<PointT>& cloud, const Indices* indices, float tolerance,
-                                               unsigned int threads, const char* caller) {
-  if (!select(cloud.size(), indices, caller)) return (false);
-
-  // Lasers are the cloud's rows and columns its columns; what is not organized is the work of one laser.
-  const bool organized = selection_ != Selection::kFew && cloud.height > 1 &&
-                         static_cast<std::size_t>(cloud.width) * cloud.height == cloud.size();
-  const std::size_t lasers = organized ? cloud.height : 1;
-  const std::size_t columns = (selection_ == Selection::kFew ? few_points_.size() : cloud.size()) / lasers;
-  const std::array<float, 3> sensor{cloud.sensor_origin_[0], cloud.sensor_origin_[1], cloud.sensor_origin_[2]};
-  const PointT* const points = cloud.points.data();
-  const auto return_at = [points](std::size_t point) {
-    return (lisco::Return{points[point].x, points[point].y, points[point].z, static_cast<std::uint32_t>(point)});
-  };
-  const auto cluster = [&](const auto& cell_at) {
-    lisco::Parameters parameters;
-    parameters.tolerance = tolerance;
-    parameters.sensor = lisco::estimateSensor(columns, lasers, sensor, lisco::CellSource(cell_at));
-    parameters.expected_returns = columns * lasers;
-    parameters.threads = threads;
-    clusterer_.begin(parameters);
-    clusterer_.addColumns(columns, lasers, cell_at);
-    clusterer_.update();
-  };
-  switch (selection_) {
-    case Selection::kAll:
-      cluster([&](std::size_t laser, std::size_t column) { return (return_at(laser * columns + column)); });
-      break;
-    case Selection::kMany:
-      cluster([&](std::size_t laser, std::size_t column) {
-        const std::size_t point = laser * columns + column;
-        return (is_selected_[point] ? return_at(point) : lisco::kNoReturn);
-      });
-      break;
-    case Selection::kFew:
-      cluster(
-          [&](std::size_t, std::size_t column) { return (return_at(static_cast<std::size_t>(few_points_[column]))); });
-      break;
-  }
-  return (true);
-}
+#include "lisco/export.h"
 
 template <typename PointT>
 std::size_t pcl::LiscoClusterExtraction<PointT>::appendClusters(std::vector<PointIndices>& clusters) {

@@ -65,7 +65,7 @@ namespace pcl {
  * is of an unknown type, of several elements where one is needed, or reaches beyond point_step, if the rows overlap or
  * reach beyond the data, if there are data but no points, if the byte order is not this machine's, or if there are
  * more points than pcl::index_t can number. A message without points or data gives an empty cloud and true.
- * \ingroup segmentation
+ * \ingroup io
  */
 template <typename PointT>
 bool organizeLiscoCloud(const PCLPointCloud2& message, PointCloud<PointT>& cloud, Indices& point_of_cell);
@@ -78,7 +78,7 @@ bool organizeLiscoCloud(const PCLPointCloud2& message, PointCloud<PointT>& cloud
  * extract () does it.
  * \return false, after a PCL_ERROR and with \a clusters cleared, if an index is not that of a cell with a point, or comes
  * twice
- * \ingroup segmentation
+ * \ingroup io
  */
 LISCO_EXPORT bool mapLiscoClusters(const Indices& point_of_cell, std::vector<PointIndices>& clusters);
 

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include "lisco/cxx17.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <pcl/PointIndices.h>
+#include <pcl/point_cloud.h>
+#include <pcl/segmentation/lisco_pcl_version.h>
+
+#include "lisco/export.h"
+#include "lisco/return.h"
+
+namespace pcl {
+
+namespace detail {
+
+/** \brief What LiscoClusterExtraction and extractLiscoClusters () share: reads a PCL cloud into the clustering engine and
+ * writes its subclusters as PCL's clusters. Keeps its memory from cloud to cloud.
+ */
+class LISCO_EXPORT LiscoCloudClusterer {
+ public:
+  LiscoCloudClusterer();
+  ~LiscoCloudClusterer();
+  LiscoCloudClusterer(const LiscoCloudClusterer& other);
+  LiscoCloudClusterer& operator=(const LiscoCloudClusterer& other);
+
+  /** \brief Clusters a cloud.
+   * \param[in] indices which of its points; nullptr: all
+   * \param[in] threads how many may share the work; 0: one for each core
+   * \param[in] caller named in front of a PCL_ERROR
+   * \return false, after a PCL_ERROR, if an index is not within the cloud or the cloud is too large for
+   * index_t
+   */
+  template <typename PointT>
+  bool cluster(const PointCloud<PointT>& cloud, const Indices* indices, float tolerance, unsigned int threads,
+               const char* caller) {
+    const PointT* const points = cloud.points.data();
+    const auto point_at = [points](std::size_t, std::size_t point) {
+      return (lisco::Return{points[point].x, points[point].y, points[point].z, static_cast<std::uint32_t>(point)});
+    };
+    const auto& origin = cloud.sensor_origin_;
+    const Layout layout{cloud.size(), cloud.width, cloud.height, {origin[0], origin[1], origin[2]}};
+    return (clusterPoints(layout, lisco::CellSource(point_at), indices, tolerance, threads, caller));
+  }
+
+  /** \brief Appends the clusters of the last cloud whose size is within [min_size, max_size], in the order in
+   * which their first points appear in the indices; the indices of each ascend.
+   */
+  void collect(const Indices* indices, const PCLHeader& header, uindex_t min_size, uindex_t max_size,
+               std::vector<PointIndices>& clusters);
+
+  /** \brief Whether point numbers up to \a points fit into index_t and into the engine. */
+  static bool fitsIndexType(std::size_t points);
+
+ private:
+  struct Layout {
+    std::size_t points, width, height;
+    std::array<float, 3> sensor_origin;
+  };
+
+  /** \param[in] points a laser whose columns are the points of the cloud */
+  bool clusterPoints(const Layout& layout, const lisco::CellSource& points, const Indices* indices, float tolerance,
+                     unsigned int threads, const char* caller);
+
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace detail
+
+}  // namespace pcl

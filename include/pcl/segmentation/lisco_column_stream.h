@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include "lisco/cxx17.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <pcl/PointIndices.h>
+#include <pcl/point_cloud.h>
+#include <pcl/segmentation/lisco_cluster_writer.h>
+#include <pcl/segmentation/lisco_column_store.h>
+
+#include "lisco/return.h"
+
+namespace pcl {
+
+namespace detail {
+
+/** \brief What the classes that are given one column after the other have in common. Errors are reported by PCL_ERROR
+ * and have no other effect. An exception (memory was refused, or a callback threw) ends the rotation or stream, unless it
+ * comes from writing clusters out: no column is taken and nothing is delivered until the next one begins.
+ */
+template <typename PointT>
+class LiscoColumnStream {
+ public:
+  using PointCloud = pcl::PointCloud<PointT>;
+
+  /** \brief Set the cluster tolerance: points nearer to each other than this belong together. Takes effect when the
+   * next rotation or stream begins.
+   * \param[in] tolerance metres (default 0). A negative one acts as its absolute value; with 0 or NaN every point is a
+   * cluster of its own.
+   */
+  inline void setClusterTolerance(double tolerance) { cluster_tolerance_ = tolerance; }
+
+  /** \brief Get the cluster tolerance in metres. */
+  inline double getClusterTolerance() const { return (cluster_tolerance_); }
+
+  /** \brief Set the least number of points of a cluster (default 1). */
+  inline void setMinClusterSize(pcl::uindex_t min_cluster_size) { min_pts_per_cluster_ = min_cluster_size; }
+
+  /** \brief Get the least number of points of a cluster. */
+  inline pcl::uindex_t getMinClusterSize() const { return (min_pts_per_cluster_); }
+
+  /** \brief Set the largest number of points of a cluster (default: no limit). */
+  inline void setMaxClusterSize(pcl::uindex_t max_cluster_size) { max_pts_per_cluster_ = max_cluster_size; }
+
+  /** \brief Get the largest number of points of a cluster. */
+  inline pcl::uindex_t getMaxClusterSize() const { return (max_pts_per_cluster_); }
+
+  /** \brief Declare the number of lasers: a column with more rows is an error (default 0: any number). Columns may
+   * always have fewer.
+   */
+  inline void setNumberOfLasers(std::size_t lasers) { lasers_ = lasers; }
+
+  /** \brief Get the number of lasers, as it was set. */
+  inline std::size_t getNumberOfLasers() const { return (lasers_); }
+
+  /** \brief Set the header that clusters and clouds are given from now on. */
+  inline void setHeader(const PCLHeader& header) { header_ = header; }
+
+  /** \brief Get the header of clusters and clouds. */
+  inline const PCLHeader& getHeader() const { return (header_); }
+
+ protected:
+  /** \brief Whether a column can be taken; if not, after a PCL_ERROR.
+   * \param[in] columns number of columns kept, with this one
+   * \param[in] caller named in front of the PCL_ERROR
+   */
+  bool accepts(const PointT* points, std::size_t count, std::size_t columns, const char* caller);
+
+  /** \brief A column with its cells' names, as the engine takes it. Valid until the next call. */
+  const lisco::Return* namedColumn(const PointT* points, std::size_t count, std::uint32_t first_name);
+
+  /** \brief Appends the clusters of some columns as LiscoClusterExtraction does it for their organized cloud.
+   * \param[in] clusterer holds the subclusters of just these columns
+   */
+  template <typename Clusterer>
+  void appendClusters(Clusterer& clusterer, std::uint64_t first_column, std::uint64_t end_column,
+                      std::vector<PointIndices>& clusters);
+
+  double cluster_tolerance_ = 0;
+  pcl::uindex_t min_pts_per_cluster_ = 1;
+  pcl::uindex_t max_pts_per_cluster_ = std::numeric_limits<pcl::uindex_t>::max();
+  std::size_t lasers_ = 0;
+  PCLHeader header_;
+
+  bool begun_ = false;         ///< and left by no exception since
+  std::size_t most_rows_ = 0;  ///< of any column since the beginning
+  LiscoColumnStore<PointT> store_;
+
+ private:
+  LiscoClusterWriter writer_;
+  std::vector<lisco::Return> named_column_;
+};
+
+}  // namespace detail
+
+}  // namespace pcl

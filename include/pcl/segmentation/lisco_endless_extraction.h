@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include "lisco/cxx17.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include <pcl/point_cloud.h>
+#include <pcl/segmentation/lisco_column_stream.h>
+#include <Eigen/Core>
+
+#include "lisco/endless_clusterer.h"
+
+namespace pcl {
+
+template <typename PointT>
+struct LiscoEndlessCluster;
+
+/** \brief Euclidean clusters of a rotating LiDAR whose columns never end: each is delivered once, as soon as no later
+ * column can reach it, whole across the borders of rotations.
+ *
+ * \code
+ * pcl::LiscoEndlessExtraction<pcl::PointXYZI> endless;
+ * endless.setClusterTolerance (0.4);
+ * endless.setMinClusterSize (10);
+ * endless.setClockwise (true);
+ * endless.setClusterCallback ([] (const pcl::LiscoEndlessCluster<pcl::PointXYZI>& cluster) { ... });
+ * endless.beginStream ();
+ * while (...)
+ *   endless.addColumn (points, 64, turns);                 // turns of the sensor since any moment
+ * endless.finish ();
+ * \endcode
+ *
+ * Returns are compared only within less than half a turn of each other, so the next rotation's view of the same wall is
+ * a new cluster; a cluster that lasts a whole turn is delivered in pieces. lisco::EndlessClusterer says precisely which
+ * returns are neighbours. The azimuth of a return must be near that of its column, as setStartAzimuth () and
+ * setClockwise () tell it: see setStagger (). Columns are as for LiscoStreamExtraction. \ingroup segmentation
+ */
+template <typename PointT>
+class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
+  using Base = detail::LiscoColumnStream<PointT>;
+
+ public:
+  using PointCloud = typename Base::PointCloud;                 ///< of its points
+  using Cluster = LiscoEndlessCluster<PointT>;                  ///< what is delivered
+  using ClusterCallback = std::function<void(const Cluster&)>;  ///< who gets it
+
+  LiscoEndlessExtraction() = default;
+  LiscoEndlessExtraction(const LiscoEndlessExtraction&) = delete;
+  LiscoEndlessExtraction& operator=(const LiscoEndlessExtraction&) = delete;
+  ~LiscoEndlessExtraction() = default;
+
+  /** \brief Begin a stream. Of the last one nothing more is delivered.
+   * \return false, after a PCL_ERROR and without effect, if the stagger is not within 0..pi/8, the sensor origin is not
+   * finite, or the start azimuth is not within -1e6..1e6 radians
+   */
+  bool beginStream();
+
+  /** \brief Add the next column; delivers what it cannot reach.
+   * \param[in] points what the lasers measured; copied
+   * \param[in] count number of rows, may be 0
+   * \param[in] position turns of the sensor since any moment, never less than that of the column before
+   * \return false, after a PCL_ERROR and without effect: before beginStream (); if there are more rows than lasers
+   * declared; if the position is less than the one before, not finite, or beyond 1e12 turns
+   */
+  bool addColumn(const PointT* points, std::size_t count, double position);
+
+  /** \brief The same, 1 / getColumnsPerTurn () turns after the column before, at 0 for the first one. False, after a PCL_ERROR
+   * and without effect, if the number of columns of a turn is not known.
+   */
+  bool addColumn(const PointT* points, std::size_t count);
+
+  /** \brief The same; the points of the cloud are the rows. */
+  bool addColumn(const PointCloud& column, double position);
+  /** \brief The same without a position. */
+  bool addColumn(const PointCloud& column);
+
+  /** \brief Deliver what can be delivered with the columns so far, without waiting for a block of them. */
+  void update();
+
+  /** \brief The stream has ended: deliver all. More columns may follow; they have nothing to do with those before. */
+  void finish();
+
+  /** \brief Set the receiver of the clusters. A cluster is valid during the call: copy what is to last. The receiver must
+   * neither throw nor call this object. Takes effect at once.
+   */
+  inline void setClusterCallback(ClusterCallback callback) {
+    callback_ = nullptr;
+    if (!callback) return;
+    // The cluster is made here, not in the library: see LiscoColumnStore.
+    callback_ = [callback = std::move(callback), cluster = Cluster()](const LiscoEndlessExtraction& from,
+                                                                      const lisco::EndlessCluster& delivered) mutable {
+      cluster.cloud.points.assign(from.delivered_points_.begin(), from.delivered_points_.end());
+      cluster.cloud.header = from.header_;
+      cluster.cloud.width = static_cast<std::uint32_t>(cluster.cloud.points.size());
+      cluster.cloud.height = 1;
+      cluster.cloud.is_dense = true;
+      cluster.cells = from.delivered_cells_;
+      cluster.first_position = delivered.firstPosition();
+      cluster.last_position = delivered.lastPosition();
+      cluster.is_cut = delivered.isCut();
+      cluster.is_continued = delivered.isContinued();
+      callback(cluster);
+    };
+  }
+
+  /** \brief Number of returns since beginStream () of the columns that have been worked on. */
+  inline std::uint64_t getNumberOfReturns() const { return (clusterer_.returnCount()); }
+
+  /** \brief How many of these are outliers: their azimuth differs from that of their column by more than the stagger.
+   * Many of them are the sign of a wrong start azimuth, sense of rotation, position or stagger.
+   */
+  inline std::uint64_t getNumberOfOutliers() const { return (clusterer_.outlierCount()); }
+
+  /** \brief Number of columns in memory, of about a turn and a half at the most. */
+  inline std::size_t getNumberOfColumnsHeld() const { return (store_.size()); }
+
+  // All of these take effect when the next stream begins, sizes as well.
+
+  /** \brief Position of the sensor, metres, in the coordinates of the points (default: the origin), from which azimuths
+   * are seen.
+   */
+  inline void setSensorOrigin(const Eigen::Vector4f& origin) { parameters_.origin = {origin[0], origin[1], origin[2]}; }
+
+  /** \brief Get where the sensor stands. */
+  inline Eigen::Vector4f getSensorOrigin() const {
+    return (Eigen::Vector4f(parameters_.origin[0], parameters_.origin[1], parameters_.origin[2], 0.0F));
+  }
+
+  /** \brief Set whether the sensor turns clockwise, seen from above (default false). */
+  inline void setClockwise(bool clockwise) { parameters_.clockwise = clockwise; }
+
+  /** \brief Get whether the sensor turns clockwise. */
+  inline bool getClockwise() const { return (parameters_.clockwise); }
+
+  /** \brief Set the azimuth of position 0, radians, counter-clockwise from the x axis (default 0). */
+  inline void setStartAzimuth(double azimuth) { parameters_.start_azimuth = azimuth; }
+
+  /** \brief Get the azimuth of position 0. */
+  inline double getStartAzimuth() const { return (parameters_.start_azimuth); }
+
+  /** \brief Set by how much, in radians, a return's azimuth may differ from that of its column, 0..pi/8 (default pi/8).
+   * Clusters are delivered the later, the larger it is. A return that differs by more is a cluster of its own.
+   */
+  inline void setStagger(double stagger) { parameters_.stagger = stagger; }
+
+  /** \brief Get by how much a return's azimuth may differ from that of its column. */
+  inline double getStagger() const { return (parameters_.stagger); }
+
+  /** \brief Set the number of columns of a turn (default 0: unknown), so that columns can be added without a position.
+   */
+  inline void setColumnsPerTurn(double columns) { parameters_.columns_per_turn = columns; }
+
+  /** \brief Get the number of columns of a turn. */
+  inline double getColumnsPerTurn() const { return (parameters_.columns_per_turn); }
+
+  /** \brief Set how many columns are worked on together, 1..64 (default 16). The fewer, the sooner clusters are
+   * delivered.
+   */
+  inline void setBlockColumns(std::size_t columns) { parameters_.block_columns = columns; }
+
+  /** \brief Get how many columns are worked on together. */
+  inline std::size_t getBlockColumns() const { return (parameters_.block_columns); }
+
+ private:
+  using Base::begun_;
+  using Base::cluster_tolerance_;
+  using Base::header_;
+  using Base::max_pts_per_cluster_;
+  using Base::min_pts_per_cluster_;
+  using Base::most_rows_;
+  using Base::store_;
+
+  /** \brief Adds a column at the position given, or at the engine's next one (nullptr). */
+  bool addColumnAt(const PointT* points, std::size_t count, const double* given_position);
+  void deliver(const lisco::EndlessCluster& delivered);
+
+  lisco::EndlessParameters parameters_;
+  double columns_per_turn_ = 0;  ///< of the stream
+  std::function<void(const LiscoEndlessExtraction&, const lisco::EndlessCluster&)> callback_;
+  lisco::EndlessClusterer clusterer_;
+  // Of the cluster that is being delivered:
+  std::vector<PointT> delivered_points_;
+  std::vector<typename Cluster::Cell> delivered_cells_;
+};
+
+/** \brief A cluster of an endless stream, with its points.
+ * \ingroup segmentation
+ */
+template <typename PointT>
+struct LiscoEndlessCluster {
+  /** \brief Where a point was measured. */
+  struct Cell {
+    std::uint64_t column;  ///< counted from beginStream () or finish ()
+    std::uint32_t row;     ///< its place in the column
+  };
+
+  pcl::PointCloud<PointT> cloud;  ///< the points, in one row
+  std::vector<Cell> cells;        ///< of each of them
+  double first_position;          ///< of its first column, turns
+  double last_position;           ///< of its last column, less than a turn after the first
+  bool is_cut;                    ///< it was delivered for having lasted a whole turn, perhaps before its end
+  bool is_continued;              ///< it goes on from a cut one
+};
+
+}  // namespace pcl
+
+#ifdef PCL_NO_PRECOMPILE
+#include <pcl/segmentation/impl/lisco_endless_extraction.hpp>
+#endif

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include "lisco/cxx17.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <pcl/PointIndices.h>
+#include <pcl/point_cloud.h>
+#include <pcl/segmentation/lisco_column_stream.h>
+
+#include "lisco/window_clusterer.h"
+
+namespace pcl {
+
+/** \brief Euclidean clusters of the last W columns, every H columns, without clustering from scratch.
+ *
+ * \code
+ * pcl::LiscoWindowExtraction<pcl::PointXYZI> windows;
+ * windows.setClusterTolerance (0.4);
+ * windows.setWindowSize (1800);
+ * windows.setHop (100);
+ * windows.beginStream ();
+ * while (...)
+ *   if (windows.addColumn (points, 64)) {                  // a window ends with this column
+ *     std::vector<pcl::PointIndices> clusters;
+ *     windows.extract (clusters);
+ *     ...
+ *   }
+ * \endcode
+ *
+ * extract () gives, byte for byte, the vector that LiscoClusterExtraction::extract () gives for the organized cloud of
+ * the window's columns: row * width + column is the index of a point, the width the number of columns, the height the
+ * most rows of any of them. Columns are as for LiscoStreamExtraction. \ingroup segmentation
+ */
+template <typename PointT>
+class LiscoWindowExtraction : public detail::LiscoColumnStream<PointT> {
+  using Base = detail::LiscoColumnStream<PointT>;
+
+ public:
+  using PointCloud = typename Base::PointCloud;  ///< of its points
+
+  /** \brief Begin a stream. The last one is forgotten.
+   * \return false, after a PCL_ERROR and without effect, if the window is no multiple, 1 or more, of the hop
+   */
+  bool beginStream();
+
+  /** \brief Add the next column.
+   * \param[in] points what the lasers measured; copied
+   * \param[in] count number of rows, may be 0
+   * \return whether a window ends with this column. The first windows are shorter: all columns so far. Also false, after
+   * a PCL_ERROR and without effect: before beginStream (); if there are more rows than lasers declared; if the window
+   * would have more points than pcl::index_t can number
+   */
+  bool addColumn(const PointT* points, std::size_t count);
+
+  /** \brief The same; the points of the cloud are the rows. */
+  bool addColumn(const PointCloud& column);
+
+  /** \brief Extract the clusters of the last window that ended, until the next one ends.
+   * \param[in,out] clusters receives the clusters after those it already holds; then all are sorted by size, largest
+   * first, as LiscoClusterExtraction::extract () does it. Cleared if the window has not one cell.
+   * \return false, after a PCL_ERROR and with \a clusters cleared, if no window has ended
+   */
+  bool extract(std::vector<PointIndices>& clusters);
+
+  /** \brief The organized cloud of the last window that ended, until the next one ends: what the indices are of. Empty
+   * if no window has ended.
+   */
+  inline void getWindow(PointCloud& cloud) const {
+    store_.organize(window_first_, window_end_, cloud);
+    cloud.header = header_;
+  }
+
+  /** \brief Number of columns of the last window that ended, 0 before the first. */
+  inline std::size_t getNumberOfColumns() const { return (static_cast<std::size_t>(window_end_ - window_first_)); }
+
+  /** \brief Set W, the number of columns of a window: a multiple of the hop. Takes effect when the next stream begins. */
+  inline void setWindowSize(std::size_t columns) { window_size_ = columns; }
+
+  /** \brief Get the number of columns of a window. */
+  inline std::size_t getWindowSize() const { return (window_size_); }
+
+  /** \brief Set H, after how many columns the next window ends. Takes effect when the next stream begins. */
+  inline void setHop(std::size_t columns) { hop_ = columns; }
+
+  /** \brief Get after how many columns the next window ends. */
+  inline std::size_t getHop() const { return (hop_); }
+
+ private:
+  using Base::begun_;
+  using Base::cluster_tolerance_;
+  using Base::header_;
+  using Base::most_rows_;
+  using Base::store_;
+
+  std::size_t window_size_ = 0;
+  std::size_t hop_ = 1;
+  std::size_t columns_kept_ = 0;  ///< at the most
+  std::uint64_t window_first_ = 0, window_end_ = 0;
+  lisco::WindowClusterer clusterer_;
+};
+
+}  // namespace pcl
+
+#ifdef PCL_NO_PRECOMPILE
+#include <pcl/segmentation/impl/lisco_window_extraction.hpp>
+#endif
