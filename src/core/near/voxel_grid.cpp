@@ -195,9 +195,9 @@ std::uint32_t& VoxelGrid::firstClique(Brick& brick, std::uint32_t voxel) {
 
 bool VoxelGrid::BloomFilter::mayHaveNear(const Key& brick) const {
   // Three bricks in a row lie in two pairs at most.
-  for (const std::uint32_t x : {((brick[0] - 1) & kBrickMask) / 2, ((brick[0] + 1) & kBrickMask) / 2})
-    for (const std::uint32_t y : {((brick[1] - 1) & kBrickMask) / 2, ((brick[1] + 1) & kBrickMask) / 2})
-      if ((bits_[wordOf(x, y)] & bitOf(x, y)) != 0) return true;
+  for (const std::uint32_t column : {((brick[0] - 1) & kBrickMask) / 2, ((brick[0] + 1) & kBrickMask) / 2})
+    for (const std::uint32_t row : {((brick[1] - 1) & kBrickMask) / 2, ((brick[1] + 1) & kBrickMask) / 2})
+      if ((bits_[wordOf(column, row)] & bitOf(column, row)) != 0) return true;
   return false;
 }
 
