@@ -33,7 +33,9 @@ class LISCO_EXPORT ColumnClusterer {
  public:
   ColumnClusterer();
   ~ColumnClusterer();
+  /// A copy goes on from the same column.
   ColumnClusterer(const ColumnClusterer& other);
+  /// The same.
   ColumnClusterer& operator=(const ColumnClusterer& other);
 
   /// Starts a new rotation and forgets the last one. After an exception other than std::logic_error and
@@ -109,7 +111,7 @@ struct Parameters {
   /// that come one by one, or after these, are the work of one thread.
   std::size_t threads = 1;
 
-  static constexpr std::size_t kMaxThreads = 256;
+  static constexpr std::size_t kMaxThreads = 256;  ///< most threads that are used
 };
 
 }  // namespace lisco

@@ -67,7 +67,9 @@ class LISCO_EXPORT EndlessClusterer {
 
   EndlessClusterer();
   ~EndlessClusterer();
+  /// A copy goes on from the same column.
   EndlessClusterer(const EndlessClusterer& other);
+  /// The same.
   EndlessClusterer& operator=(const EndlessClusterer& other);
 
   /// Starts a new stream; of the last one, nothing more is delivered. After an exception other than std::logic_error and

@@ -40,7 +40,9 @@ class LISCO_EXPORT WindowClusterer {
  public:
   WindowClusterer();
   ~WindowClusterer();
+  /// A copy goes on from the same column.
   WindowClusterer(const WindowClusterer& other);
+  /// The same.
   WindowClusterer& operator=(const WindowClusterer& other);
 
   /// Starts a new stream and forgets the last one. After an exception other than std::logic_error and

@@ -84,7 +84,9 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
 
   LiscoStreamExtraction();
   ~LiscoStreamExtraction();
+  /** \brief A copy goes on from the same column. */
   LiscoStreamExtraction(const LiscoStreamExtraction& other);
+  /** \brief The same. */
   LiscoStreamExtraction& operator=(const LiscoStreamExtraction& other);
 
   /** \brief Number of columns added, which is the width of the cloud so far. */

@@ -76,7 +76,9 @@ class LiscoWindowExtraction : public detail::LiscoColumnStream<PointT> {
 
   LiscoWindowExtraction();
   ~LiscoWindowExtraction();
+  /** \brief A copy goes on from the same column. */
   LiscoWindowExtraction(const LiscoWindowExtraction& other);
+  /** \brief The same. */
   LiscoWindowExtraction& operator=(const LiscoWindowExtraction& other);
 
   /** \brief Number of columns of the last window that ended, 0 before the first. */
