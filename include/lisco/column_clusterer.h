@@ -35,8 +35,10 @@ class LISCO_EXPORT ColumnClusterer {
  public:
   ColumnClusterer();
   ~ColumnClusterer();
-  ColumnClusterer(const ColumnClusterer& other);             ///< with all columns added
-  ColumnClusterer& operator=(const ColumnClusterer& other);  ///< the same
+  /// A copy goes on from the same column.
+  ColumnClusterer(const ColumnClusterer& other);
+  /// The same.
+  ColumnClusterer& operator=(const ColumnClusterer& other);
 
   /// Starts a new rotation and forgets the last one. After an exception other than std::logic_error and
   /// std::invalid_argument (refused memory, a throwing callable), every other call either throws std::logic_error or

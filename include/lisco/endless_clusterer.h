@@ -67,8 +67,10 @@ class LISCO_EXPORT EndlessClusterer {
 
   EndlessClusterer();
   ~EndlessClusterer();
-  EndlessClusterer(const EndlessClusterer& other);             ///< with all columns added
-  EndlessClusterer& operator=(const EndlessClusterer& other);  ///< the same
+  /// A copy goes on from the same column.
+  EndlessClusterer(const EndlessClusterer& other);
+  /// The same.
+  EndlessClusterer& operator=(const EndlessClusterer& other);
 
   /// Starts a new stream; of the last one, nothing more is delivered. After an exception other than std::logic_error
   /// and std::invalid_argument (refused memory, a throwing callback), every other call either throws std::logic_error

@@ -39,10 +39,10 @@ class CellSource {
  public:
   /// Coordinates (metres) and source indices of consecutive cells of one laser.
   struct Destination {
-    float* x;                     ///< of the first cell
+    float* x;                     ///< metres
     float* y;                     ///< the same
     float* z;                     ///< the same
-    std::uint32_t* source_index;  ///< the same
+    std::uint32_t* source_index;  ///< see Return
   };
 
   /// \param cells callable as Return (std::size_t laser, std::size_t column), or, which reads a whole block, as
@@ -106,7 +106,7 @@ class RunVisitor {
             visit_run(source_indices + run->first_cell, std::size_t{run->count}, run->subcluster);
         }) {}
 
-  /// Hands over consecutive runs.
+  /// Visits `count` runs, whose cells index `source_indices`.
   void operator()(const Run* runs, std::size_t count, const std::uint32_t* source_indices) const {
     visit_(context_, runs, count, source_indices);
   }

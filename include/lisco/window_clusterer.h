@@ -40,8 +40,10 @@ class LISCO_EXPORT WindowClusterer {
  public:
   WindowClusterer();
   ~WindowClusterer();
-  WindowClusterer(const WindowClusterer& other);             ///< with all columns added
-  WindowClusterer& operator=(const WindowClusterer& other);  ///< the same
+  /// A copy goes on from the same column.
+  WindowClusterer(const WindowClusterer& other);
+  /// The same.
+  WindowClusterer& operator=(const WindowClusterer& other);
 
   /// Starts a new stream and forgets the last one. After an exception other than std::logic_error and
   /// std::invalid_argument, every other call either throws std::logic_error or does nothing.

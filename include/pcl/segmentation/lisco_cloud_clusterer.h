@@ -21,8 +21,8 @@ namespace pcl {
 
 namespace detail {
 
-/** \brief What LiscoClusterExtraction and extractLiscoClusters () share: reads a PCL cloud into the clustering engine and
- * writes its subclusters as PCL's clusters. Keeps its memory from cloud to cloud.
+/** \brief What LiscoClusterExtraction and extractLiscoClusters () share: reads a PCL cloud into the clustering engine
+ * and writes its subclusters as PCL's clusters. Keeps its memory from cloud to cloud.
  */
 class LISCO_EXPORT LiscoCloudClusterer {
  public:

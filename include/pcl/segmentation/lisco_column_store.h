@@ -10,19 +10,16 @@
 #include <limits>
 #include <vector>
 
-#include <pcl/point_cloud.h>
 #include <pcl/segmentation/lisco_pcl_version.h>
 
 namespace pcl {
 
 namespace detail {
 
-/** \brief The latest columns of a stream. Their cells have names, which the clustering engine is given in place of the points:
- * a running number, modulo 2^32. Keeps its memory, which is that of the most cells that were there at once.
+/** \brief The latest columns of a stream. Their cells have names, which the clustering engine is given in place of the
+ * points: a running number, modulo 2^32. Keeps its memory, which is that of the most cells that were there at once.
  *
- * Its memory comes from std::allocator, and so does all that the library allocates: Eigen's allocator works differently where
- * the code is compiled for AVX, so what one side has allocated by it (every PointCloud), the other side must not free.
- * Clouds that are handed out are therefore made in headers, by the compiler of the one who wants them.
+ * Its memory comes from std::allocator, as all memory that the library allocates: see LiscoColumnStream::allocate ().
  */
 template <typename PointT>
 class LiscoColumnStore {
@@ -88,19 +85,17 @@ class LiscoColumnStore {
     return (height);
   }
 
-  /** \brief Some columns as an organized cloud. Cells that were not given are NaN. */
-  void organize(std::uint64_t first_column, std::uint64_t end_column, PointCloud<PointT>& cloud) const {
+  /** \brief Copies some columns as the points of an organized cloud. Cells that were not given are NaN.
+   * \param[out] points room for (end_column - first_column) * heightOf (first_column, end_column) points
+   */
+  void copyColumns(std::uint64_t first_column, std::uint64_t end_column, PointT* points) const {
     PointT missing{};
     missing.x = missing.y = missing.z = std::numeric_limits<float>::quiet_NaN();
     const auto width = static_cast<std::size_t>(end_column - first_column);
-    const std::size_t height = heightOf(first_column, end_column);
-    cloud.points.assign(width * height, missing);
+    std::fill_n(points, width * heightOf(first_column, end_column), missing);
     for (std::size_t column = 0; column < width; ++column)
       for (std::size_t row = 0; row < rowsOf(first_column + column); ++row)
-        cloud.points[row * width + column] = at(row, first_column + column);
-    cloud.width = static_cast<std::uint32_t>(width);
-    cloud.height = static_cast<std::uint32_t>(height);
-    cloud.is_dense = false;
+        points[row * width + column] = at(row, first_column + column);
   }
 
  private:

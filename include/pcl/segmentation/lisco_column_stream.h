@@ -7,22 +7,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <vector>
 
-#include <pcl/PointIndices.h>
+#include <pcl/PCLHeader.h>
 #include <pcl/point_cloud.h>
-#include <pcl/segmentation/lisco_cluster_writer.h>
-#include <pcl/segmentation/lisco_column_store.h>
-
-#include "lisco/return.h"
+#include <pcl/segmentation/lisco_pcl_version.h>
 
 namespace pcl {
 
 namespace detail {
 
 /** \brief What the classes that are given one column after the other have in common. Errors are reported by PCL_ERROR
- * and have no other effect. An exception (memory was refused, or a callback threw) ends the rotation or stream, unless it
- * comes from writing clusters out: no column is taken and nothing is delivered until the next one begins.
+ * and have no other effect. An exception (memory was refused, or a callback threw) ends the rotation or stream, unless
+ * it comes from writing clusters out: no column is taken and nothing is delivered until the next one begins.
  */
 template <typename PointT>
 class LiscoColumnStream {
@@ -66,35 +62,24 @@ class LiscoColumnStream {
   inline const PCLHeader& getHeader() const { return (header_); }
 
  protected:
-  /** \brief Whether a column can be taken; if not, after a PCL_ERROR.
-   * \param[in] columns number of columns kept, with this one
-   * \param[in] caller named in front of the PCL_ERROR
+  /** \brief Makes room for an organized cloud.
+   *
+   * Eigen's allocator works differently where the code is compiled for AVX, so what one side has allocated by it (every
+   * PointCloud), the other side must not free. The clouds of users are therefore allocated here, by their compiler, and
+   * the library fills them.
    */
-  bool accepts(const PointT* points, std::size_t count, std::size_t columns, const char* caller);
-
-  /** \brief A column with its cells' names, as the engine takes it. Valid until the next call. */
-  const lisco::Return* namedColumn(const PointT* points, std::size_t count, std::uint32_t first_name);
-
-  /** \brief Appends the clusters of some columns as LiscoClusterExtraction does it for their organized cloud.
-   * \param[in] clusterer holds the subclusters of just these columns
-   */
-  template <typename Clusterer>
-  void appendClusters(Clusterer& clusterer, std::uint64_t first_column, std::uint64_t end_column,
-                      std::vector<PointIndices>& clusters);
+  static inline void allocate(std::size_t width, std::size_t height, PointCloud& cloud) {
+    cloud.points.resize(width * height);
+    cloud.width = static_cast<std::uint32_t>(width);
+    cloud.height = static_cast<std::uint32_t>(height);
+    cloud.is_dense = false;
+  }
 
   double cluster_tolerance_ = 0;
   pcl::uindex_t min_pts_per_cluster_ = 1;
   pcl::uindex_t max_pts_per_cluster_ = std::numeric_limits<pcl::uindex_t>::max();
   std::size_t lasers_ = 0;
   PCLHeader header_;
-
-  bool begun_ = false;         ///< and left by no exception since
-  std::size_t most_rows_ = 0;  ///< of any column since the beginning
-  LiscoColumnStore<PointT> store_;
-
- private:
-  LiscoClusterWriter writer_;
-  std::vector<lisco::Return> named_column_;
 };
 
 }  // namespace detail

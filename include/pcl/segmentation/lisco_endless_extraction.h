@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -48,18 +49,7 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
  public:
   using PointCloud = typename Base::PointCloud;                 ///< of its points
   using Cluster = LiscoEndlessCluster<PointT>;                  ///< what is delivered
-  using ClusterCallback = std::function<void(const Cluster&)>;  ///< who gets it
-
-  LiscoEndlessExtraction() = default;
-  LiscoEndlessExtraction(const LiscoEndlessExtraction&) = delete;
-  LiscoEndlessExtraction& operator=(const LiscoEndlessExtraction&) = delete;
-  ~LiscoEndlessExtraction() = default;
-
-  /** \brief Begin a stream. Of the last one nothing more is delivered.
-   * \return false, after a PCL_ERROR and without effect, if the stagger is not within 0..pi/8, the sensor origin is not
-   * finite, or the start azimuth is not within -1e6..1e6 radians
-   */
-  bool beginStream();
+  using ClusterCallback = std::function<void(const Cluster&)>;  ///< receives it
 
   /** \brief Add the next column; delivers what it cannot reach.
    * \param[in] points what the lasers measured; copied
@@ -70,8 +60,14 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
    */
   bool addColumn(const PointT* points, std::size_t count, double position);
 
-  /** \brief The same, 1 / getColumnsPerTurn () turns after the column before, at 0 for the first one. False, after a PCL_ERROR
-   * and without effect, if the number of columns of a turn is not known.
+  /** \brief Begin a stream. Of the last one nothing more is delivered.
+   * \return false, after a PCL_ERROR and without effect, if the stagger is not within 0..pi/8, the sensor origin is not
+   * finite, or the start azimuth is not within -1e6..1e6 radians
+   */
+  bool beginStream();
+
+  /** \brief Add a column, 1 / getColumnsPerTurn () turns after the column before, at 0 for the first one. False, after
+   * a PCL_ERROR and without effect, if the number of columns of a turn is not known.
    */
   bool addColumn(const PointT* points, std::size_t count);
 
@@ -86,39 +82,46 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
   /** \brief The stream has ended: deliver all. More columns may follow; they have nothing to do with those before. */
   void finish();
 
-  /** \brief Set the receiver of the clusters. A cluster is valid during the call: copy what is to last. The receiver must
-   * neither throw nor call this object. Takes effect at once.
+  LiscoEndlessExtraction();
+  ~LiscoEndlessExtraction();
+  LiscoEndlessExtraction(const LiscoEndlessExtraction&) = delete;
+  LiscoEndlessExtraction& operator=(const LiscoEndlessExtraction&) = delete;
+
+  /** \brief Set the receiver of the clusters. A cluster is valid during the call: copy what is to last. The receiver
+   * must neither throw nor call this object. Takes effect at once.
    */
   inline void setClusterCallback(ClusterCallback callback) {
-    callback_ = nullptr;
-    if (!callback) return;
-    // The cluster is made here, not in the library: see LiscoColumnStore.
-    callback_ = [callback = std::move(callback), cluster = Cluster()](const LiscoEndlessExtraction& from,
-                                                                      const lisco::EndlessCluster& delivered) mutable {
-      cluster.cloud.points.assign(from.delivered_points_.begin(), from.delivered_points_.end());
-      cluster.cloud.header = from.header_;
-      cluster.cloud.width = static_cast<std::uint32_t>(cluster.cloud.points.size());
-      cluster.cloud.height = 1;
-      cluster.cloud.is_dense = true;
-      cluster.cells = from.delivered_cells_;
-      cluster.first_position = delivered.firstPosition();
-      cluster.last_position = delivered.lastPosition();
-      cluster.is_cut = delivered.isCut();
-      cluster.is_continued = delivered.isContinued();
-      callback(cluster);
-    };
+    Receiver receiver;
+    // The cluster is made here, not in the library: see LiscoColumnStream::allocate ().
+    if (callback)
+      receiver = [this, callback = std::move(callback), cluster = Cluster()](
+                     const lisco::EndlessCluster& delivered, const PointT* points,
+                     const typename Cluster::Cell* cells) mutable {
+        cluster.cloud.points.assign(points, points + delivered.size());
+        cluster.cloud.header = header_;
+        cluster.cloud.width = static_cast<std::uint32_t>(delivered.size());
+        cluster.cloud.height = 1;
+        cluster.cloud.is_dense = true;
+        cluster.cells.assign(cells, cells + delivered.size());
+        cluster.first_position = delivered.firstPosition();
+        cluster.last_position = delivered.lastPosition();
+        cluster.is_cut = delivered.isCut();
+        cluster.is_continued = delivered.isContinued();
+        callback(cluster);
+      };
+    setReceiver(std::move(receiver));
   }
 
   /** \brief Number of returns since beginStream () of the columns that have been worked on. */
-  inline std::uint64_t getNumberOfReturns() const { return (clusterer_.returnCount()); }
+  std::uint64_t getNumberOfReturns() const;
 
   /** \brief How many of these are outliers: their azimuth differs from that of their column by more than the stagger.
    * Many of them are the sign of a wrong start azimuth, sense of rotation, position or stagger.
    */
-  inline std::uint64_t getNumberOfOutliers() const { return (clusterer_.outlierCount()); }
+  std::uint64_t getNumberOfOutliers() const;
 
   /** \brief Number of columns in memory, of about a turn and a half at the most. */
-  inline std::size_t getNumberOfColumnsHeld() const { return (store_.size()); }
+  std::size_t getNumberOfColumnsHeld() const;
 
   // All of these take effect when the next stream begins, sizes as well.
 
@@ -168,25 +171,24 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
   inline std::size_t getBlockColumns() const { return (parameters_.block_columns); }
 
  private:
-  using Base::begun_;
   using Base::cluster_tolerance_;
   using Base::header_;
+  using Base::lasers_;
   using Base::max_pts_per_cluster_;
   using Base::min_pts_per_cluster_;
-  using Base::most_rows_;
-  using Base::store_;
 
+  /** \brief Makes a user's cluster of the engine's, its points and their cells. */
+  using Receiver =
+      std::function<void(const lisco::EndlessCluster&, const PointT* points, const typename Cluster::Cell* cells)>;
+
+  void setReceiver(Receiver receiver);
   /** \brief Adds a column at the position given, or at the engine's next one (nullptr). */
   bool addColumnAt(const PointT* points, std::size_t count, const double* given_position);
-  void deliver(const lisco::EndlessCluster& delivered);
 
   lisco::EndlessParameters parameters_;
-  double columns_per_turn_ = 0;  ///< of the stream
-  std::function<void(const LiscoEndlessExtraction&, const lisco::EndlessCluster&)> callback_;
-  lisco::EndlessClusterer clusterer_;
-  // Of the cluster that is being delivered:
-  std::vector<PointT> delivered_points_;
-  std::vector<typename Cluster::Cell> delivered_cells_;
+
+  class State;
+  std::unique_ptr<State> state_;
 };
 
 /** \brief A cluster of an endless stream, with its points.

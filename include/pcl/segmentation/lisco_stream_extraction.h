@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include <pcl/PointIndices.h>
@@ -14,13 +15,10 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "lisco/column_clusterer.h"
-#include "lisco/sensor_hints.h"
-
 namespace pcl {
 
-/** \brief Euclidean clusters of a rotating LiDAR's scan, while the sensor turns: the work is done as the columns arrive,
- * the subclusters so far can be had at any moment, and the clusters are there right after the last column.
+/** \brief Euclidean clusters of a rotating LiDAR's scan, while the sensor turns: the work is done as the columns
+ * arrive, the subclusters so far can be had at any moment, and the clusters are there right after the last column.
  *
  * \code
  * pcl::LiscoStreamExtraction<pcl::PointXYZI> stream;
@@ -41,9 +39,8 @@ namespace pcl {
  * The rows of a column are its lasers, always in the same order; a laser without a return is NaN or (0, 0, 0), columns
  * may have fewer rows than others or none. Points of each column are copied.
  *
- * One object for all rotations keeps its memory, and estimates the sensor from the last rotation, which decides the speed,
- * never the result. One object is for one thread at a time; any number of objects may work side by side.
- * \ingroup segmentation
+ * One object for all rotations keeps its memory, and estimates the sensor from the last rotation, which decides the
+ * speed, never the result. It is for one thread at a time; any number may work side by side. \ingroup segmentation
  */
 template <typename PointT>
 class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
@@ -85,8 +82,15 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
     return (ended);
   }
 
+  LiscoStreamExtraction();
+  ~LiscoStreamExtraction();
+  /** \brief A copy goes on from the same column. */
+  LiscoStreamExtraction(const LiscoStreamExtraction& other);
+  /** \brief The same. */
+  LiscoStreamExtraction& operator=(const LiscoStreamExtraction& other);
+
   /** \brief Number of columns added, which is the width of the cloud so far. */
-  inline std::size_t getNumberOfColumns() const { return (store_.size()); }
+  std::size_t getNumberOfColumns() const;
 
   // The looks: at the columns so far of this rotation, or at the last rotation until the next one begins.
 
@@ -98,27 +102,28 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
    */
   void getSubclusterSizes(std::vector<pcl::uindex_t>& sizes);
 
-  /** \brief The number of the subcluster that a point is in; -1 if there is no return, or no such row or column. Numbers
-   * hold until the next column is added.
+  /** \brief The number of the subcluster that a point is in; -1 if there is no return, or no such row or column.
+   * Numbers hold until the next column is added.
    */
   pcl::index_t getSubcluster(std::size_t row, std::size_t column);
 
-  /** \brief The subclusters of at least the least and at most the largest size: the clusters, if the rotation were over.
-   * The width of the cloud is the number of columns so far, and changes the points' indices with every column.
+  /** \brief The subclusters of at least the least and at most the largest size: the clusters, if the rotation were
+   * over. The width of the cloud is the number of columns so far, and changes the points' indices with every column.
    * \param[out] clusters as of endRotation (); what it held is forgotten
    */
   void getSubclusters(std::vector<PointIndices>& clusters);
 
   /** \brief The organized cloud of the columns so far. Cells that were not given are NaN. */
   inline void getCloud(PointCloud& cloud) const {
-    store_.organize(0, store_.endColumn(), cloud);
+    Base::allocate(getNumberOfColumns(), numberOfRows(), cloud);
+    copyColumns(cloud.points.data());
     cloud.header = header_;
     cloud.sensor_origin_ = getSensorOrigin();
     cloud.sensor_orientation_ = Eigen::Quaternionf::Identity();
   }
 
-  /** \brief Where the sensor stands in the coordinates of the points (default: the origin). Helps the speed if it is not
-   * there, and is the sensor_origin_ of the cloud.
+  /** \brief Position of the sensor, metres, in the coordinates of the points (default: the origin). Decides the speed
+   * only, and is the sensor_origin_ of the cloud.
    */
   inline void setSensorOrigin(const Eigen::Vector4f& origin) { sensor_origin_ = {origin[0], origin[1], origin[2]}; }
 
@@ -136,21 +141,21 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
   inline std::size_t getBlockColumns() const { return (block_columns_); }
 
  private:
-  using Base::begun_;
   using Base::cluster_tolerance_;
   using Base::header_;
-  using Base::most_rows_;
-  using Base::store_;
+  using Base::lasers_;
 
   void update();
   void learn();
+  std::size_t numberOfRows() const;
+  /** \brief Fills the points of getCloud (). */
+  void copyColumns(PointT* points) const;
 
   std::array<float, 3> sensor_origin_{};
   std::size_t block_columns_ = 64;
-  lisco::ColumnClusterer clusterer_;
-  lisco::SensorHints hints_;  ///< from the last rotation that was ended
-  bool has_ended_ = false;    ///< the rotation in the store
-  bool is_up_to_date_ = false;
+
+  class State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace pcl

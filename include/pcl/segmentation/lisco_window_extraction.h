@@ -5,14 +5,12 @@
 #include "lisco/cxx17.h"
 
 #include <cstddef>
-#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <pcl/PointIndices.h>
 #include <pcl/point_cloud.h>
 #include <pcl/segmentation/lisco_column_stream.h>
-
-#include "lisco/window_clusterer.h"
 
 namespace pcl {
 
@@ -51,8 +49,8 @@ class LiscoWindowExtraction : public detail::LiscoColumnStream<PointT> {
   /** \brief Add the next column.
    * \param[in] points what the lasers measured; copied
    * \param[in] count number of rows, may be 0
-   * \return whether a window ends with this column. The first windows are shorter: all columns so far. Also false, after
-   * a PCL_ERROR and without effect: before beginStream (); if there are more rows than lasers declared; if the window
+   * \return whether a window ends with this column. The first windows are shorter: all columns so far. Also false,
+   * after a PCL_ERROR and without effect: before beginStream (); if there are more rows than lasers declared; if the window
    * would have more points than pcl::index_t can number
    */
   bool addColumn(const PointT* points, std::size_t count);
@@ -71,14 +69,23 @@ class LiscoWindowExtraction : public detail::LiscoColumnStream<PointT> {
    * if no window has ended.
    */
   inline void getWindow(PointCloud& cloud) const {
-    store_.organize(window_first_, window_end_, cloud);
+    Base::allocate(getNumberOfColumns(), numberOfRows(), cloud);
+    copyColumns(cloud.points.data());
     cloud.header = header_;
   }
 
-  /** \brief Number of columns of the last window that ended, 0 before the first. */
-  inline std::size_t getNumberOfColumns() const { return (static_cast<std::size_t>(window_end_ - window_first_)); }
+  LiscoWindowExtraction();
+  ~LiscoWindowExtraction();
+  /** \brief A copy goes on from the same column. */
+  LiscoWindowExtraction(const LiscoWindowExtraction& other);
+  /** \brief The same. */
+  LiscoWindowExtraction& operator=(const LiscoWindowExtraction& other);
 
-  /** \brief Set W, the number of columns of a window: a multiple of the hop. Takes effect when the next stream begins. */
+  /** \brief Number of columns of the last window that ended, 0 before the first. */
+  std::size_t getNumberOfColumns() const;
+
+  /** \brief Set W, the number of columns of a window: a multiple of the hop. Takes effect when the next stream begins.
+   */
   inline void setWindowSize(std::size_t columns) { window_size_ = columns; }
 
   /** \brief Get the number of columns of a window. */
@@ -91,17 +98,19 @@ class LiscoWindowExtraction : public detail::LiscoColumnStream<PointT> {
   inline std::size_t getHop() const { return (hop_); }
 
  private:
-  using Base::begun_;
   using Base::cluster_tolerance_;
   using Base::header_;
-  using Base::most_rows_;
-  using Base::store_;
+  using Base::lasers_;
+
+  std::size_t numberOfRows() const;
+  /** \brief Fills the points of getWindow (). */
+  void copyColumns(PointT* points) const;
 
   std::size_t window_size_ = 0;
   std::size_t hop_ = 1;
-  std::size_t columns_kept_ = 0;  ///< at the most
-  std::uint64_t window_first_ = 0, window_end_ = 0;
-  lisco::WindowClusterer clusterer_;
+
+  class State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace pcl

@@ -6,13 +6,53 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include <pcl/console/print.h>
 #include <pcl/segmentation/lisco_endless_extraction.h>
 #include <pcl/segmentation/impl/lisco_column_stream.hpp>
 
+#include "lisco/endless_clusterer.h"
 #include "lisco/export.h"
+
+template <typename PointT>
+class pcl::LiscoEndlessExtraction<PointT>::State : public detail::LiscoReceivedColumns<PointT> {
+ public:
+  /** \brief Looks up the points of a cluster and passes them on. */
+  void deliver(const lisco::EndlessCluster& delivered) {
+    if (!receiver) return;
+    points_.clear();
+    cells_.clear();
+    delivered.forEachRun([this](const std::uint32_t* names, std::size_t count) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto cell = this->store.cellOf(names[i]);
+        points_.push_back(this->store.pointOf(names[i]));
+        cells_.push_back({cell.column, cell.row});
+      }
+    });
+    receiver(delivered, points_.data(), cells_.data());
+  }
+
+  double columns_per_turn = 0;  ///< of the stream
+  Receiver receiver;
+  lisco::EndlessClusterer clusterer;
+
+ private:
+  // Of the cluster that is being delivered:
+  std::vector<PointT> points_;
+  std::vector<typename Cluster::Cell> cells_;
+};
+
+template <typename PointT>
+pcl::LiscoEndlessExtraction<PointT>::LiscoEndlessExtraction() : state_(std::make_unique<State>()) {}
+
+template <typename PointT>
+pcl::LiscoEndlessExtraction<PointT>::~LiscoEndlessExtraction() = default;
 
 template <typename PointT>
 bool pcl::LiscoEndlessExtraction<PointT>::beginStream() {
@@ -20,19 +60,20 @@ bool pcl::LiscoEndlessExtraction<PointT>::beginStream() {
   parameters.tolerance = static_cast<float>(cluster_tolerance_);
   parameters.min_size = min_pts_per_cluster_;
   parameters.max_size = max_pts_per_cluster_;
-  const bool begun = begun_;
-  begun_ = false;  // unless nothing is thrown, here and below
+  const bool begun = state_->begun;
+  state_->begun = false;  // unless nothing is thrown, here and below
   try {
-    clusterer_.begin(parameters, [this](const lisco::EndlessCluster& delivered) { deliver(delivered); });
+    state_->clusterer.begin(
+        parameters, [state = state_.get()](const lisco::EndlessCluster& delivered) { state->deliver(delivered); });
   } catch (const std::invalid_argument& error) {
     PCL_ERROR("[pcl::LiscoEndlessExtraction::beginStream] %s.\n", error.what());
-    begun_ = begun;
+    state_->begun = begun;
     return (false);
   }
-  columns_per_turn_ = parameters.columns_per_turn;
-  store_.clear();
-  most_rows_ = 0;
-  begun_ = true;
+  state_->columns_per_turn = parameters.columns_per_turn;
+  state_->store.clear();
+  state_->most_rows = 0;
+  state_->begun = true;
   return (true);
 }
 
@@ -40,28 +81,28 @@ template <typename PointT>
 bool pcl::LiscoEndlessExtraction<PointT>::addColumnAt(const PointT* points, std::size_t count,
                                                       const double* given_position) {
   const char* const caller = "pcl::LiscoEndlessExtraction::addColumn";
-  if (!this->accepts(points, count, store_.size() + 1, caller)) return (false);
-  const double position = given_position ? *given_position : clusterer_.nextPosition();
+  if (!state_->accepts(points, count, state_->store.size() + 1, lasers_, caller)) return (false);
+  const double position = given_position ? *given_position : state_->clusterer.nextPosition();
   if (!(std::fabs(position) <= lisco::EndlessParameters::kMaxPosition)) {
     PCL_ERROR("[%s] A position of %g turns.\n", caller, position);
     return (false);
   }
-  if (store_.size() > 0 && position < store_.positionOf(store_.endColumn() - 1)) {
+  if (state_->store.size() > 0 && position < state_->store.positionOf(state_->store.endColumn() - 1)) {
     PCL_ERROR("[%s] A position of %.17g turns, after one of %.17g.\n", caller, position,
-              store_.positionOf(store_.endColumn() - 1));
+              state_->store.positionOf(state_->store.endColumn() - 1));
     return (false);
   }
-  begun_ = false;
-  most_rows_ = std::max(most_rows_, count);
-  const std::uint32_t first = store_.add(points, count, position);
-  const lisco::Return* const cells = this->namedColumn(points, count, first);
+  state_->begun = false;
+  state_->most_rows = std::max(state_->most_rows, count);
+  const std::uint32_t first = state_->store.add(points, count, position);
+  const lisco::Return* const cells = state_->namedColumn(points, count, first);
   if (given_position)
-    clusterer_.addColumn(cells, count, position);
+    state_->clusterer.addColumn(cells, count, position);
   else
-    clusterer_.addColumn(cells, count);
-  begun_ = true;
+    state_->clusterer.addColumn(cells, count);
+  state_->begun = true;
   constexpr double kKept = 1.5;  // turns, within which the engine names a cell again
-  while (store_.positionOf(store_.firstColumn()) < position - kKept) store_.dropFirst();
+  while (state_->store.positionOf(state_->store.firstColumn()) < position - kKept) state_->store.dropFirst();
   return (true);
 }
 
@@ -72,7 +113,7 @@ bool pcl::LiscoEndlessExtraction<PointT>::addColumn(const PointT* points, std::s
 
 template <typename PointT>
 bool pcl::LiscoEndlessExtraction<PointT>::addColumn(const PointT* points, std::size_t count) {
-  if (begun_ && !(columns_per_turn_ > 0)) {
+  if (state_->begun && !(state_->columns_per_turn > 0)) {
     PCL_ERROR(
         "[pcl::LiscoEndlessExtraction::addColumn] A column without a position, and the number of columns of a turn is "
         "not known.\n");
@@ -93,34 +134,39 @@ bool pcl::LiscoEndlessExtraction<PointT>::addColumn(const PointCloud& column) {
 
 template <typename PointT>
 void pcl::LiscoEndlessExtraction<PointT>::update() {
-  if (!begun_) return;
-  begun_ = false;
-  clusterer_.update();
-  begun_ = true;
+  if (!state_->begun) return;
+  state_->begun = false;
+  state_->clusterer.update();
+  state_->begun = true;
 }
 
 template <typename PointT>
 void pcl::LiscoEndlessExtraction<PointT>::finish() {
-  if (!begun_) return;
-  begun_ = false;
-  clusterer_.finish();
-  store_.clear();
-  begun_ = true;
+  if (!state_->begun) return;
+  state_->begun = false;
+  state_->clusterer.finish();
+  state_->store.clear();
+  state_->begun = true;
 }
 
 template <typename PointT>
-void pcl::LiscoEndlessExtraction<PointT>::deliver(const lisco::EndlessCluster& delivered) {
-  if (!callback_) return;
-  delivered_points_.clear();
-  delivered_cells_.clear();
-  delivered.forEachRun([this](const std::uint32_t* names, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto cell = store_.cellOf(names[i]);
-      delivered_points_.push_back(store_.pointOf(names[i]));
-      delivered_cells_.push_back({cell.column, cell.row});
-    }
-  });
-  callback_(*this, delivered);
+std::uint64_t pcl::LiscoEndlessExtraction<PointT>::getNumberOfReturns() const {
+  return (state_->clusterer.returnCount());
+}
+
+template <typename PointT>
+std::uint64_t pcl::LiscoEndlessExtraction<PointT>::getNumberOfOutliers() const {
+  return (state_->clusterer.outlierCount());
+}
+
+template <typename PointT>
+std::size_t pcl::LiscoEndlessExtraction<PointT>::getNumberOfColumnsHeld() const {
+  return (state_->store.size());
+}
+
+template <typename PointT>
+void pcl::LiscoEndlessExtraction<PointT>::setReceiver(Receiver receiver) {
+  state_->receiver = std::move(receiver);
 }
 
 #define PCL_INSTANTIATE_LiscoEndlessExtraction(T) template class LISCO_EXPORT pcl::LiscoEndlessExtraction<T>;

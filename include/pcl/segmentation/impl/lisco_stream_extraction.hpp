@@ -5,52 +5,90 @@
 #include "lisco/cxx17.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
 
 #include <pcl/console/print.h>
 #include <pcl/segmentation/lisco_stream_extraction.h>
 #include <pcl/segmentation/impl/lisco_column_stream.hpp>
 
+#include "lisco/column_clusterer.h"
 #include "lisco/export.h"
+#include "lisco/return.h"
 #include "lisco/sensor_hints.h"
 
 template <typename PointT>
+class pcl::LiscoStreamExtraction<PointT>::State : public detail::LiscoReceivedColumns<PointT> {
+ public:
+  lisco::ColumnClusterer clusterer;
+  lisco::SensorHints hints;  ///< from the last rotation that was ended
+  bool has_ended = false;    ///< the rotation in the store
+  bool is_up_to_date = false;
+};
+
+template <typename PointT>
+pcl::LiscoStreamExtraction<PointT>::LiscoStreamExtraction() : state_(std::make_unique<State>()) {}
+
+template <typename PointT>
+pcl::LiscoStreamExtraction<PointT>::~LiscoStreamExtraction() = default;
+
+template <typename PointT>
+pcl::LiscoStreamExtraction<PointT>::LiscoStreamExtraction(const LiscoStreamExtraction& other)
+    : Base(other),
+      sensor_origin_(other.sensor_origin_),
+      block_columns_(other.block_columns_),
+      state_(std::make_unique<State>(*other.state_)) {}
+
+template <typename PointT>
+pcl::LiscoStreamExtraction<PointT>& pcl::LiscoStreamExtraction<PointT>::operator=(const LiscoStreamExtraction& other) {
+  Base::operator=(other);
+  sensor_origin_ = other.sensor_origin_;
+  block_columns_ = other.block_columns_;
+  *state_ = *other.state_;
+  return (*this);
+}
+
+template <typename PointT>
 void pcl::LiscoStreamExtraction<PointT>::learn() {
-  const std::size_t columns = store_.size();
-  const auto cell_at = [this](std::size_t laser, std::size_t column) {
-    if (laser >= store_.rowsOf(column)) return (lisco::kNoReturn);
-    const PointT& point = store_.at(laser, column);
+  const std::size_t columns = state_->store.size();
+  const auto cell_at = [&store = state_->store](std::size_t laser, std::size_t column) {
+    if (laser >= store.rowsOf(column)) return (lisco::kNoReturn);
+    const PointT& point = store.at(laser, column);
     return (lisco::Return{point.x, point.y, point.z, 0});
   };
-  hints_ = lisco::estimateSensor(columns, most_rows_, sensor_origin_, lisco::CellSource(cell_at));
+  state_->hints = lisco::estimateSensor(columns, state_->most_rows, sensor_origin_, lisco::CellSource(cell_at));
 }
 
 template <typename PointT>
 void pcl::LiscoStreamExtraction<PointT>::beginRotation() {
-  begun_ = false;  // unless nothing is thrown, here and below
-  if (has_ended_) learn();
+  state_->begun = false;  // unless nothing is thrown, here and below
+  if (state_->has_ended) learn();
   lisco::Parameters parameters;
   parameters.tolerance = static_cast<float>(cluster_tolerance_);
-  parameters.sensor = hints_;
+  parameters.sensor = state_->hints;
   parameters.block_columns = block_columns_;
-  clusterer_.begin(parameters);
-  store_.clear();
-  most_rows_ = 0;
-  begun_ = true;
-  has_ended_ = false;
-  is_up_to_date_ = false;
+  state_->clusterer.begin(parameters);
+  state_->store.clear();
+  state_->most_rows = 0;
+  state_->begun = true;
+  state_->has_ended = false;
+  state_->is_up_to_date = false;
 }
 
 template <typename PointT>
 bool pcl::LiscoStreamExtraction<PointT>::addColumn(const PointT* points, std::size_t count) {
-  if (!this->accepts(points, count, store_.size() + 1, "pcl::LiscoStreamExtraction::addColumn")) return (false);
-  begun_ = false;
-  most_rows_ = std::max(most_rows_, count);
-  const std::uint32_t first = store_.add(points, count);
-  clusterer_.addColumns(1, count, [&](std::size_t row, std::size_t) {
+  if (!state_->accepts(points, count, state_->store.size() + 1, lasers_, "pcl::LiscoStreamExtraction::addColumn"))
+    return (false);
+  state_->begun = false;
+  state_->most_rows = std::max(state_->most_rows, count);
+  const std::uint32_t first = state_->store.add(points, count);
+  state_->clusterer.addColumns(1, count, [&](std::size_t row, std::size_t) {
     return (lisco::Return{points[row].x, points[row].y, points[row].z, first + static_cast<std::uint32_t>(row)});
   });
-  is_up_to_date_ = false;
-  begun_ = true;
+  state_->is_up_to_date = false;
+  state_->begun = true;
   return (true);
 }
 
@@ -61,32 +99,47 @@ bool pcl::LiscoStreamExtraction<PointT>::addColumn(const PointCloud& column) {
 
 template <typename PointT>
 void pcl::LiscoStreamExtraction<PointT>::update() {
-  if (is_up_to_date_) return;
-  const bool begun = begun_;
-  begun_ = false;
-  clusterer_.update();
-  begun_ = begun;
-  is_up_to_date_ = true;
+  if (state_->is_up_to_date) return;
+  const bool begun = state_->begun;
+  state_->begun = false;
+  state_->clusterer.update();
+  state_->begun = begun;
+  state_->is_up_to_date = true;
+}
+
+template <typename PointT>
+std::size_t pcl::LiscoStreamExtraction<PointT>::getNumberOfColumns() const {
+  return (state_->store.size());
+}
+
+template <typename PointT>
+std::size_t pcl::LiscoStreamExtraction<PointT>::numberOfRows() const {
+  return (state_->store.heightOf(0, state_->store.endColumn()));
+}
+
+template <typename PointT>
+void pcl::LiscoStreamExtraction<PointT>::copyColumns(PointT* points) const {
+  state_->store.copyColumns(0, state_->store.endColumn(), points);
 }
 
 template <typename PointT>
 std::size_t pcl::LiscoStreamExtraction<PointT>::getNumberOfSubclusters() {
   update();
-  return (clusterer_.subclusterCount());
+  return (state_->clusterer.subclusterCount());
 }
 
 template <typename PointT>
 void pcl::LiscoStreamExtraction<PointT>::getSubclusterSizes(std::vector<pcl::uindex_t>& sizes) {
   update();
-  sizes.resize(clusterer_.subclusterCount());
-  for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = clusterer_.sizeOf(static_cast<std::uint32_t>(i));
+  sizes.resize(state_->clusterer.subclusterCount());
+  for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = state_->clusterer.sizeOf(static_cast<std::uint32_t>(i));
 }
 
 template <typename PointT>
 pcl::index_t pcl::LiscoStreamExtraction<PointT>::getSubcluster(std::size_t row, std::size_t column) {
-  if (column >= store_.size() || row >= store_.rowsOf(column)) return (-1);
+  if (column >= state_->store.size() || row >= state_->store.rowsOf(column)) return (-1);
   update();
-  const std::uint32_t subcluster = clusterer_.subclusterAt(row, column);
+  const std::uint32_t subcluster = state_->clusterer.subclusterAt(row, column);
   return (subcluster == lisco::ColumnClusterer::kNone ? -1 : static_cast<pcl::index_t>(subcluster));
 }
 
@@ -94,20 +147,20 @@ template <typename PointT>
 void pcl::LiscoStreamExtraction<PointT>::getSubclusters(std::vector<PointIndices>& clusters) {
   update();
   clusters.clear();
-  this->appendClusters(clusterer_, 0, store_.endColumn(), clusters);
+  state_->appendClusters(state_->clusterer, 0, state_->store.endColumn(), *this, clusters);
 }
 
 template <typename PointT>
 bool pcl::LiscoStreamExtraction<PointT>::endRotation(std::vector<PointIndices>& clusters) {
-  if (!begun_) {
+  if (!state_->begun) {
     PCL_ERROR("[pcl::LiscoStreamExtraction::endRotation] No rotation has begun, or after an exception.\n");
     clusters.clear();
     return (false);
   }
   update();
-  this->appendClusters(clusterer_, 0, store_.endColumn(), clusters);
-  begun_ = false;
-  has_ended_ = true;
+  state_->appendClusters(state_->clusterer, 0, state_->store.endColumn(), *this, clusters);
+  state_->begun = false;
+  state_->has_ended = true;
   return (true);
 }
 

@@ -5,46 +5,79 @@
 #include "lisco/cxx17.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <stdexcept>
+#include <vector>
 
 #include <pcl/console/print.h>
 #include <pcl/segmentation/lisco_window_extraction.h>
 #include <pcl/segmentation/impl/lisco_column_stream.hpp>
 
 #include "lisco/export.h"
+#include "lisco/window_clusterer.h"
+
+template <typename PointT>
+class pcl::LiscoWindowExtraction<PointT>::State : public detail::LiscoReceivedColumns<PointT> {
+ public:
+  std::size_t columns_kept = 0;  ///< at the most
+  std::uint64_t window_first = 0, window_end = 0;
+  lisco::WindowClusterer clusterer;
+};
+
+template <typename PointT>
+pcl::LiscoWindowExtraction<PointT>::LiscoWindowExtraction() : state_(std::make_unique<State>()) {}
+
+template <typename PointT>
+pcl::LiscoWindowExtraction<PointT>::~LiscoWindowExtraction() = default;
+
+template <typename PointT>
+pcl::LiscoWindowExtraction<PointT>::LiscoWindowExtraction(const LiscoWindowExtraction& other)
+    : Base(other), window_size_(other.window_size_), hop_(other.hop_), state_(std::make_unique<State>(*other.state_)) {}
+
+template <typename PointT>
+pcl::LiscoWindowExtraction<PointT>& pcl::LiscoWindowExtraction<PointT>::operator=(const LiscoWindowExtraction& other) {
+  Base::operator=(other);
+  window_size_ = other.window_size_;
+  hop_ = other.hop_;
+  *state_ = *other.state_;
+  return (*this);
+}
 
 template <typename PointT>
 bool pcl::LiscoWindowExtraction<PointT>::beginStream() {
-  const bool begun = begun_;
-  begun_ = false;  // unless nothing is thrown, here and below
+  const bool begun = state_->begun;
+  state_->begun = false;  // unless nothing is thrown, here and below
   try {
-    clusterer_.begin({static_cast<float>(cluster_tolerance_), window_size_, hop_, 0});
+    state_->clusterer.begin({static_cast<float>(cluster_tolerance_), window_size_, hop_, 0});
   } catch (const std::invalid_argument&) {
     PCL_ERROR("[pcl::LiscoWindowExtraction::beginStream] A window of %zu columns is no multiple of a hop of %zu.\n",
               window_size_, hop_);
-    begun_ = begun;
+    state_->begun = begun;
     return (false);
   }
-  store_.clear();
-  most_rows_ = 0;
-  window_first_ = window_end_ = 0;
-  columns_kept_ = window_size_ + hop_;
-  begun_ = true;
+  state_->store.clear();
+  state_->most_rows = 0;
+  state_->window_first = state_->window_end = 0;
+  state_->columns_kept = window_size_ + hop_;
+  state_->begun = true;
   return (true);
 }
 
 template <typename PointT>
 bool pcl::LiscoWindowExtraction<PointT>::addColumn(const PointT* points, std::size_t count) {
-  if (!this->accepts(points, count, columns_kept_, "pcl::LiscoWindowExtraction::addColumn")) return (false);
-  begun_ = false;
-  most_rows_ = std::max(most_rows_, count);
-  const std::uint32_t first = store_.add(points, count);
-  const bool window_ends = clusterer_.addColumn(this->namedColumn(points, count, first), count);
-  begun_ = true;
+  if (!state_->accepts(points, count, state_->columns_kept, lasers_, "pcl::LiscoWindowExtraction::addColumn"))
+    return (false);
+  state_->begun = false;
+  state_->most_rows = std::max(state_->most_rows, count);
+  const std::uint32_t first = state_->store.add(points, count);
+  const bool window_ends = state_->clusterer.addColumn(state_->namedColumn(points, count, first), count);
+  state_->begun = true;
   if (!window_ends) return (false);
-  window_end_ = store_.endColumn();
-  window_first_ = window_end_ - clusterer_.columnCount();
-  while (store_.firstColumn() < window_first_) store_.dropFirst();
+  state_->window_end = state_->store.endColumn();
+  state_->window_first = state_->window_end - state_->clusterer.columnCount();
+  while (state_->store.firstColumn() < state_->window_first) state_->store.dropFirst();
   return (true);
 }
 
@@ -55,13 +88,28 @@ bool pcl::LiscoWindowExtraction<PointT>::addColumn(const PointCloud& column) {
 
 template <typename PointT>
 bool pcl::LiscoWindowExtraction<PointT>::extract(std::vector<PointIndices>& clusters) {
-  if (!begun_ || window_first_ == window_end_) {
+  if (!state_->begun || state_->window_first == state_->window_end) {
     PCL_ERROR("[pcl::LiscoWindowExtraction::extract] No window has ended, or after an exception.\n");
     clusters.clear();
     return (false);
   }
-  this->appendClusters(clusterer_, window_first_, window_end_, clusters);
+  state_->appendClusters(state_->clusterer, state_->window_first, state_->window_end, *this, clusters);
   return (true);
+}
+
+template <typename PointT>
+std::size_t pcl::LiscoWindowExtraction<PointT>::getNumberOfColumns() const {
+  return (static_cast<std::size_t>(state_->window_end - state_->window_first));
+}
+
+template <typename PointT>
+std::size_t pcl::LiscoWindowExtraction<PointT>::numberOfRows() const {
+  return (state_->store.heightOf(state_->window_first, state_->window_end));
+}
+
+template <typename PointT>
+void pcl::LiscoWindowExtraction<PointT>::copyColumns(PointT* points) const {
+  state_->store.copyColumns(state_->window_first, state_->window_end, points);
 }
 
 #define PCL_INSTANTIATE_LiscoWindowExtraction(T) template class LISCO_EXPORT pcl::LiscoWindowExtraction<T>;
