@@ -88,19 +88,7 @@ TEST(EndlessClusterer, KeepsItsDefinitionForAYearOfTurns) {
   lisco::EndlessClusterer clusterer;
   std::vector<Delivery> deliveries;
   std::size_t column = 0;
-  const auto receive = [&](const lisco::EndlessCluster& cluster) {
-    deliveries.push_back({{},
-                          cluster.isCut(),
-                          cluster.isContinued(),
-                          cluster.firstPosition(),
-                          cluster.lastPosition(),
-                          cluster.reachEnd(),
-                          column});
-    cluster.forEachRun([&](const std::uint32_t* indices, std::size_t count) {
-      deliveries.back().members.insert(deliveries.back().members.end(), indices, indices + count);
-    });
-    std::sort(deliveries.back().members.begin(), deliveries.back().members.end());
-  };
+  const auto receive = [&](const lisco::EndlessCluster& cluster) { deliveries.push_back(deliveryOf(cluster, column)); };
   clusterer.begin(parameters, receive);
   std::size_t returns = 0;
   for (int burst = 0; burst < kBursts; ++burst) {

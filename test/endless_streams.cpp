@@ -260,24 +260,29 @@ void scale(EndlessStream& stream, double factor) {
       for (float* coordinate : {&cell.x, &cell.y, &cell.z}) scaled(*coordinate);
 }
 
+Delivery deliveryOf(const lisco::EndlessCluster& cluster, std::size_t column) {
+  Delivery delivery{{},
+                    cluster.isCut(),
+                    cluster.isContinued(),
+                    cluster.firstPosition(),
+                    cluster.lastPosition(),
+                    cluster.reachEnd(),
+                    column};
+  cluster.forEachRun([&](const std::uint32_t* indices, std::size_t count) {
+    delivery.members.insert(delivery.members.end(), indices, indices + count);
+  });
+  std::sort(delivery.members.begin(), delivery.members.end());
+  return delivery;
+}
+
 std::vector<Delivery> deliveriesOf(lisco::EndlessClusterer& clusterer, const EndlessStream& stream) {
   std::vector<Delivery> deliveries;
   std::size_t column = 0;
   clusterer.begin(stream.parameters, [&](const lisco::EndlessCluster& cluster) {
-    Delivery delivery{{},
-                      cluster.isCut(),
-                      cluster.isContinued(),
-                      cluster.firstPosition(),
-                      cluster.lastPosition(),
-                      cluster.reachEnd(),
-                      column};
-    cluster.forEachRun([&](const std::uint32_t* indices, std::size_t count) {
-      delivery.members.insert(delivery.members.end(), indices, indices + count);
-    });
+    Delivery delivery = deliveryOf(cluster, column);
     EXPECT_EQ(delivery.members.size(), cluster.size());
     EXPECT_LE(cluster.lastPosition() - cluster.firstPosition(), 1.0);  // less, but for rounding
-    std::sort(delivery.members.begin(), delivery.members.end());
-    deliveries.push_back(delivery);
+    deliveries.push_back(std::move(delivery));
   });
   for (; column < stream.columns.size(); ++column)
     clusterer.addColumn(stream.columns[column].cells.data(), stream.columns[column].cells.size(),

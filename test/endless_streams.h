@@ -47,6 +47,9 @@ struct Delivery {
 };
 std::ostream& operator<<(std::ostream& out, const Delivery& delivery);
 
+/// What the engine delivers when a column comes.
+Delivery deliveryOf(const lisco::EndlessCluster& cluster, std::size_t column);
+
 /// What doc/streaming.md defines, return by return.
 struct EndlessTruth {
   std::vector<Delivery> deliveries;  ///< ordered by their members

@@ -377,18 +377,7 @@ class EndlessSession {
  private:
   void receive(const lisco::EndlessCluster& cluster) {
     if (fuse_ != nullptr) fuse_->burn();
-    Delivery delivery{{},
-                      cluster.isCut(),
-                      cluster.isContinued(),
-                      cluster.firstPosition(),
-                      cluster.lastPosition(),
-                      cluster.reachEnd(),
-                      column_};
-    cluster.forEachRun([&](const std::uint32_t* indices, std::size_t count) {
-      delivery.members.insert(delivery.members.end(), indices, indices + count);
-    });
-    std::sort(delivery.members.begin(), delivery.members.end());
-    deliveries_.push_back(std::move(delivery));
+    deliveries_.push_back(deliveryOf(cluster, column_));
   }
 
   const Unending& unending_;

@@ -92,7 +92,7 @@ class LISCO_EXPORT ColumnClusterer {
   void receive(std::size_t columns, std::size_t lasers, const CellSource& cells);
   void visitRuns(const RunVisitor& visit);
 
-  class Rotation;
+  class LISCO_HIDDEN Rotation;
   std::unique_ptr<Rotation> rotation_;
 };
 

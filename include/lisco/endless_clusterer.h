@@ -107,7 +107,7 @@ class LISCO_EXPORT EndlessClusterer {
   std::size_t returnsHeld() const;
 
  private:
-  class Stream;
+  class LISCO_HIDDEN Stream;
   std::unique_ptr<Stream> stream_;
 };
 

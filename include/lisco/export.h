@@ -2,10 +2,12 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-/// What a shared library gives its users; all else in it is hidden. A static library gives nothing on: what links
-/// it shall not offer it to others, perhaps in another version.
+/// Exported by a shared library; all else in it is hidden. A static library exports nothing: a library that links it
+/// does not offer it to others, who may use another version.
 #if defined(LISCO_STATIC)
 #define LISCO_EXPORT
 #else
 #define LISCO_EXPORT __attribute__((visibility("default")))
 #endif
+/// Not exported, though nested in a class that is.
+#define LISCO_HIDDEN __attribute__((visibility("hidden")))

@@ -76,7 +76,7 @@ class LISCO_EXPORT WindowClusterer {
  private:
   void visitRuns(const RunVisitor& visit);
 
-  class Window;
+  class LISCO_HIDDEN Window;
   std::unique_ptr<Window> window_;
 };
 
