@@ -12,13 +12,13 @@
 #include "core/endless_sets.h"
 #include "core/neighbour.h"
 #include "core/partition.h"
+#include "core/pi.h"
 #include "core/stream_position.h"
 
 namespace lisco {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr std::int64_t kComparable = 4;  // panes whose returns may be neighbours
 
 // Horizontal distances, metres, between which squares neither underflow nor overflow a float.

@@ -7,11 +7,10 @@
 #include <limits>
 
 #include "core/neighbour.h"
+#include "core/pi.h"
 
 namespace lisco {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Of a point as seen from the sensor, radians.
 struct Direction {

@@ -9,8 +9,6 @@ namespace lisco {
 
 // Constants of the range image and the segment linker. "measured" means by benchmarks/suite.sh stages.
 
-inline constexpr double kPi = 3.14159265358979323846;
-
 // --- Bounds: exactness depends on them (doc/algorithm.md) -----------------------------------------------------------
 
 /// Bins between that of a return and that of its azimuth, at most; half a bin is the least possible.

@@ -8,6 +8,7 @@
 
 #include "core/far/constants.h"
 #include "core/neighbour.h"
+#include "core/pi.h"
 #include "core/ring_block.h"
 #include "lisco/sensor_hints.h"
 

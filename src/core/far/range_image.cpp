@@ -8,6 +8,7 @@
 
 #include "core/far/constants.h"
 #include "core/far/far_range.h"
+#include "core/pi.h"
 
 namespace lisco {
 
