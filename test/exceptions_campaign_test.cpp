@@ -408,30 +408,7 @@ TEST(ExceptionsCampaign, EndlessStreamsThatAreRefusedMemory) {
 }
 
 TEST(ExceptionsCampaign, EndlessStreamsWhoseCallbackThrows) {
-  std::array<std::size_t, 3> interrupted{};  // addColumn (), update () and finish ()
-  for (std::uint64_t seed = 5000; seed < 5000 + timesEffort(200); ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
-    const SimdLevel level(levels()[seed % levels().size()]);
-    const Unending unending(random);
-    const std::size_t live = liveAllocations();
-    {
-      Fuse fuse(1 + random.below(unending.truth.size() + 1));
-      EndlessSession session(unending, &fuse);
-      const std::size_t last = EndlessSession::calls(unending) - 1;
-      bool thrown = false;
-      for (std::size_t number = 0; number <= last && !thrown; ++number) {
-        interruptedCall(session, number, 0, thrown);
-        if (!thrown) continue;
-        session.checkInterrupted(number);
-        ++interrupted[number == last ? 2 : (number + 1) % 2];
-      }
-      ASSERT_EQ(session.redo(), "");
-    }
-    ASSERT_EQ(liveAllocations(), live) << "a leak";
-    if (HasFailure()) return;
-  }
-  for (const std::size_t count : interrupted) EXPECT_GT(count, 5U);
+  interruptEndlessStreams<EndlessSession, Unending>(5000, timesEffort(200));
 }
 
 }  // namespace

@@ -6,12 +6,15 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <new>
 #include <string>
 
+#include "engine.h"
+#include "random.h"
 #include "refused_allocations.h"
 
 namespace lisco_test {
@@ -82,6 +85,37 @@ std::size_t refuseEachAllocation(Make&& make, std::size_t number) {
   }
   ADD_FAILURE() << "call " << number << " has no end";
   return kMostRefused;
+}
+
+/// Lets the callback of endless streams throw in each kind of call: addColumn (), update (), finish (). Holds the session
+/// to what it promises, then to being usable again, and to giving all its memory back.
+/// \param first_seed of `streams` streams, one of each
+template <typename Session, typename Stream>
+void interruptEndlessStreams(std::uint64_t first_seed, std::uint64_t streams) {
+  std::array<std::size_t, 3> interrupted{};  // addColumn (), update () and finish ()
+  for (std::uint64_t seed = first_seed; seed < first_seed + streams; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const SimdLevel level(levels()[seed % levels().size()]);
+    const Stream stream(random);
+    const std::size_t live = liveAllocations();
+    {
+      Fuse fuse(1 + random.below(stream.truth.size() + 1));
+      Session session(stream, &fuse);
+      const std::size_t last = Session::calls(stream) - 1;
+      bool thrown = false;
+      for (std::size_t number = 0; number <= last && !thrown; ++number) {
+        interruptedCall(session, number, 0, thrown);
+        if (!thrown) continue;
+        session.checkInterrupted(number);
+        ++interrupted[number == last ? 2 : (number + 1) % 2];
+      }
+      ASSERT_EQ(session.redo(), "");
+    }
+    ASSERT_EQ(liveAllocations(), live) << "a leak";
+    if (testing::Test::HasFailure()) return;
+  }
+  for (const std::size_t count : interrupted) EXPECT_GT(count, 5U);
 }
 
 }  // namespace lisco_test

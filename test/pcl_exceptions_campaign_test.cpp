@@ -405,30 +405,7 @@ TEST_F(PclExceptionsCampaign, EndlessStreamsThatAreRefusedMemory) {
 }
 
 TEST_F(PclExceptionsCampaign, EndlessStreamsWhoseCallbackThrows) {
-  std::array<std::size_t, 3> interrupted{};  // addColumn (), update () and finish ()
-  for (std::uint64_t seed = 4000; seed < 4000 + timesEffort(300); ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
-    const SimdLevel level(levels()[seed % levels().size()]);
-    const Streamed streamed(random);
-    const std::size_t live = liveAllocations();
-    {
-      Fuse fuse(1 + random.below(streamed.truth.size() + 1));
-      EndlessSession session(streamed, &fuse);
-      const std::size_t last = EndlessSession::calls(streamed) - 1;
-      bool thrown = false;
-      for (std::size_t number = 0; number <= last && !thrown; ++number) {
-        interruptedCall(session, number, 0, thrown);
-        if (!thrown) continue;
-        session.checkInterrupted(number);
-        ++interrupted[number == last ? 2 : (number + 1) % 2];
-      }
-      ASSERT_EQ(session.redo(), "");
-    }
-    ASSERT_EQ(liveAllocations(), live) << "a leak";
-    if (HasFailure()) return;
-  }
-  for (const std::size_t count : interrupted) EXPECT_GT(count, 5U);
+  interruptEndlessStreams<EndlessSession, Streamed>(4000, timesEffort(300));
 }
 
 }  // namespace
