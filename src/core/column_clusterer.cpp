@@ -9,6 +9,7 @@
 #include "core/block_scheduler.h"
 #include "core/disjoint_sets.h"
 #include "core/load_balancer.h"
+#include "core/near/voxel_sorter.h"
 #include "core/parallel.h"
 #include "core/partition.h"
 #include "core/runs.h"
@@ -38,6 +39,9 @@ class ColumnClusterer::Rotation {
   void receiveInParallel(std::size_t lasers, const CellSource& cells);
   void receiveInSequence(std::size_t columns, std::size_t lasers, const CellSource& cells);
   void linkPartitions();
+  void linkCollected();
+  void startCollecting();
+  void stopCollecting();
   void numberSubclusters();
   void sortRuns();
   void usePartitions(std::size_t count);
@@ -58,6 +62,9 @@ class ColumnClusterer::Rotation {
   std::size_t partition_count_ = 0;  ///< in use; 0: not divided yet
   std::vector<Part> parts_;
   bool are_linked_ = false;  ///< all partitions but the last, with each other
+  enum class Near { kCollected, kSorted, kInVoxels } near_ = Near::kInVoxels;  ///< near returns
+  VoxelSorter sorter_;
+  std::vector<const NearReturns*> near_returns_;
   LoadBalancer balancer_;
   BlockScheduler scheduler_;
   std::vector<std::uint32_t> sizes_;  ///< of subclusters
@@ -66,6 +73,14 @@ class ColumnClusterer::Rotation {
 };
 
 // --- Algorithm 3 ----------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// Columns that come first and at once, from which on near returns are collected and sorted; fewer are put into voxels,
+/// as are columns that follow.
+constexpr std::size_t kWorthSorting = 256;
+
+}  // namespace
 
 void ColumnClusterer::Rotation::begin(const Parameters& parameters) {
   if (!usable_) *this = Rotation();
@@ -76,6 +91,7 @@ void ColumnClusterer::Rotation::begin(const Parameters& parameters) {
   tolerance_ = Tolerance(parameters.tolerance);
   partition_count_ = 0;
   are_linked_ = is_sorted_ = false;
+  near_ = Near::kInVoxels;
   subclusters_.reset(0);
   sizes_.clear();
   scheduler_.begin(parameters_.block_columns);
@@ -91,6 +107,10 @@ void ColumnClusterer::Rotation::receive(std::size_t columns, std::size_t lasers,
   usable_ = false;
   const bool is_first = partition_count_ == 0;
   if (is_first) divide(columns, lasers, cells);
+  if (scheduler_.columnsRead() == 0 && columns >= kWorthSorting)
+    startCollecting();
+  else
+    stopCollecting();
   if (is_first && partition_count_ > 1)
     receiveInParallel(lasers, cells);
   else
@@ -168,6 +188,7 @@ void ColumnClusterer::Rotation::receiveInSequence(std::size_t columns, std::size
 /// Links each partition within, by a thread of its own, then with those before it and across the seam.
 void ColumnClusterer::Rotation::linkPartitions() {
   // Partitions share subclusters once they are linked with each other; only the last one receives more columns then.
+  linkCollected();
   const std::size_t first = are_linked_ ? partition_count_ - 1 : 0;
   are_linked_ = true;
   inParallel(partition_count_ - first, [&](std::size_t i) { partitions_[first + i].linkWithin(subclusters_); });
@@ -181,6 +202,28 @@ void ColumnClusterer::Rotation::linkPartitions() {
     partitions_[i].markLinked();
     if (is_any_full) partitions_[i].stopPlacing();
   }
+}
+
+void ColumnClusterer::Rotation::startCollecting() {
+  near_ = Near::kCollected;
+  for (std::size_t i = 0; i < partition_count_; ++i) partitions_[i].collectNear();
+}
+
+/// Links collected near returns, of all partitions at once; in voxels, if they cannot be sorted.
+void ColumnClusterer::Rotation::linkCollected() {
+  if (near_ != Near::kCollected) return;
+  near_returns_.clear();
+  for (std::size_t i = 0; i < partition_count_; ++i) near_returns_.push_back(&partitions_[i].nearReturns());
+  if (sorter_.link(near_returns_, tolerance_, subclusters_))
+    near_ = Near::kSorted;
+  else
+    stopCollecting();
+}
+
+void ColumnClusterer::Rotation::stopCollecting() {
+  if (near_ == Near::kInVoxels) return;
+  near_ = Near::kInVoxels;
+  for (std::size_t i = 0; i < partition_count_; ++i) partitions_[i].stopCollecting(subclusters_);
 }
 
 /// Numbers the subclusters by their first runs. A root is the first element of its set.

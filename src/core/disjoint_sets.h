@@ -29,26 +29,38 @@ class DisjointSets {
 
   /// getH: the root of the set that holds the element.
   std::uint32_t find(std::uint32_t element) {
-    std::uint32_t parent = parents_[element];
+    std::uint32_t parent = parentOf(element);
     while (parent != element) {
-      const std::uint32_t grandparent = parents_[parent];
-      parents_[element] = grandparent;
+      const std::uint32_t grandparent = parentOf(parent);
+      __atomic_store_n(&parents_[element], grandparent, __ATOMIC_RELAXED);
       element = parent;
       parent = grandparent;
     }
     return element;
   }
 
+  /// Loads what find () of an element reads first.
+  void prefetch(std::uint32_t element) const { __builtin_prefetch(&parents_[element], 1); }
+
   /// merge: joins the sets of two elements. \return the root of the joined set
   std::uint32_t merge(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    if (a == b) return a;
-    if (a > b) std::swap(a, b);
+    while (true) {
+      a = find(a);
+      b = find(b);
+      if (a == b) return a;
+      if (a > b) std::swap(a, b);
+      if (!is_shared_) break;
+      std::uint32_t root = b;
+      if (__atomic_compare_exchange_n(&parents_[b], &root, a, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) return a;
+    }
     parents_[b] = a;
     if (log_ != nullptr) log_->push_back({a, b});
     return a;
   }
+
+  /// Whether several threads may call find () and merge () at once. A root changes by compare and swap then (Anderson
+  /// and Woll 1991); an element with a parent has no other thread's update to lose.
+  void share(bool is_shared) { is_shared_ = is_shared; }
 
   /// Two roots, of which the first is now the root of both sets.
   struct Merge {
@@ -58,7 +70,10 @@ class DisjointSets {
   void logTo(std::vector<Merge>* log) { log_ = log; }
 
  private:
+  std::uint32_t parentOf(std::uint32_t element) const { return __atomic_load_n(&parents_[element], __ATOMIC_RELAXED); }
+
   std::vector<std::uint32_t> parents_;
+  bool is_shared_ = false;
   std::vector<Merge>* log_ = nullptr;
 };
 

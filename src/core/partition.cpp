@@ -35,9 +35,29 @@ void fill(RingBlock& block, std::size_t at, const CellSource& cells, std::size_t
 void Partition::prepare(const Tolerance& tolerance, const SensorHints& hints, std::size_t columns) {
   tolerance_ = tolerance;
   runs.clear();
+  collects_near_ = false;
+  near_returns_.count = 0;
   voxels_.prepare(tolerance);
   image_.prepare(tolerance, hints, columns);
   segments_.prepare(image_);
+}
+
+void Partition::stopCollecting(DisjointSets& subclusters) {
+  collects_near_ = false;
+  for (std::size_t first = 0; first < near_returns_.count; first += RingBlock::kColumns) {
+    const std::size_t count = std::min(RingBlock::kColumns, near_returns_.count - first);
+    info_.starts = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const NearReturn& near = near_returns_.returns[first + i];
+      block_.x[RingBlock::kMargin + i] = near.x;
+      block_.y[RingBlock::kMargin + i] = near.y;
+      block_.z[RingBlock::kMargin + i] = near.z;
+      info_.run[i] = near.element;
+      if (i == 0 || near.element != info_.run[i - 1]) info_.starts |= ColumnBits{1} << i;
+    }
+    voxels_.add(block_, info_, ~bitsFrom(count), subclusters);
+  }
+  near_returns_.count = 0;
 }
 
 void Partition::readColumns(const CellSource& cells, std::size_t first_cell, std::size_t count, std::size_t lasers,

@@ -9,6 +9,7 @@
 #include "core/disjoint_sets.h"
 #include "core/far/range_image.h"
 #include "core/far/segment_linker.h"
+#include "core/near/near_returns.h"
 #include "core/near/voxel_grid.h"
 #include "core/near/voxel_linker.h"
 #include "core/neighbour.h"
@@ -32,6 +33,12 @@ class Partition {
   void addLasers(std::size_t lasers) {
     if (image_.inUse()) image_.addLasers(lasers);
   }
+
+  /// Collects near returns, instead of putting them into voxels as they come: for columns that are read at once.
+  void collectNear() { collects_near_ = true; }
+  const NearReturns& nearReturns() const { return near_returns_; }
+  /// Puts the near returns that were collected into voxels: more columns follow one by one.
+  void stopCollecting(DisjointSets& subclusters);
 
   /// Reads some columns laser by laser, and links them as far as all lasers have passed them.
   /// \param first_column of these, in the rotation
@@ -84,7 +91,10 @@ class Partition {
   Tolerance tolerance_;
   RangeImage image_;  ///< far returns
   SegmentLinker segments_;
-  VoxelGrid voxels_;  ///< near returns, and those that are not placed
+  // Near returns, and those that are not placed: collected, or in voxels.
+  bool collects_near_ = false;
+  NearReturns near_returns_;
+  VoxelGrid voxels_;
   VoxelLinker near_;
   RingBlock block_{};
   RingBlockInfo info_{};
@@ -111,7 +121,11 @@ void Partition::readRing(RingBlock& block, std::size_t laser, std::uint32_t firs
     unplaced = image_.place(block, info_, laser, first_column);
   }
   const ColumnBits near = chosen & (~info_.interior | unplaced);
-  if (near != 0) voxels_.add(block, info_, near, subclusters);
+  if (near == 0) return;
+  if (collects_near_)
+    near_returns_.add(block, info_, near);
+  else
+    voxels_.add(block, info_, near, subclusters);
 }
 
 }  // namespace lisco

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/bits.h"
+#include "core/ring_block.h"
+
+namespace lisco {
+
+/// A near return and the element of its run. Side by side in memory: sorting takes returns from anywhere.
+struct NearReturn {
+  float x, y, z;  ///< metres
+  std::uint32_t element;
+};
+
+/// Near returns in the order in which they are read, collected until VoxelSorter links them.
+struct NearReturns {
+  std::vector<NearReturn> returns;  ///< longer than count
+  std::size_t count = 0;
+
+  /// Appends some returns of a ring block, after Runs::add.
+  /// \param which bit i: return i
+  void add(const RingBlock& block, const RingBlockInfo& info, ColumnBits which);
+};
+
+}  // namespace lisco

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/disjoint_sets.h"
+#include "core/near/near_returns.h"
+#include "core/neighbour.h"
+
+namespace lisco {
+
+/// Near returns of several parts, numbered one part after the other, and their fragments. A fragment has the number of
+/// its first return.
+struct FragmentList {
+  struct Part {
+    const NearReturns* near;
+    std::size_t first;  ///< number of its first return, a multiple of 64
+  };
+  std::vector<Part> parts;
+  std::vector<std::uint64_t> starts;  ///< bit i: return i begins a fragment, or is the end of a part
+
+  const Part& partOf(std::size_t number) const {
+    std::size_t part = parts.size() - 1;
+    while (number < parts[part].first) --part;
+    return parts[part];
+  }
+  /// The end of the fragment that begins with a return.
+  std::size_t endOf(std::size_t number) const {
+    std::size_t word = ++number / 64;
+    std::uint64_t left = starts[word] >> number % 64;
+    if (left != 0) return number + static_cast<std::size_t>(__builtin_ctzll(left));
+    do left = starts[++word];
+    while (left == 0);
+    return 64 * word + static_cast<std::size_t>(__builtin_ctzll(left));
+  }
+};
+
+/// The voxels of a plane of bricks, ordered by brick and voxel, each with the box around its returns.
+struct VoxelPlane {
+  static constexpr std::uint32_t kSeveral = ~std::uint32_t{0};
+
+  struct Brick {
+    std::uint64_t key;       ///< its numbers along the middle and minor axis
+    std::uint64_t occupied;  ///< bit i: voxel i
+    std::uint32_t first_voxel;
+    std::uint32_t root;  ///< common to all its voxels, perhaps outdated; kSeveral if they had several
+    Box box;
+  };
+
+  /// Ordered by key, with an end mark behind the last. These arrays are longer than what is in use.
+  std::vector<Brick> bricks;
+  std::size_t brick_count = 0;
+  std::vector<float> lo[3], hi[3];         ///< of each voxel's box
+  std::vector<std::uint32_t> root;         ///< of its subcluster, perhaps outdated
+  std::vector<std::uint32_t> first_point;  ///< and the end
+  std::vector<float> x, y, z;              ///< of each point
+
+  /// Makes room for some voxels, as many bricks, and their end marks.
+  void reserveVoxels(std::size_t count) {
+    if (first_point.size() >= count + kReadBehind) return;
+    const std::size_t size = count + count / 4 + kReadBehind;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      lo[axis].resize(size);
+      hi[axis].resize(size);
+    }
+    root.resize(size);
+    first_point.resize(size);
+    bricks.resize(size);
+  }
+  void reservePoints(std::size_t count) {
+    if (x.size() >= count + kReadBehind) return;
+    for (auto* coordinate : {&x, &y, &z}) coordinate->resize(count + count / 4 + kReadBehind);
+  }
+
+ private:
+  static constexpr std::size_t kReadBehind = 16;  ///< floats, by vectors
+};
+
+/// What linking planes needs to know of the voxels' keys.
+struct PlaneLayout {
+  unsigned number_bits;  ///< of an item, below its key
+  unsigned minor_bits;   ///< of a brick's key
+  unsigned brick_bits;   ///< the same, middle and minor
+  float squared_tolerance;
+};
+
+/// Fills a plane with sorted fragments and joins the runs of each voxel.
+/// \param following items behind these, soon to be filled in
+void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, std::size_t following,
+               const PlaneLayout& layout, const FragmentList& fragments, DisjointSets& subclusters);
+
+/// Joins neighbours within a plane.
+void linkPlane(VoxelPlane& plane, const PlaneLayout& layout, DisjointSets& subclusters);
+
+/// Joins neighbours of a plane and the next one. Both are linked within, or will be.
+void linkPlanes(VoxelPlane& plane, VoxelPlane& next, const PlaneLayout& layout, DisjointSets& subclusters);
+
+}  // namespace lisco

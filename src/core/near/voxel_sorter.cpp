@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "core/near/voxel_sorter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/parallel.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/near/voxel_sorter.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
+
+#include "core/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lisco {
+namespace HWY_NAMESPACE {
+
+/// The box around some returns. \param count at least 1
+void boundReturns(const NearReturn* returns, std::size_t count, Box& box) {
+  static_assert(sizeof(NearReturn) == 4 * sizeof(float), "lane 4 i + k is coordinate k");
+  const auto* const values = reinterpret_cast<const float*>(returns);
+  FloatVector least = hn::Set(kFloats, std::numeric_limits<float>::infinity());
+  FloatVector greatest = hn::Neg(least);
+  std::size_t i = 0;
+  for (; kLanes % 4 == 0 && i + kLanes <= 4 * count; i += kLanes) {
+    const FloatVector coordinates = hn::LoadU(kFloats, values + i);
+    least = hn::Min(least, coordinates);
+    greatest = hn::Max(greatest, coordinates);
+  }
+  float lo[kLanes];
+  float hi[kLanes];
+  hn::StoreU(least, kFloats, lo);
+  hn::StoreU(greatest, kFloats, hi);
+  box = Box::around(returns[count - 1].x, returns[count - 1].y, returns[count - 1].z);
+  for (std::size_t k = 0; k < kLanes && i > 0; k += 4)
+    box.add({{lo[k], lo[k + 1], lo[k + 2]}, {hi[k], hi[k + 1], hi[k + 2]}});
+  for (i /= 4; i < count; ++i) box.add(Box::around(returns[i].x, returns[i].y, returns[i].z));
+}
+
+constexpr std::size_t kBatch = 64;  // returns
+
+/// Numbers of voxels along an axis.
+HWY_INLINE void numberValues(const float* values, double corner, double per_metre, std::uint32_t* numbers) {
+  for (std::size_t i = 0; i < kBatch; ++i)
+    numbers[i] =
+        static_cast<std::uint32_t>(static_cast<std::int32_t>((static_cast<double>(values[i]) - corner) * per_metre));
+}
+
+/// Cuts a part's returns into fragments. \return the number of fragments
+std::size_t cutPart(const VoxelNumbering& numbering, unsigned number_bits, const FragmentList::Part& part,
+                    std::uint64_t* starts, std::uint64_t* items) {
+  std::uint32_t numbers[3][kBatch];
+  float coordinates[3][kBatch] = {};
+  const unsigned major_shift = numbering.minor_bits + numbering.middle_bits;
+  std::uint64_t last_key = ~std::uint64_t{0};
+  std::uint32_t last_element = 0;
+  std::size_t count = 0;
+  const NearReturn* returns = part.near->returns.data();
+  for (std::size_t batch = 0; batch < part.near->count; batch += kBatch, returns += kBatch) {
+    const std::size_t size = std::min(kBatch, part.near->count - batch);
+    for (std::size_t i = 0; i < size; ++i) {
+      coordinates[0][i] = returns[i].x;
+      coordinates[1][i] = returns[i].y;
+      coordinates[2][i] = returns[i].z;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t axis = numbering.axis[i];
+      numberValues(coordinates[axis], numbering.corner[axis], numbering.per_metre, numbers[i]);
+    }
+    std::uint64_t starts_here = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      const std::uint32_t minor = numbers[0][i];
+      const std::uint32_t middle = numbers[1][i];
+      const std::uint32_t major = numbers[2][i];
+      // Bricks begin with 1, so that those before and after one have keys too.
+      const std::uint64_t brick = std::uint64_t{(major >> 2) + 1} << major_shift |
+                                  std::uint64_t{(middle >> 2) + 1} << numbering.minor_bits | ((minor >> 2) + 1);
+      const std::uint64_t key = brick << 6 | ((minor & 3U) | (middle & 3U) << 2 | (major & 3U) << 4);
+      const std::uint32_t element = returns[i].element;
+      const bool is_start = key != last_key || element != last_element;
+      last_key = key;
+      last_element = element;
+      items[count] = key << number_bits | (part.first + batch + i);
+      count += is_start ? 1 : 0;
+      starts_here |= std::uint64_t{is_start} << i;
+    }
+    starts[batch / kBatch] = starts_here;
+  }
+  const std::size_t end = part.near->count;
+  if (end % kBatch == 0) starts[end / kBatch] = 0;
+  starts[end / kBatch] |= std::uint64_t{1} << end % kBatch;
+  return count;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lisco
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lisco {
+namespace {
+
+HWY_EXPORT(boundReturns);
+HWY_EXPORT(cutPart);
+
+/// Side of a voxel over eps, a little less than 1 / sqrt (3): more than rounding takes.
+constexpr double kSide = 0.9999 / 1.7320508075688772;
+/// Metres: between these, squares in float neither vanish nor overflow, and the returns of a voxel are neighbours.
+constexpr double kMinTolerance = 1e-18;
+constexpr double kMaxTolerance = 1e18;
+/// Of a voxel's number: converted by signed instructions of 32 bits.
+constexpr double kMaxNumber = 2147480000.0;
+constexpr unsigned kDigitBits = 11;  ///< of the radix sort: a histogram fits into the first-level cache
+
+unsigned bitsFor(std::uint64_t values) {
+  unsigned bits = 1;
+  while (values >> bits != 0) ++bits;
+  return bits;
+}
+
+}  // namespace
+
+bool VoxelSorter::link(const std::vector<const NearReturns*>& parts, const Tolerance& tolerance,
+                       DisjointSets& subclusters) {
+  fragments_.parts.clear();
+  std::size_t end = 0;
+  for (const NearReturns* part : parts) {
+    if (part->count == 0) continue;
+    fragments_.parts.push_back({part, end});
+    end += (part->count / 64 + 1) * 64;  // and one more behind the last
+  }
+  if (end == 0 || !tolerance.joinsAnything()) return true;
+  if (!number(tolerance)) return false;
+  cutFragments();
+  divide();
+  if (planes_.size() < 2 * slabs_.size()) planes_.resize(2 * slabs_.size());
+  inParallel(slabs_.size(), [&](std::size_t slab) { sort(slabs_[slab]); });
+  subclusters.share(slabs_.size() > 1);
+  inParallel(slabs_.size(), [&](std::size_t slab) { linkSlab(slab, tolerance, subclusters); });
+  subclusters.share(false);
+  return true;
+}
+
+/// Chooses the axes and the bits of the keys.
+bool VoxelSorter::number(const Tolerance& tolerance) {
+  if (tolerance.reach() < kMinTolerance || tolerance.reach() > kMaxTolerance) return false;
+  numbering_.per_metre = 1 / (kSide * tolerance.reach());
+  double bricks[3];
+  Box all{};
+  for (const FragmentList::Part& part : fragments_.parts) {
+    Box box;
+    HWY_DYNAMIC_DISPATCH(boundReturns)(part.near->returns.data(), part.near->count, box);
+    if (&part == &fragments_.parts.front()) all = box;
+    all.add(box);
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    numbering_.corner[axis] = static_cast<double>(all.lo[axis]);
+    const double voxels =
+        (static_cast<double>(all.hi[axis]) - static_cast<double>(all.lo[axis])) * numbering_.per_metre;
+    if (!(voxels < kMaxNumber)) return false;
+    bricks[axis] = voxels / 4;
+  }
+  numbering_.axis[0] = 0;
+  numbering_.axis[1] = 1;
+  numbering_.axis[2] = 2;
+  std::sort(numbering_.axis, numbering_.axis + 3, [&](std::size_t a, std::size_t b) { return bricks[a] < bricks[b]; });
+  const auto bitsAlong = [&](std::size_t i) {
+    return bitsFor(static_cast<std::uint64_t>(bricks[numbering_.axis[i]]) + 3);
+  };
+  numbering_.minor_bits = bitsAlong(0);
+  numbering_.middle_bits = bitsAlong(1);
+  numbering_.bits = numbering_.minor_bits + numbering_.middle_bits + bitsAlong(2) + 6;
+  const FragmentList::Part& last = fragments_.parts.back();
+  number_bits_ = bitsFor(last.first + last.near->count);
+  plane_shift_ = number_bits_ + 6 + numbering_.minor_bits + numbering_.middle_bits;
+  return numbering_.bits + number_bits_ <= 64;
+}
+
+/// Numbers the voxels of all returns, each part by a thread of its own.
+void VoxelSorter::cutFragments() {
+  const FragmentList::Part& last = fragments_.parts.back();
+  const std::size_t size = (last.first / 64 + last.near->count / 64 + 1) * 64;
+  if (items_.size() < size + 1) {
+    items_.resize(size + 1);  // an item is written behind the last
+    scratch_.resize(size + 1);
+    fragments_.starts.resize(size / 64);
+  }
+  part_sizes_.resize(fragments_.parts.size());
+  inParallel(fragments_.parts.size(), [&](std::size_t i) {
+    const FragmentList::Part& part = fragments_.parts[i];
+    part_sizes_[i] = HWY_DYNAMIC_DISPATCH(cutPart)(numbering_, number_bits_, part, &fragments_.starts[part.first / 64],
+                                                   &items_[part.first]);
+  });
+}
+
+/// Moves the fragments of each slab of planes together: slabs of about equal work, one for each part.
+void VoxelSorter::divide() {
+  const std::size_t parts = fragments_.parts.size();
+  slabs_.assign(1, {0, part_sizes_[0]});
+  if (parts == 1) return;
+  constexpr std::size_t kGroups = 1024;  // of planes
+  const unsigned plane_bits = numbering_.bits + number_bits_ - plane_shift_;
+  const unsigned shift = plane_shift_ + (plane_bits > 10 ? plane_bits - 10 : 0);
+  histogram_.assign(parts * kGroups, 0);
+  inParallel(parts, [&](std::size_t part) {
+    const std::uint64_t* const items = &items_[fragments_.parts[part].first];
+    for (std::size_t i = 0; i < part_sizes_[part]; ++i) ++histogram_[part * kGroups + (items[i] >> shift)];
+  });
+  // Where each part's fragments of each group of planes go.
+  std::size_t all = 0;
+  for (const std::size_t size : part_sizes_) all += size;
+  slabs_.clear();
+  std::uint32_t sum = 0;
+  std::size_t begin = 0;
+  for (std::size_t group = 0; group < kGroups; ++group) {
+    for (std::size_t part = 0; part < parts; ++part) {
+      const std::uint32_t count = histogram_[part * kGroups + group];
+      histogram_[part * kGroups + group] = sum;
+      sum += count;
+    }
+    if (sum > begin && (sum >= all * (slabs_.size() + 1) / parts)) {
+      slabs_.push_back({begin, sum});
+      begin = sum;
+    }
+  }
+  inParallel(parts, [&](std::size_t part) {
+    const std::uint64_t* const items = &items_[fragments_.parts[part].first];
+    for (std::size_t i = 0; i < part_sizes_[part]; ++i)
+      scratch_[histogram_[part * kGroups + (items[i] >> shift)]++] = items[i];
+  });
+  items_.swap(scratch_);
+}
+
+/// Sorts the fragments of a slab by key.
+void VoxelSorter::sort(const Slab& slab) {
+  constexpr std::size_t kMaxPasses = 6;
+  const unsigned passes = (numbering_.bits + kDigitBits - 1) / kDigitBits;
+  const unsigned digit_bits = (numbering_.bits + passes - 1) / passes;
+  const std::uint64_t mask = (std::uint64_t{1} << digit_bits) - 1;
+  static_assert(kMaxPasses * kDigitBits >= 64, "the longest keys fit");
+  std::uint32_t places[kMaxPasses][std::size_t{1} << kDigitBits] = {};
+  std::uint64_t* from = items_.data() + slab.begin;
+  std::uint64_t* to = scratch_.data() + slab.begin;
+  const std::size_t count = slab.end - slab.begin;
+  for (std::size_t i = 0; i < count; ++i)
+    for (unsigned pass = 0; pass < passes; ++pass) ++places[pass][from[i] >> (number_bits_ + pass * digit_bits) & mask];
+  for (unsigned pass = 0; pass < passes; ++pass) {
+    const unsigned shift = number_bits_ + pass * digit_bits;
+    if (places[pass][from[0] >> shift & mask] == count) continue;  // the same digit in all
+    std::uint32_t sum = 0;
+    for (std::size_t digit = 0; digit <= mask; ++digit) sum += std::exchange(places[pass][digit], sum);
+    for (std::size_t i = 0; i < count; ++i) to[places[pass][from[i] >> shift & mask]++] = from[i];
+    std::swap(from, to);
+  }
+  if (from != items_.data() + slab.begin) std::copy_n(from, count, to);
+}
+
+std::size_t VoxelSorter::endOfPlane(std::size_t begin, std::size_t end) const {
+  const std::uint64_t next = (planeOf(items_[begin]) + 1) << plane_shift_;
+  if (next == 0) return end;
+  const auto first = items_.begin();
+  return static_cast<std::size_t>(
+      std::lower_bound(first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end), next) -
+      first);
+}
+
+/// Links the planes of a slab within and with the next ones, the first of the next slab included.
+void VoxelSorter::linkSlab(std::size_t slab, const Tolerance& tolerance, DisjointSets& subclusters) {
+  const PlaneLayout layout{number_bits_, numbering_.minor_bits, numbering_.minor_bits + numbering_.middle_bits,
+                           tolerance.squared()};
+  VoxelPlane* plane = &planes_[2 * slab];
+  VoxelPlane* last = plane + 1;
+  std::uint64_t last_number = ~std::uint64_t{0} - 1;
+  const std::size_t end_of_all = slabs_.back().end;
+  for (std::size_t begin = slabs_[slab].begin; begin < end_of_all;) {
+    const std::uint64_t number = planeOf(items_[begin]);
+    const bool is_own = begin < slabs_[slab].end;
+    if (!is_own && number != last_number + 1) return;
+    const std::size_t end = endOfPlane(begin, end_of_all);
+    fillPlane(*plane, &items_[begin], end - begin, end_of_all - end, layout, fragments_, subclusters);
+    if (is_own) linkPlane(*plane, layout, subclusters);
+    if (number == last_number + 1) linkPlanes(*last, *plane, layout, subclusters);
+    if (!is_own) return;
+    std::swap(plane, last);
+    last_number = number;
+    begin = end;
+  }
+}
+
+}  // namespace lisco
+#endif

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/disjoint_sets.h"
+#include "core/near/near_returns.h"
+#include "core/near/voxel_plane.h"
+#include "core/neighbour.h"
+
+namespace lisco {
+
+/// How voxels are numbered: from a corner of the box around all returns, in double, so that returns of the same number
+/// are neighbours and neighbours differ by 2 at most along each axis. The longest side of the box is the major axis.
+struct VoxelNumbering {
+  std::size_t axis[3];  ///< minor, middle and major: 0 for x, 1 for y, 2 for z
+  double corner[3];     ///< of the box, metres, by x, y and z
+  double per_metre;     ///< voxels
+  /// A key is, from its highest bits on, a brick's number along the major, middle and minor axis, and the voxel's in it.
+  unsigned minor_bits, middle_bits, bits;
+};
+
+/// Algorithm 4 on near returns that are read at once: sorts them by voxel and joins neighbours plane by plane.
+///
+/// The returns of a run in a voxel are a *fragment*. Fragments are sorted by key (radix sort), so that the returns of a
+/// voxel, of a brick of 4 x 4 x 4 voxels, and of a plane of bricks across the major axis lie side by side. Each plane is
+/// linked within and with the plane before. Threads share the planes.
+class VoxelSorter {
+ public:
+  /// Joins all neighbours among some returns.
+  /// \param parts the returns; each part is numbered by a thread of its own
+  /// \return false, with nothing joined, if the voxels cannot be numbered: a tolerance beyond [1e-18, 1e18] m, or a box
+  ///         of too many voxels
+  bool link(const std::vector<const NearReturns*>& parts, const Tolerance& tolerance, DisjointSets& subclusters);
+
+ private:
+  /// Fragments of consecutive planes, the work of one thread.
+  struct Slab {
+    std::size_t begin, end;  ///< among the sorted fragments
+  };
+
+  bool number(const Tolerance& tolerance);
+  void cutFragments();
+  void divide();
+  void sort(const Slab& slab);
+  void linkSlab(std::size_t slab, const Tolerance& tolerance, DisjointSets& subclusters);
+  std::uint64_t planeOf(std::uint64_t item) const { return item >> plane_shift_; }
+  std::size_t endOfPlane(std::size_t begin, std::size_t end) const;
+
+  VoxelNumbering numbering_{};
+  unsigned number_bits_ = 0;  ///< of an item: the lowest
+  unsigned plane_shift_ = 0;
+  FragmentList fragments_;
+  std::vector<std::uint64_t> items_, scratch_;  ///< a fragment's key and number
+  std::vector<std::size_t> part_sizes_;         ///< in fragments
+  std::vector<std::uint32_t> histogram_;
+  std::vector<Slab> slabs_;
+  std::vector<VoxelPlane> planes_;  ///< two for each slab
+};
+
+}  // namespace lisco
