@@ -105,7 +105,8 @@ bool parse(int argc, char** argv, Options& options) {
   if (!readCommandLine(argc, argv, "recordings", shown, nullptr, given)) return false;
   options.data = data;
   if (!set.empty()) options.set = static_cast<int>(countOf(set, "--set", 1, kSets));
-  for (const std::string& item : itemsOf(tolerances)) options.tolerances.push_back(toleranceOf(item));
+  if (given.count("eps") != 0)
+    for (const std::string& item : itemsOf(tolerances)) options.tolerances.push_back(toleranceOf(item));
   options.runs = countOf(runs, "--runs", 1);
   options.pcl_runs = no_pcl ? 0 : countOf(pcl_runs, "--pcl-runs", 1);
   options.max_pcl_seconds = numberOf(max_seconds, "--max-pcl-seconds");
