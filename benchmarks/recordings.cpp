@@ -186,14 +186,19 @@ void measure(const Problem& problem, const Options& options, const Rivals& rival
   result.lisco = times[1];
 }
 
+/// \param digits of the value
+std::string orDash(int digits, double value) {
+  return std::isfinite(value) ? formatted("%.*f", digits, value) : "-";
+}
+
 void printCase(const Result& result) {
   std::printf("%d %-20s %-28s %8zu %5.2f %8zu", result.set, result.scan.c_str(), result.form.c_str(), result.returns,
               result.tolerance, result.clusters);
   if (!result.identical)
     std::printf("  DIFFERENT clusters\n");
   else
-    std::printf(" %9.2f %9.3f %9.3f %10.2f %10.1f\n", result.pcl_ms, result.gridMs(), result.liscoMs(),
-                result.gridRatio(), result.pclRatio());
+    std::printf(" %9s %9.3f %9.3f %10.2f %10s\n", orDash(2, result.pcl_ms).c_str(), result.gridMs(), result.liscoMs(),
+                result.gridRatio(), orDash(1, result.pclRatio()).c_str());
   std::fflush(stdout);
 }
 
