@@ -22,6 +22,7 @@
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 #include <pcl/segmentation/lisco_cluster_writer.h>
 
+#include "captured_rotations.h"
 #include "compare/comparison.h"
 #include "compare/report.h"
 #include "io/cloud_file.h"
@@ -31,15 +32,14 @@
 #include "lisco/endless_clusterer.h"
 #include "lisco/sensor_hints.h"
 #include "lisco/window_clusterer.h"
-#include "sensors/capture_file.h"
-#include "sensors/decoder.h"
-#include "sensors/rotation_cutter.h"
+#include "sensors/sensor_model.h"
 
 namespace {
 
 namespace fs = std::filesystem;
 namespace po = boost::program_options;
 using namespace lisco_apps;
+using lisco_benchmarks::readRotations;
 
 using Timer = std::chrono::steady_clock;
 
@@ -133,40 +133,6 @@ double columnPeriodOf(const std::string& model) {
   if (model == "os1") return 1e6 / (20 * 1024);
   if (model == "hdl64e") return 48.0;  // its calibration file is of no use for that
   return makeSensorModel(model).firing_period_us;
-}
-
-/// The whole rotations of a capture, the first ones.
-std::vector<Cloud::Ptr> readRotations(const fs::path& file, const std::string& model_name, std::size_t most) {
-  const SensorModel model = makeSensorModel(model_name);
-  CaptureFile first_pass(file);
-  const double step = stepIn(first_pass, model);
-  CaptureFile capture(file);
-  Decoder decoder(model);
-  decoder.setStep(step);
-  RotationCutter cutter;
-  std::vector<Cloud::Ptr> rotations;
-  std::vector<Cell> cells;  // column by column
-  const std::size_t lasers = model.lasers.size();
-  const auto finish = [&] {
-    if (cells.empty() || rotations.size() == most) return;
-    const std::size_t columns = cells.size() / lasers;
-    rotations.push_back(
-        std::make_shared<Cloud>(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(lasers)));
-    rotations.back()->is_dense = false;
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      rotations.back()->points[i % lasers * columns + i / lasers] = {cells[i].x, cells[i].y, cells[i].z};
-  };
-  Packet packet{};
-  while (rotations.size() < most && capture.next(packet) == PacketSource::Arrival::kPacket)
-    decoder.decode(packet, [&](const Column& column) {
-      if (cutter.startsRotation(column.azimuth, column.after_break)) {
-        finish();
-        cells.clear();
-      }
-      cells.insert(cells.end(), column.cells.begin(), column.cells.end());
-    });
-  if (rotations.empty()) throw std::runtime_error(file.string() + ": no whole rotation");
-  return rotations;
 }
 
 /// A rotation as its columns come.

@@ -11,11 +11,11 @@ build_benchmarks() {
   build_quietly "$root" "$build" -DCMAKE_BUILD_TYPE=Release -DLISCO_BUILD_BENCHMARKS=ON -DLISCO_BUILD_TESTS=OFF
 }
 
-# The rotating scans, and the heights below which the ground lies in each.
+# The rotating scans, and the heights below which the ground lies in each; recording_sets.cpp has the same heights.
 find_real_scans() {
   rotating=()
   for scan in "$data"/scans/*.pcd; do
-    [[ $scan == */rgbd_* ]] || rotating+=("$scan")
+    [[ $scan == */rgbd_* || $scan == */airborne_* ]] || rotating+=("$scan")
   done
   if [ ! -f "${rotating[0]}" ]; then
     echo "no real scans in $data/scans; set LISCO_TEST_DATA" >&2
@@ -23,7 +23,8 @@ find_real_scans() {
   fi
   ground=()
   for height in hdl32e_outdoor_0=-2.10 hdl32e_outdoor_1=-2.10 hdl64e_city_0=-1.60 hdl64e_city_1=-1.60 vlp16_close_0=-0.57 \
-                vlp16_street_0=-1.99 vls128_street_0=-1.74 os1_128_outdoor_0=-1.81 os1_64_sparse_0=-0.48; do
+                vlp16_street_0=-1.99 vls128_street_0=-1.74 os1_128_outdoor_0=-1.81 os1_64_sparse_0=-0.48 \
+                hdl64e_kitti_0=-1.30 vls128_deskewed_0=0.30; do
     ground+=(--ground-z "$height")
   done
 }

@@ -58,11 +58,11 @@ std::vector<lisco::Return> returnsOf(const std::vector<Point>& points) {
 
 // --- The voxel grid ------------------------------------------------------------------------------------------------
 
-/// Whether the grid may refuse a scan: too many cells, or a tolerance whose square is at the limits of float.
+/// Whether the grid may refuse a scan: too many cells and returns, or a tolerance whose square is at the limits of float.
 bool mayRefuse(const std::vector<Point>& points, float tolerance) {
   const double eps = std::fabs(static_cast<double>(tolerance));
   if (!(eps > 1e-18 && eps < 1e18)) return true;
-  double bits = 0;
+  double bits = std::log2(static_cast<double>(points.size()));
   for (float Point::*axis : {&Point::x, &Point::y, &Point::z}) {
     double lo = std::numeric_limits<double>::infinity();
     double hi = -lo;

@@ -65,25 +65,26 @@ class ComponentsToClusters {
               Clusters& clusters) {
     size_.assign(component_count, 0);
     for (const std::uint32_t component : component_of) ++size_[component];
-    cluster_.assign(component_count, kNone);
+    next_.assign(component_count, nullptr);
     const pcl::Indices& returns = *problem.returns;
     for (std::size_t i = 0; i < component_of.size(); ++i) {
       const std::uint32_t component = component_of[i];
       if (size_[component] < problem.min_size || size_[component] > problem.max_size) continue;
-      if (cluster_[component] == kNone) {
-        cluster_[component] = static_cast<std::uint32_t>(clusters.size());
+      pcl::index_t*& next = next_[component];
+      if (next == nullptr) {
         clusters.emplace_back();
         clusters.back().header = problem.cloud->header;
-        clusters.back().indices.reserve(size_[component]);
+        clusters.back().indices.resize(size_[component]);
+        next = clusters.back().indices.data();
       }
-      clusters[cluster_[component]].indices.push_back(returns[i]);
+      *next++ = returns[i];
     }
     std::sort(clusters.rbegin(), clusters.rend(), pcl::comparePointClusters);
   }
 
  private:
-  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  std::vector<std::uint32_t> size_, cluster_;
+  std::vector<std::uint32_t> size_;
+  std::vector<pcl::index_t*> next_;  ///< where a component's next index goes
 };
 
 lisco::Return returnAt(const Problem& problem, pcl::index_t index) {
@@ -95,10 +96,14 @@ class ByVoxelGrid {
  public:
   void extract(const Problem& problem, Clusters& clusters) {
     // As Lisco does, it finds the returns in the cloud; the reference takes indices.
-    returns_.clear();
     const ComparedCloud& cloud = *problem.cloud;
-    for (std::size_t i = 0; i < cloud.size(); ++i)
-      if (isReturn(cloud[i])) returns_.push_back(returnAt(problem, static_cast<pcl::index_t>(i)));
+    returns_.resize(cloud.size());
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      returns_[count] = {cloud[i].x, cloud[i].y, cloud[i].z, static_cast<std::uint32_t>(i)};
+      count += isReturn(cloud[i]) ? 1 : 0;
+    }
+    returns_.resize(count);
     const auto& component_of = grid_.cluster(returns_, static_cast<float>(problem.tolerance));
     output_.append(component_of, returns_.size(), problem, clusters);
   }

@@ -3,6 +3,7 @@
 #include "reference/voxel_grid.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -10,14 +11,22 @@
 namespace lisco_reference {
 namespace {
 
-constexpr std::uint64_t kReach = 2;  ///< cells per axis between two neighbours, at most
-/// Of a cell's number along an axis, computed in double: its error is below a 20,000th of a cell, for which kSideFactor
-/// makes up.
-constexpr int kMaxBitsPerAxis = 37;
+constexpr std::uint32_t kReach = 2;  ///< cells per axis between two neighbours, at most
+/// Of cells along an axis. A cell's number is computed in double, with an error below a 20,000th of a cell, for which
+/// kSideFactor makes up.
+constexpr double kMaxCells = 0x1p37;
 constexpr double kSideFactor = 0.9999;
 // Metres: between these, squares in float neither vanish nor overflow, and the points of a cell are neighbours.
 constexpr double kMinTolerance = 1e-18;
 constexpr double kMaxTolerance = 1e18;
+
+/// Above all numbers of rows and cells.
+constexpr std::uint64_t kNone = std::uint64_t{1} << 63;
+
+/// To number so many things.
+int bitsFor(double count) {
+  return std::max(0, static_cast<int>(std::ceil(std::log2(count))));
+}
 
 }  // namespace
 
@@ -31,129 +40,171 @@ const std::vector<std::uint32_t>& VoxelGrid::cluster(const std::vector<lisco::Re
   const double eps = std::fabs(static_cast<double>(tolerance));
   if (eps < kMinTolerance || eps > kMaxTolerance)
     throw std::runtime_error("the tolerance is too small or too large for a voxel grid");
+  if (returns.empty()) return component_of_;
   side_ = kSideFactor * eps / std::sqrt(3.0);
   numberCells(returns);
   sortItems();
   gatherCells(returns);
-  linkCells();
-  for (std::size_t c = 0; c + 1 < cells_.size(); ++c) {
-    const std::uint32_t root = components_.find(static_cast<std::uint32_t>(c));
-    for (std::size_t i = cells_[c].first; i < cells_[c + 1].first; ++i) component_of_[items_[i].number] = root;
+  linkRows();
+  const Item number_mask = (Item{1} << number_bits_) - 1;
+  for (std::uint32_t c = 0; c + 1 < cells_.size(); ++c) {
+    const std::uint32_t root = components_.find(c);
+    for (std::size_t i = cells_[c].first; i < cells_[c + 1].first; ++i) component_of_[items_[i] & number_mask] = root;
   }
   return component_of_;
 }
 
 void VoxelGrid::numberCells(const std::vector<lisco::Return>& returns) {
-  lisco::Box box{};
-  for (std::size_t i = 0; i < returns.size(); ++i) {
-    const auto at = lisco::Box::around(returns[i].x, returns[i].y, returns[i].z);
-    if (i == 0)
-      box = at;
-    else
-      box.add(at);
-  }
-  double origin[3];
-  int all_bits = 0;
-  bool numbers_hold = true;
+  auto box = lisco::Box::around(returns[0].x, returns[0].y, returns[0].z);
+  for (const lisco::Return& p : returns) box.add(lisco::Box::around(p.x, p.y, p.z));
+  double cells[3];
   for (int axis = 0; axis < 3; ++axis) {
-    origin[axis] = static_cast<double>(box.lo[axis]);
-    // A margin of kReach cells on both sides keeps rows apart.
-    const double cells =
-        (static_cast<double>(box.hi[axis]) - origin[axis]) / side_ + 1 + 2 * static_cast<double>(kReach);
-    bits_[axis] = static_cast<int>(std::ceil(std::log2(cells + 1)));
-    all_bits += bits_[axis];
-    numbers_hold = numbers_hold && bits_[axis] <= kMaxBitsPerAxis;
+    cells[axis] = std::floor((static_cast<double>(box.hi[axis]) - static_cast<double>(box.lo[axis])) / side_) + 2;
+    if (!(cells[axis] < kMaxCells)) throw std::runtime_error("the scan has too many cells for a voxel grid");
   }
-  if (all_bits > 64 || !numbers_hold) throw std::runtime_error("the scan has too many cells for a voxel grid");
+  // A margin after each row, and empty rows after each z, keep others out of reach.
+  const double rows_per_z = cells[1] + kReach;
+  rows_per_z_ = static_cast<std::uint64_t>(rows_per_z);
+  number_bits_ = bitsFor(static_cast<double>(returns.size()));
+  x_bits_ = bitsFor(cells[0] + kReach);
+  all_bits_ = number_bits_ + x_bits_ + bitsFor(rows_per_z * cells[2]);
+  if (all_bits_ > 63) throw std::runtime_error("the scan has too many cells and returns for a voxel grid");
 
+  const double origin[3] = {static_cast<double>(box.lo[0]), static_cast<double>(box.lo[1]),
+                            static_cast<double>(box.lo[2])};
   const double per_metre = 1 / side_;
   const auto number = [&](float value, int axis) {
-    return static_cast<std::uint64_t>((static_cast<double>(value) - origin[axis]) * per_metre) + kReach;
+    return static_cast<std::uint64_t>(
+        static_cast<std::int64_t>((static_cast<double>(value) - origin[axis]) * per_metre));
   };
   items_.resize(returns.size());
   for (std::size_t i = 0; i < returns.size(); ++i) {
     const lisco::Return& p = returns[i];
-    items_[i] = {(number(p.z, 2) << bits_[1] | number(p.y, 1)) << bits_[0] | number(p.x, 0),
-                 static_cast<std::uint32_t>(i)};
+    const std::uint64_t row = number(p.z, 2) * rows_per_z_ + number(p.y, 1);
+    items_[i] = (row << x_bits_ | number(p.x, 0)) << number_bits_ | i;
   }
 }
 
 void VoxelGrid::sortItems() {
-  constexpr int kDigitBits = 11;
-  constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
+  constexpr int kMaxDigitBits = 11;
+  constexpr int kMaxDigits = (64 + kMaxDigitBits - 1) / kMaxDigitBits;
+  const int bits = all_bits_ - number_bits_;
+  const int digits = (bits + kMaxDigitBits - 1) / kMaxDigitBits;
+  if (digits == 0) return;
+  const int digit_bits = (bits + digits - 1) / digits;
+  const Item mask = (Item{1} << digit_bits) - 1;
+  std::array<std::array<std::uint32_t, std::size_t{1} << kMaxDigitBits>, kMaxDigits> places;
+  for (int digit = 0; digit < digits; ++digit)
+    std::fill_n(places[static_cast<std::size_t>(digit)].begin(), mask + 1, 0);
+  for (const Item item : items_) {
+    Item rest = item >> number_bits_;
+    for (int digit = 0; digit < digits; ++digit, rest >>= digit_bits)
+      ++places[static_cast<std::size_t>(digit)][rest & mask];
+  }
   sorted_.resize(items_.size());
-  const int bits = bits_[0] + bits_[1] + bits_[2];
-  for (int shift = 0; shift < bits; shift += kDigitBits) {
-    std::array<std::uint32_t, kDigits> place{};
-    for (const Item& item : items_) ++place[item.key >> shift & (kDigits - 1)];
+  for (int digit = 0; digit < digits; ++digit) {
+    auto& place = places[static_cast<std::size_t>(digit)];
     std::uint32_t sum = 0;
-    for (std::uint32_t& p : place) {
-      const std::uint32_t count = p;
-      p = sum;
+    for (Item value = 0; value <= mask; ++value) {
+      const std::uint32_t count = place[value];
+      place[value] = sum;
       sum += count;
     }
-    for (const Item& item : items_) sorted_[place[item.key >> shift & (kDigits - 1)]++] = item;
+    const int shift = number_bits_ + digit * digit_bits;
+    for (const Item item : items_) sorted_[place[item >> shift & mask]++] = item;
     items_.swap(sorted_);
   }
 }
 
 void VoxelGrid::gatherCells(const std::vector<lisco::Return>& returns) {
-  points_.resize(items_.size());
-  cells_.clear();
-  components_.reset(items_.size());
-  for (std::size_t i = 0; i < items_.size(); ++i) {
-    const lisco::Return& p = returns[items_[i].number];
-    points_[i] = {p.x, p.y, p.z};
-    const auto at = lisco::Box::around(p.x, p.y, p.z);
-    if (i == 0 || items_[i].key != items_[i - 1].key) {
-      cells_.push_back({items_[i].key, static_cast<std::uint32_t>(i), at});
-      components_.create(static_cast<std::uint32_t>(cells_.size() - 1));
-    } else {
-      cells_.back().box.add(at);
+  const std::size_t count = items_.size();
+  const Item number_mask = (Item{1} << number_bits_) - 1;
+  points_.resize(count);
+  keys_.resize(count + 1);
+  cells_.resize(count + 1);
+  rows_.clear();
+  components_.reset(count);
+  std::uint32_t cells = 0;
+  for (std::size_t i = 0; i < count;) {
+    const std::uint64_t key = items_[i] >> number_bits_;
+    if (rows_.empty() || key >> x_bits_ != rows_.back().number) rows_.push_back({key >> x_bits_, cells});
+    const lisco::Return& head = returns[items_[i] & number_mask];
+    const auto first = static_cast<std::uint32_t>(i);
+    auto box = lisco::Box::around(head.x, head.y, head.z);
+    points_[i] = {head.x, head.y, head.z};
+    while (++i < count && items_[i] >> number_bits_ == key) {
+      const lisco::Return& p = returns[items_[i] & number_mask];
+      points_[i] = {p.x, p.y, p.z};
+      box.add(lisco::Box::around(p.x, p.y, p.z));
+    }
+    keys_[cells] = key;
+    cells_[cells] = {first, box};
+    components_.create(cells++);
+  }
+  rows_.push_back({kNone, cells});
+  keys_[cells] = kNone;
+  cells_[cells] = {static_cast<std::uint32_t>(count), {}};
+  cells_.resize(cells + 1);
+}
+
+void VoxelGrid::linkRows() {
+  const Row* const rows = rows_.data();
+  std::array<std::size_t, kReach> cursor{};
+  for (std::size_t r = 0; r + 1 < rows_.size(); ++r) {
+    linkWithin(rows[r]);
+    for (std::size_t n = r + 1; rows[n].number <= rows[r].number + kReach; ++n) linkAcross(rows[r], rows[n]);
+    for (std::size_t z = 0; z < kReach; ++z) {
+      const std::uint64_t number = rows[r].number + (z + 1) * rows_per_z_;
+      std::size_t n = cursor[z];
+      while (rows[n].number + kReach < number) ++n;
+      cursor[z] = n;
+      for (; rows[n].number <= number + kReach; ++n) linkAcross(rows[r], rows[n]);
     }
   }
-  cells_.push_back({std::numeric_limits<std::uint64_t>::max(), static_cast<std::uint32_t>(items_.size()), {}});
 }
 
-void VoxelGrid::linkCells() {
-  // The rows to compare after a cell's own, as differences of keys.
-  constexpr std::size_t kRows = 12;
-  std::array<std::uint64_t, kRows> row{};
-  std::array<std::size_t, kRows> cursor{};
-  const std::uint64_t next_y = std::uint64_t{1} << bits_[0];
-  const std::uint64_t next_z = next_y << bits_[1];
-  std::size_t rows = 0;
-  for (std::uint64_t y = 1; y <= kReach; ++y) row[rows++] = y * next_y;
-  for (std::uint64_t z = 1; z <= kReach; ++z)
-    for (std::uint64_t y = 0; y <= 2 * kReach; ++y) row[rows++] = z * next_z + y * next_y - kReach * next_y;
-
-  const std::size_t cells = cells_.size() - 1;
-  for (std::size_t c = 0; c < cells; ++c) {
-    const std::uint64_t key = cells_[c].key;
-    for (std::size_t n = c + 1; n < cells && cells_[n].key <= key + kReach; ++n) link(c, n);
-    for (std::size_t r = 0; r < kRows; ++r) {
-      std::size_t& n = cursor[r];
-      const std::uint64_t from = key + row[r] - kReach;
-      while (n < cells && cells_[n].key < from) ++n;
-      for (std::size_t m = n; m < cells && cells_[m].key <= from + 2 * kReach; ++m) link(c, m);
-    }
+void VoxelGrid::linkWithin(const Row& row) {
+  const std::uint64_t* const keys = keys_.data();
+  const std::uint32_t end = (&row)[1].first;
+  for (std::uint32_t c = row.first; c < end; ++c) {
+    std::uint32_t root = components_.find(c);
+    for (std::uint32_t n = c + 1; keys[n] <= keys[c] + kReach; ++n) root = link(c, root, n);
   }
 }
 
-void VoxelGrid::link(std::size_t a, std::size_t b) {
-  const std::uint32_t root_a = components_.find(static_cast<std::uint32_t>(a));
-  const std::uint32_t root_b = components_.find(static_cast<std::uint32_t>(b));
-  if (root_a != root_b && touch(cells_[a], cells_[a + 1].first, cells_[b], cells_[b + 1].first))
-    components_.merge(root_a, root_b);
+void VoxelGrid::linkAcross(const Row& row, const Row& later) {
+  const std::uint64_t* const keys = keys_.data();
+  const std::uint32_t end = (&row)[1].first;
+  const std::uint64_t ahead = (later.number - row.number) << x_bits_;
+  std::uint32_t from = later.first;
+  for (std::uint32_t c = row.first; c < end; ++c) {
+    const std::uint64_t key = keys[c] + ahead;
+    while (keys[from] + kReach < key) ++from;
+    if (keys[from] > key + kReach) continue;
+    std::uint32_t root = components_.find(c);
+    std::uint32_t n = from;
+    do root = link(c, root, n);
+    while (keys[++n] <= key + kReach);
+  }
 }
 
-bool VoxelGrid::touch(const Cell& a, std::size_t a_end, const Cell& b, std::size_t b_end) const {
+std::uint32_t VoxelGrid::link(std::uint32_t a, std::uint32_t root_a, std::uint32_t b) {
+  const std::uint32_t root_b = components_.find(b);
+  if (root_a == root_b || !touch(a, b)) return root_a;
+  return components_.merge(root_a, root_b);
+}
+
+bool VoxelGrid::touch(std::uint32_t a, std::uint32_t b) const {
   const float r2 = tolerance_.squared();
-  if (!(lisco::Box::squaredGap(a.box, b.box) < r2)) return false;
-  for (std::size_t i = a.first; i < a_end; ++i) {
+  const lisco::Box& box = cells_[b].box;
+  if (!(lisco::Box::squaredGap(cells_[a].box, box) < r2)) return false;
+  const std::uint32_t a_end = cells_[a + 1].first;
+  const std::uint32_t b_end = cells_[b + 1].first;
+  if (a_end - cells_[a].first == 1 && b_end - cells_[b].first == 1) return true;  // the boxes are the points
+  for (std::uint32_t i = cells_[a].first; i < a_end; ++i) {
     const Point& p = points_[i];
-    if (!(lisco::Box::squaredGap(lisco::Box::around(p.x, p.y, p.z), b.box) < r2)) continue;
-    for (std::size_t j = b.first; j < b_end; ++j)
+    if (!(lisco::Box::squaredGap(lisco::Box::around(p.x, p.y, p.z), box) < r2)) continue;
+    for (std::uint32_t j = cells_[b].first; j < b_end; ++j)
       if (lisco::squaredDistance(p.x - points_[j].x, p.y - points_[j].y, p.z - points_[j].z) < r2) return true;
   }
   return false;

@@ -39,7 +39,7 @@ Cell cellAt(const Ray& ray, const Target& target) {
 /// \param target_of gives the target of a ray as the sensor measures it, noise included
 template <typename TargetOf>
 Scan scanEachCell(const Sensor& sensor, const Disturbance& disturbance, TargetOf&& target_of) {
-  Scan scan = emptyScan(sensor);
+  Scan scan = emptyScan(sensor.lasers(), sensor.steps);
   for (std::size_t cell = 0; cell < scan.cells.size(); ++cell) {
     if (CellRandom(disturbance.seed, cell, kForDropOut).unit() < disturbance.drop_outs) continue;
     Ray ray{cell / scan.steps, cell % scan.steps, cell, {}, 0};

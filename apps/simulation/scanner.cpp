@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "random.h"
 
@@ -111,6 +112,27 @@ class Caster {
   std::vector<std::vector<Candidate>> sectors_;
 };
 
+struct Ray {
+  std::size_t laser, step;
+  std::uint64_t cell;  ///< determines the random numbers
+};
+
+struct Return {
+  Vector place;
+  std::uint32_t object;
+};
+
+/// What the sensor measures along a ray; nullopt: no return.
+std::optional<Return> measure(const Caster& caster, const Sensor& sensor, const Disturbance& disturbance,
+                              const Ray& ray) {
+  const Vector direction = sensor.direction(ray.laser, ray.step);
+  const Hit hit = caster.first(direction, sensor.azimuth(ray.laser, ray.step), disturbance.seed, ray.cell);
+  if (hit.range > sensor.max_range) return std::nullopt;
+  if (CellRandom(disturbance.seed, ray.cell, kForDropOut).unit() < disturbance.drop_outs) return std::nullopt;
+  const double noise = disturbance.range_noise * CellRandom(disturbance.seed, ray.cell, kForNoise).gaussian();
+  return Return{std::max(hit.range + noise, kMinRange) * direction, hit.object};
+}
+
 }  // namespace
 
 std::size_t Scan::returns() const {
@@ -129,9 +151,9 @@ std::size_t Scan::returnsWithin(double range) const {
   }));
 }
 
-Scan emptyScan(const Sensor& sensor) {
+Scan emptyScan(std::size_t lasers, std::size_t steps) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  Scan scan{sensor.lasers(), sensor.steps, {}};
+  Scan scan{lasers, steps, {}};
   scan.cells.assign(scan.lasers * scan.steps, {kNan, kNan, kNan, 0});
   return scan;
 }
@@ -142,16 +164,47 @@ Cell cellAt(const Vector& place, std::uint32_t object) {
 
 Scan scan(const Scene& scene, const Sensor& sensor, const Disturbance& disturbance) {
   const Caster caster(scene);
-  Scan scan = emptyScan(sensor);
+  Scan scan = emptyScan(sensor.lasers(), sensor.steps);
   for (std::size_t index = 0; index < scan.cells.size(); ++index) {
-    const std::size_t laser = index / scan.steps;
-    const std::size_t step = index % scan.steps;
-    const Vector direction = sensor.direction(laser, step);
-    const Hit hit = caster.first(direction, sensor.azimuth(laser, step), disturbance.seed, index);
-    if (hit.range > sensor.max_range) continue;
-    if (CellRandom(disturbance.seed, index, kForDropOut).unit() < disturbance.drop_outs) continue;
-    const double noise = disturbance.range_noise * CellRandom(disturbance.seed, index, kForNoise).gaussian();
-    scan.cells[index] = cellAt(std::max(hit.range + noise, kMinRange) * direction, hit.object);
+    const Ray ray{index / scan.steps, index % scan.steps, index};
+    if (const auto hit = measure(caster, sensor, disturbance, ray)) scan.cells[index] = cellAt(hit->place, hit->object);
+  }
+  return scan;
+}
+
+Scene seenFrom(const Scene& scene, const Vector& place, double heading) {
+  Scene seen = scene;
+  seen.floor_z -= place.z;
+  seen.ground_z -= static_cast<float>(place.z);
+  for (Object& object : seen.objects)
+    for (Solid& solid : object.solids) solid = solid.moved(-1 * place).rotated(-heading);
+  return seen;
+}
+
+Vector Motion::placeAfter(double turns) const {
+  const double way = speed * turn_seconds * turns;
+  const double heading = headingAfter(turns);
+  if (heading == 0) return {way, 0, 0};
+  const double radius = way / heading;
+  return {radius * std::sin(heading), radius * (1 - std::cos(heading)), 0};
+}
+
+Scan scanInMotion(const Scene& scene, const Sensor& sensor, const Disturbance& disturbance, const Motion& motion,
+                  std::size_t columns) {
+  constexpr std::size_t kAtOnce = 4;  // columns measured from one place: a Caster takes as long as some columns
+  Scan scan = emptyScan(sensor.lasers(), columns);
+  for (std::size_t first = 0; first < columns; first += kAtOnce) {
+    const double turns = static_cast<double>(first) / static_cast<double>(sensor.steps);
+    const Vector place = motion.placeAfter(turns);
+    const double heading = motion.headingAfter(turns);
+    const Scene seen = seenFrom(scene, place, heading);
+    const Caster caster(seen);
+    for (std::size_t laser = 0; laser < scan.lasers; ++laser)
+      for (std::size_t step = first; step < std::min(first + kAtOnce, columns); ++step) {
+        const std::size_t index = laser * columns + step;
+        if (const auto hit = measure(caster, sensor, disturbance, {laser, step, index}))
+          scan.cells[index] = cellAt(rotated(hit->place, heading) + place, hit->object);
+      }
   }
   return scan;
 }
