@@ -559,15 +559,31 @@ TEST(SegmentLinker, TooManyLooseReturnsEndThePlacing) {
   Probe probe(kTolerance, kHints);
   EXPECT_FALSE(probe.put(0, kFirstPlace, 60.0, 0.0));
   EXPECT_FALSE(probe.put(0, kFirstPlace + 20, 60.0, 0.0));
-  while (!probe.put(0, kFirstPlace + 40, 60.0, 0.0))
-    ;
-  for (int i = 0; i < 5000; ++i) EXPECT_TRUE(probe.put(0, kFirstPlace + 40, 60.0, 0.0));
+  while (!probe.strip().image.isFull()) probe.put(0, kFirstPlace + 40, 60.0, 0.0);
   for (int time = 0; time < 3; ++time) {
     EXPECT_TRUE(probe.put(0, kFirstPlace + 20.4, 60.0, 0.0));  // its place is free
     const auto element = static_cast<std::uint32_t>(probe.size() - 1);
     probe.linkAll();
     EXPECT_TRUE(probe.joined(1, element));
     EXPECT_FALSE(probe.joined(0, element));
+  }
+}
+
+// Two or three returns in each azimuth bin: few of them are searched alone, and no memory is taken before.
+TEST(SegmentLinker, ReturnsInTakenBinsGoToAnotherLayer) {
+  for (const int in_a_bin : {1, 2, 3}) {
+    SCOPED_TRACE(std::to_string(in_a_bin) + " returns in a bin");
+    Probe probe(0.05F, kHints);
+    int unplaced = 0;
+    for (int place = kFirstPlace; place < 1000; ++place)
+      for (std::size_t laser = 0; laser < 3; ++laser)
+        for (int i = 0; i < in_a_bin; ++i)
+          unplaced += probe.put(laser, place, 0.2 + 0.049 * i, 0.5 * static_cast<double>(laser)) ? 1 : 0;
+    EXPECT_LE(unplaced, 200);
+    EXPECT_EQ(probe.strip().image.layers, static_cast<std::size_t>(in_a_bin));
+    EXPECT_EQ(probe.strip().image.open_rows, 3 * static_cast<std::size_t>(in_a_bin));
+    probe.linkAll();
+    EXPECT_EQ(difference(trueClusters(probe.points(), 0.05F), probe.clusters()), "");
   }
 }
 
@@ -578,8 +594,10 @@ TEST(SegmentLinker, LooseReturnsOfOneStripAreFoundByAnother) {
     probe.begin(kTolerance, kHints);
     EXPECT_FALSE(probe.put(0, kFirstPlace, 60.0, 0.0));
     EXPECT_FALSE(probe.put(0, kFirstPlace + 40, 300.0, 0.0));
-    const auto loose = static_cast<std::uint32_t>(probe.size());
-    for (int i = 0; i < 5000; ++i) EXPECT_TRUE(probe.put(0, kFirstPlace + 40, 60.0, 0.0));
+    bool is_loose = false;
+    for (int i = 0; i < 5000; ++i) is_loose = probe.put(0, kFirstPlace + 40, 60.0, 0.0);
+    EXPECT_TRUE(is_loose);
+    const auto loose = static_cast<std::uint32_t>(probe.size() - 1);
     if (looked_before) probe.linkAll();
     probe.useStrip(1);
     const bool also_loose = probe.put(1, kFirstPlace + 41, 60.0, 0.0);
@@ -596,7 +614,7 @@ TEST(SegmentLinker, LasersThatAppearLateAndNear) {
   EXPECT_FALSE(probe.put(0, kFirstPlace, 60.0, 0.0));
   EXPECT_FALSE(probe.put(0, kFirstPlace + 1, 60.0, 0.0));
   probe.link();
-  for (std::size_t laser = 1; laser < 60; ++laser) {  // few enough loose ones
+  for (std::size_t laser = 1; laser < 30; ++laser) {  // few enough loose ones
     EXPECT_FALSE(probe.put(laser, kFirstPlace + 2, 0.9 * probe.nearEnd(), 0.0));
     EXPECT_FALSE(probe.put(0, kFirstPlace + 1.0 + static_cast<double>(laser), 60.0, 0.0));
     EXPECT_TRUE(probe.put(0, kFirstPlace, 60.0, 0.0));
@@ -745,7 +763,8 @@ struct Rotation {
   std::vector<double> distances;  ///< horizontal, ascending
 };
 
-Rotation randomRotation(Random& random, double kept) {
+/// \param crowding columns that share an azimuth
+Rotation randomRotation(Random& random, double kept, std::size_t crowding = 1) {
   const std::array<int, 6> steps_choices{512, 600, 720, 900, 1024, 1200};
   const std::array<double, 6> turns{1.0, 1.0, 0.4, 1.05, 1.3, 2.3};
   const std::array<double, 5> jitters{0.0, 0.02, 0.2, 0.7, 2.0};
@@ -800,8 +819,8 @@ Rotation randomRotation(Random& random, double kept) {
         scan.set(row[laser], i, {0, 0, 0});
         continue;
       }
-      const double azimuth =
-          start + step * (static_cast<double>(order[i]) + lag[laser]) + random.between(-jitter, jitter);
+      const double azimuth = start + step * (static_cast<double>(order[i] / crowding * crowding) + lag[laser]) +
+                             random.between(-jitter, jitter);
       const double elevation = 0.1 - ring * static_cast<double>(laser) + sway * std::sin(3.0 * azimuth);
       const double around = azimuth - 2.0 * kPi * std::floor(azimuth / (2.0 * kPi));
       double rho = distance[std::min<std::size_t>(63, static_cast<std::size_t>(around * 64.0 / (2.0 * kPi)))];
@@ -860,6 +879,20 @@ TEST_P(StripScans, EqualTheEngineWithoutTheStrip) {
   }
 }
 
+std::string differenceFromTheOracle(lisco::ColumnClusterer& clusterer, const Scan& scan, float tolerance) {
+  std::vector<Point> points;
+  for (const Point& point : scan.points())
+    if (isValid(point)) points.push_back(point);
+  std::vector<std::uint32_t> number(scan.cells.size());  // among the valid
+  std::uint32_t valid = 0;
+  for (const lisco::Return& cell : scan.cells)
+    number[cell.source_index] = isValid({cell.x, cell.y, cell.z}) ? valid++ : 0;
+  Clustering found = clustersOf(clusterer);
+  for (Cluster& cluster : found)
+    for (std::uint32_t& member : cluster.members) member = number[member];
+  return difference(trueClusters(points, tolerance), found);
+}
+
 // Few returns: clusters are pairs, and each of them is found by one comparison only.
 TEST_P(StripScans, EqualTheOracle) {
   lisco::ColumnClusterer clusterer;
@@ -872,17 +905,24 @@ TEST_P(StripScans, EqualTheOracle) {
     const float tolerance = toleranceFor(rotation, random.oneOf(kFarParts));
     clusterer.begin(parametersFor(random, rotation, tolerance));
     feed(clusterer, random, rotation.scan);
-    std::vector<Point> points;
-    for (const Point& point : rotation.scan.points())
-      if (isValid(point)) points.push_back(point);
-    std::vector<std::uint32_t> number(rotation.scan.cells.size());  // among the valid
-    std::uint32_t valid = 0;
-    for (const lisco::Return& cell : rotation.scan.cells)
-      number[cell.source_index] = isValid({cell.x, cell.y, cell.z}) ? valid++ : 0;
-    Clustering found = clustersOf(clusterer);
-    for (Cluster& cluster : found)
-      for (std::uint32_t& member : cluster.members) member = number[member];
-    ASSERT_EQ(difference(trueClusters(points, tolerance), found), "");
+    ASSERT_EQ(differenceFromTheOracle(clusterer, rotation.scan, tolerance), "");
+  }
+}
+
+// Several columns of one azimuth (returns of one firing, a scan in a frame that moved): bins are taken more than once.
+TEST_P(StripScans, EqualTheOracleWhereBinsAreTaken) {
+  lisco::ColumnClusterer clusterer;
+  const std::uint64_t seeds = GetParam() * 1'000'000 + 700'000;
+  constexpr std::array<std::size_t, 4> kCrowding{2, 3, 8, 40};
+  for (std::uint64_t seed = seeds; seed < seeds + timesEffort(60); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const SimdLevel level(random.oneOf(levels()));
+    const Rotation rotation = randomRotation(random, random.between(0.03, 0.2), random.oneOf(kCrowding));
+    const float tolerance = static_cast<float>(random.between(0.3, 1.0)) * toleranceFor(rotation, 1.0);
+    clusterer.begin(parametersFor(random, rotation, tolerance));
+    feed(clusterer, random, rotation.scan);
+    ASSERT_EQ(differenceFromTheOracle(clusterer, rotation.scan, tolerance), "");
   }
 }
 

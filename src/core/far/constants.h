@@ -29,6 +29,9 @@ inline constexpr std::size_t kMaxSteps = 16384;
 /// searched in all bins of its mask at every update. Fewer: images are given up too early; more: searches dominate.
 inline constexpr std::size_t kFewUnplaced = 4096;
 inline constexpr std::size_t kPlacedPerUnplaced = 32;
+/// Unplaced returns, for each layer of the image, from which on another layer is worth its memory.
+inline constexpr std::size_t kFewTaken = 32;
+inline constexpr std::size_t kPlacedPerTaken = 1024;
 /// Added to a laser's elevation bounds when they grow, relative: they settle after a few columns.
 inline constexpr float kWidening = 1e-3F;
 

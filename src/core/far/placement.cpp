@@ -36,21 +36,16 @@ class Placement {
  public:
   Placement(RangeImage& image, const RingBlock& block, const RingBlockInfo& info, std::size_t laser,
             std::uint32_t first_column)
-      : image_(image),
-        block_(block),
-        info_(info),
-        laser_number_(laser),
-        laser_(image.lasers[laser]),
-        first_column_(first_column) {}
+      : image_(image), block_(block), info_(info), laser_(laser), first_column_(first_column) {}
 
   /// \return the returns that are unplaced
   ColumnBits run() {
     turnToStart();
     // The bin of the block's first cell if the laser's returns go on as before.
-    first_bin_ =
-        laser_.next_bin == RangeImage::kNoBin
-            ? static_cast<std::int64_t>(RangeImage::kMargin) + first_column_ - std::int64_t{image_.first_column}
-            : laser_.next_bin + first_column_ - std::int64_t{laser_.next_column};
+    const RangeImage::Row& row = firstRow();
+    first_bin_ = row.isEmpty() ? static_cast<std::int64_t>(RangeImage::kMargin) + first_column_ -
+                                     std::int64_t{image_.first_column}
+                               : row.next_bin + first_column_ - std::int64_t{row.next_column};
     ColumnBits left = info_.far;
     while (left != 0) {
       const ColumnBits together = left & before(firstOffBin(left));
@@ -66,6 +61,14 @@ class Placement {
  private:
   /// All bits before the one that is set; all of them if none is.
   static ColumnBits before(ColumnBits bit) { return bit != 0 ? bit - 1 : ~ColumnBits{0}; }
+
+  /// Of the laser; it keeps the laser's latest bin and column.
+  RangeImage::Row& firstRow() { return image_.rows[image_.firstRowOf(laser_)]; }
+  /// Expects the laser's next return behind a column of the block.
+  void expectAfter(std::size_t i) {
+    firstRow().next_bin = first_bin_ + static_cast<std::int64_t>(i) + 1;
+    firstRow().next_column = first_column_ + static_cast<std::uint32_t>(i) + 1;
+  }
 
   std::int64_t bins() const { return static_cast<std::int64_t>(image_.bins); }
 
@@ -102,7 +105,7 @@ class Placement {
     return 0;
   }
 
-  /// Stores returns in their expected bins, where these are within the image and free.
+  /// Stores returns in their expected bins, where these are within the image and free in a row of the laser.
   void placeTogether(ColumnBits together) {
     ColumnBits inside = together;
     if (first_bin_ < 0) inside &= bitsFrom(static_cast<std::size_t>(-first_bin_));
@@ -117,15 +120,32 @@ class Placement {
       image_.end = std::max(image_.end, static_cast<std::size_t>(first_bin_ + last + 1));
       noteLate(placed);
     }
-    const auto last = static_cast<std::int64_t>(63 - __builtin_clzll(together));
-    laser_.next_bin = first_bin_ + last + 1;
-    laser_.next_column = first_column_ + static_cast<std::uint32_t>(last) + 1;
+    expectAfter(static_cast<std::size_t>(63 - __builtin_clzll(together)));
   }
 
-  /// \return the returns that are stored; the bins of the others are taken
+  /// \return the returns that are stored; the bins of the others are taken in all rows
   ColumnBits store(ColumnBits which) {
+    ColumnBits left = which & ~storeInRow(image_.firstRowOf(laser_), which);
+    for (std::size_t layer = 1; left != 0; ++layer) {
+      if (layer == image_.layers) {
+        if (!image_.isLayerWorthwhile()) break;
+        image_.addLayer();
+      }
+      const std::size_t number = image_.firstRowOf(laser_) + layer;
+      RangeImage::Row& row = image_.rows[number];
+      if (row.isEmpty()) {
+        image_.openRow(row);
+        row.next_bin = 0;
+      }
+      left &= ~storeInRow(number, left);
+    }
+    return which & ~left;
+  }
+
+  /// \return the returns that are stored
+  ColumnBits storeInRow(std::size_t row, ColumnBits which) {
     ColumnBits stored = 0;
-    const std::size_t cell = image_.at(laser_number_, first_bin_);
+    const std::size_t cell = image_.at(row, first_bin_);
     for (std::size_t k = 0; k < RingBlock::kColumns; k += kLanes) {
       const std::uint64_t here = bitsAt(which, k);
       if (here == 0) continue;
@@ -161,16 +181,14 @@ class Placement {
     first_bin_ = bin - static_cast<std::int64_t>(i);
     if (bin >= 0 && bin < bins()) return true;
     unplaced_ |= ColumnBits{1} << i;
-    laser_.next_bin = bin + 1;
-    laser_.next_column = first_column_ + static_cast<std::uint32_t>(i) + 1;
+    expectAfter(i);
     return false;
   }
 
   RangeImage& image_;
   const RingBlock& block_;
   const RingBlockInfo& info_;
-  std::size_t laser_number_;
-  RangeImage::Laser& laser_;
+  std::size_t laser_;
   std::uint32_t first_column_;
   std::int64_t first_bin_ = 0;
   ColumnBits unplaced_ = 0;

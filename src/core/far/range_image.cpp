@@ -50,26 +50,51 @@ void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hint
       cosine[i] = static_cast<float>(std::cos(angle));
       sine[i] = static_cast<float>(std::sin(angle));
     }
-    lasers.clear();
+    rows.clear();
   }
   begin = bins;
-  const std::size_t lasers_before = lasers.size();
-  lasers.clear();
+  const std::size_t lasers_before = laserCount();
+  rows.clear();
+  layers = 1;
+  open_rows = 0;
   addLasers(lasers_before);
 }
 
 void RangeImage::addLasers(std::size_t count) {
-  const std::size_t before = lasers.size();
+  const std::size_t before = laserCount();
   if (count <= before) return;
-  lasers.resize(count, {kInfinity, -kInfinity, kNoBin, 0});
+  rows.resize(count * layers, {0, kInfinity, -kInfinity, kNoBin, 0});
   elevations_changed = true;
-  const std::size_t size = count * stride + kMargin;
+  for (std::size_t laser = before; laser < count; ++laser) openRow(rows[firstRowOf(laser)]);
+}
+
+void RangeImage::openRow(Row& row) {
+  row.first_cell = open_rows * stride;
+  ++open_rows;
+  const std::size_t size = open_rows * stride + kMargin;
   if (x.size() < size) {
     for (auto* coordinate : {&x, &y, &z}) coordinate->resize(size);
     element.resize(size);
   }
-  std::fill(x.begin() + static_cast<std::ptrdiff_t>(before * stride),
-            x.begin() + static_cast<std::ptrdiff_t>(count * stride + kMargin), kNan);
+  std::fill(x.begin() + static_cast<std::ptrdiff_t>(row.first_cell), x.begin() + static_cast<std::ptrdiff_t>(size),
+            kNan);
+}
+
+bool RangeImage::isLayerWorthwhile() const {
+  return layers < kMaxLayers && unplaced.size() >= layers * (kFewTaken + placed / kPlacedPerTaken);
+}
+
+void RangeImage::addLayer() {
+  const std::size_t lasers = laserCount();
+  rows.resize(lasers * (layers + 1));
+  for (std::size_t laser = lasers; laser-- > 0;) {
+    const auto from = rows.begin() + static_cast<std::ptrdiff_t>(laser * layers);
+    const auto to = rows.begin() + static_cast<std::ptrdiff_t>(laser * (layers + 1));
+    std::copy_backward(from, from + static_cast<std::ptrdiff_t>(layers), to + static_cast<std::ptrdiff_t>(layers));
+    to[static_cast<std::ptrdiff_t>(layers)] = {0, to->lowest, to->highest, kNoBin, 0};
+  }
+  ++layers;
+  elevations_changed = true;
 }
 
 void RangeImage::start(float x_start, float y_start, std::uint32_t column) {
@@ -84,10 +109,12 @@ void RangeImage::start(float x_start, float y_start, std::uint32_t column) {
 
 ColumnBits RangeImage::place(const RingBlock& block, const RingBlockInfo& info, std::size_t laser,
                              std::uint32_t column) {
-  Laser& bounds = lasers[laser];
-  if (info.lowest < bounds.lowest || info.highest > bounds.highest) {
-    bounds.lowest = std::min(bounds.lowest, info.lowest - kWidening * (1 + std::fabs(info.lowest)));
-    bounds.highest = std::max(bounds.highest, info.highest + kWidening * (1 + std::fabs(info.highest)));
+  const Row& first_row = rows[firstRowOf(laser)];
+  if (info.lowest < first_row.lowest || info.highest > first_row.highest) {
+    for (std::size_t row = firstRowOf(laser); row < firstRowOf(laser + 1); ++row) {
+      rows[row].lowest = std::min(rows[row].lowest, info.lowest - kWidening * (1 + std::fabs(info.lowest)));
+      rows[row].highest = std::max(rows[row].highest, info.highest + kWidening * (1 + std::fabs(info.highest)));
+    }
     elevations_changed = true;
   }
   const ColumnBits not_placed = full ? info.far : placeReturns(*this, block, info, laser, column);
@@ -107,24 +134,24 @@ void RangeImage::stopPlacing() {
 void RangeImage::updateElevations() {
   if (!elevations_changed) return;
   elevations_changed = false;
-  const std::size_t count = lasers.size();
-  // Envelopes are kept for lasers from top to bottom; if they come the other way round, elevations are turned over.
+  const std::size_t count = rows.size();
+  // Envelopes are kept for rows from top to bottom; if they come the other way round, elevations are turned over.
   float first = 0;
   float last = 0;
   bool any_seen = false;
-  for (const Laser& laser : lasers) {
-    if (laser.lowest > laser.highest) continue;
-    if (!any_seen) first = laser.lowest + laser.highest;
+  for (const Row& row : rows) {
+    if (row.lowest > row.highest) continue;
+    if (!any_seen) first = row.lowest + row.highest;
     any_seen = true;
-    last = laser.lowest + laser.highest;
+    last = row.lowest + row.highest;
   }
   upside_down = last > first;
   constexpr float kBeyond = 10.0F;  // radians, more than any elevation
   for (auto* angles : {&lowest, &highest, &lowest_above, &highest_below}) angles->resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const bool seen = lasers[i].lowest <= lasers[i].highest;
-    const float low = seen ? std::atan(lasers[i].lowest) : kBeyond;
-    const float high = seen ? std::atan(lasers[i].highest) : -kBeyond;
+    const bool seen = rows[i].lowest <= rows[i].highest;
+    const float low = seen ? std::atan(rows[i].lowest) : kBeyond;
+    const float high = seen ? std::atan(rows[i].highest) : -kBeyond;
     lowest[i] = seen && upside_down ? -high : low;
     highest[i] = seen && upside_down ? -low : high;
   }
@@ -134,13 +161,16 @@ void RangeImage::updateElevations() {
   for (std::size_t i = count; i-- > 0;) highest_below[i] = bound = std::max(bound, highest[i]);
 }
 
-void RangeImage::shareElevations(const RangeImage& other) {
-  addLasers(other.lasers.size());
-  for (std::size_t laser = 0; laser < other.lasers.size(); ++laser) {
-    if (other.lasers[laser].lowest >= lasers[laser].lowest && other.lasers[laser].highest <= lasers[laser].highest)
-      continue;
-    lasers[laser].lowest = std::min(lasers[laser].lowest, other.lasers[laser].lowest);
-    lasers[laser].highest = std::max(lasers[laser].highest, other.lasers[laser].highest);
+void RangeImage::shareRows(const RangeImage& other) {
+  while (layers < other.layers) addLayer();
+  addLasers(other.laserCount());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::size_t laser = i / layers;
+    if (laser >= other.laserCount()) break;
+    const Row& measured = other.rows[other.firstRowOf(laser)];
+    if (measured.lowest >= rows[i].lowest && measured.highest <= rows[i].highest) continue;
+    rows[i].lowest = std::min(rows[i].lowest, measured.lowest);
+    rows[i].highest = std::max(rows[i].highest, measured.highest);
     elevations_changed = true;
   }
 }
@@ -148,10 +178,10 @@ void RangeImage::shareElevations(const RangeImage& other) {
 std::size_t RangeImage::passed() const {
   std::int64_t front = std::numeric_limits<std::int64_t>::max();
   std::uint32_t column = 0;
-  for (const Laser& laser : lasers)
-    if (laser.next_bin != kNoBin) column = std::max(column, laser.next_column);
-  for (const Laser& laser : lasers)
-    if (laser.next_bin != kNoBin) front = std::min(front, laser.next_bin + (column - laser.next_column));
+  for (std::size_t row = 0; row < rows.size(); row += layers)
+    if (!rows[row].isEmpty()) column = std::max(column, rows[row].next_column);
+  for (std::size_t row = 0; row < rows.size(); row += layers)
+    if (!rows[row].isEmpty()) front = std::min(front, rows[row].next_bin + (column - rows[row].next_column));
   front = std::clamp<std::int64_t>(front, 0, static_cast<std::int64_t>(bins));
   return static_cast<std::size_t>(front) / kSector * kSector;
 }

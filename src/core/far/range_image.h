@@ -17,20 +17,27 @@ namespace lisco {
 
 /// The far returns of consecutive columns by laser and *azimuth bin*: a row per laser, a bin per step of the turn.
 ///
-/// A return lies in the bin of its measured azimuth, whatever its column; a bin holds one return of a laser. A far
-/// return whose bin is taken, or beyond the memory of the image, is *unplaced*: its neighbours are searched one by one,
-/// and it must be kept in the voxels as well. Lasers are reached by the elevations measured on them.
+/// A return lies in the bin of its measured azimuth, whatever its column. A *row* holds one return in each bin. A laser
+/// has one row until a return finds its bin taken, then `layers` of them, one behind the other: the return goes to the
+/// first in which its bin is free. A far return for which no row has room, or beyond the memory of the image, is
+/// *unplaced*: its neighbours are searched one by one, and it must be kept in the voxels as well. Rows are reached by
+/// the elevations measured on their laser.
 ///
 /// Bins are counted from the first return's, less kMargin, in the sense of rotation; they do not wrap.
 struct RangeImage {
   static constexpr std::size_t kSector = 16;  ///< bins of a sector, the unit of linking
   static constexpr std::size_t kMargin = 64;  ///< bins before the first return's, for staggered lasers
+  static constexpr std::size_t kMaxLayers = 4;
+  static constexpr std::size_t kNoRow = ~std::size_t{0};
   static constexpr std::int64_t kNoBin = std::numeric_limits<std::int64_t>::min();
 
-  struct Laser {
-    float lowest, highest;  ///< slopes (z / rho) measured so far
-    std::int64_t next_bin;  ///< after its last return; kNoBin: none yet
+  struct Row {
+    std::size_t first_cell;  ///< of bin -kMargin, if it is in use
+    float lowest, highest;   ///< slopes (z / rho) measured on its laser so far
+    std::int64_t next_bin;   ///< after the laser's last return, in its first row; kNoBin: the row has no returns yet
     std::uint32_t next_column;
+
+    bool isEmpty() const { return next_bin == kNoBin; }
   };
   struct Unplaced {
     float x, y, z;
@@ -40,8 +47,8 @@ struct RangeImage {
   struct FromStart {
     float u, v;
   };
-  /// A range of lasers.
-  struct Lasers {
+  /// A range of rows.
+  struct Rows {
     std::size_t begin, end;
   };
 
@@ -69,24 +76,38 @@ struct RangeImage {
   bool isFull() const { return full; }
   void stopPlacing();
 
-  /// Brings the elevations of the lasers up to date.
+  /// Brings the elevations of the rows up to date.
   void updateElevations();
-  /// Takes over the elevations that another image of the same sensor has measured.
-  void shareElevations(const RangeImage& other);
+  /// Takes over the number of rows of another image of the same sensor, and the elevations measured there.
+  void shareRows(const RangeImage& other);
 
   /// The end of the sectors that all lasers have passed, bins.
   std::size_t passed() const;
 
-  /// Index of a bin of a laser in x, y, z and element.
+  std::size_t laserCount() const { return rows.size() / layers; }
+  std::size_t firstRowOf(std::size_t laser) const { return laser * layers; }
+  /// The row below whose bins linkSameBins compares with those of a row; kNoRow: none.
+  std::size_t rowInSameBins(std::size_t row) const {
+    return row % layers == 0 && row + layers < rows.size() ? row + layers : kNoRow;
+  }
+  Rows allRows() const { return {0, rows.size()}; }
+  Rows someRows(std::size_t part, std::size_t parts) const {
+    return {rows.size() * part / parts, rows.size() * (part + 1) / parts};
+  }
+
+  /// Whether another layer would hold enough returns whose bins are taken to be worth its memory.
+  bool isLayerWorthwhile() const;
+  /// Adds a layer: every laser gets one more row, without memory yet. Rows are numbered anew.
+  void addLayer();
+  /// Gives a row its memory, all bins free.
+  void openRow(Row& row);
+
+  /// Index of a bin of a row in x, y, z and element.
   /// \param bin at least -kMargin
-  std::size_t at(std::size_t laser, std::int64_t bin) const {
-    return laser * stride + static_cast<std::size_t>(bin + static_cast<std::int64_t>(kMargin));
+  std::size_t at(std::size_t row, std::int64_t bin) const {
+    return rows[row].first_cell + static_cast<std::size_t>(bin + static_cast<std::int64_t>(kMargin));
   }
   bool isFree(std::size_t cell) const { return x[cell] != x[cell]; }
-  Lasers allLasers() const { return {0, lasers.size()}; }
-  Lasers someLasers(std::size_t part, std::size_t parts) const {
-    return {lasers.size() * part / parts, lasers.size() * (part + 1) / parts};
-  }
   FromStart fromStart(float east, float north) const {
     return {east * start_cosine + north * start_sine, direction * (north * start_cosine - east * start_sine)};
   }
@@ -99,8 +120,8 @@ struct RangeImage {
   FarRange range;
   float reach = 0;
   std::size_t steps = 0;   ///< bins of a turn
-  std::size_t bins = 0;    ///< of a laser: some more than columns, or than a turn
-  std::size_t stride = 0;  ///< floats per laser
+  std::size_t bins = 0;    ///< of a row: some more than columns, or than a turn
+  std::size_t stride = 0;  ///< floats per row
   float direction = 1;     ///< +1: azimuth grows with time
   float radians_per_bin = 0;
   double start_azimuth = 0;  ///< of bin 0
@@ -112,10 +133,12 @@ struct RangeImage {
   std::vector<float> x, y, z;       ///< x is NaN where a bin is free
   std::vector<std::uint32_t> element;
 
-  std::vector<Laser> lasers;
-  bool upside_down = false;                        ///< the lasers come from bottom to top
-  std::vector<float> lowest, highest;              ///< radians, of each laser; turned over if upside down
-  std::vector<float> lowest_above, highest_below;  ///< of all lasers up to, and from, each one
+  std::vector<Row> rows;  ///< by laser and layer
+  std::size_t layers = 1;
+  std::size_t open_rows = 0;                       ///< rows with memory
+  bool upside_down = false;                        ///< the rows come from bottom to top
+  std::vector<float> lowest, highest;              ///< radians, of each row; turned over if upside down
+  std::vector<float> lowest_above, highest_below;  ///< of all rows up to, and from, each one
   bool elevations_changed = false;
 
   std::size_t linked = 0;     ///< bins before this are linked

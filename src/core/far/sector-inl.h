@@ -21,21 +21,25 @@ HWY_BEFORE_NAMESPACE();
 namespace lisco {
 namespace HWY_NAMESPACE {
 
-/// Cuts the runs in a sector's bins of some lasers into segments. Ranges of lasers follow each other, from the first
-/// on.
+/// Cuts the runs in a sector's bins of some rows into segments. Ranges of rows follow each other, from the first on.
 /// \param later added to bin numbers
-void cutSector(const RangeImage& image, std::int64_t number, float later, const RangeImage::Lasers& lasers,
-               Sector& sector, DisjointSets& subclusters) {
+void cutSector(const RangeImage& image, std::int64_t number, float later, const RangeImage::Rows& rows, Sector& sector,
+               DisjointSets& subclusters) {
   const std::int64_t first_bin = number * static_cast<std::int64_t>(RangeImage::kSector);
   const float offset = static_cast<float>(first_bin) + later;
   sector.number = Sector::kNone;
-  std::uint32_t count = lasers.begin == 0 ? 0 : sector.begin[lasers.begin];
-  for (std::size_t laser = lasers.begin; laser < lasers.end; ++laser) {
-    sector.begin[laser] = count;
-    if (image.lasers[laser].next_bin == RangeImage::kNoBin) continue;
-    const std::size_t cell = image.at(laser, first_bin);
-    float rho[RangeImage::kSector];
+  std::uint32_t count = rows.begin == 0 ? 0 : sector.begin[rows.begin];
+  for (std::size_t row = rows.begin; row < rows.end; ++row) {
+    sector.begin[row] = count;
+    if (image.rows[row].isEmpty()) continue;
+    const std::size_t cell = image.at(row, first_bin);
     std::uint32_t returns = 0;
+    for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
+      const FloatVector x = hn::LoadU(kFloats, &image.x[cell + k]);
+      returns |= bitsOf(hn::Eq(x, x)) << k;
+    }
+    if (returns == 0) continue;
+    float rho[RangeImage::kSector];
     std::uint32_t starts = 0;
     for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
       const FloatVector x = hn::LoadU(kFloats, &image.x[cell + k]);
@@ -43,10 +47,8 @@ void cutSector(const RangeImage& image, std::int64_t number, float later, const 
       const FloatVector north =
           hn::Sub(hn::LoadU(kFloats, &image.y[cell + k]), hn::Set(kFloats, image.range.origin[1]));
       hn::StoreU(hn::Sqrt(hn::Add(hn::Mul(east, east), hn::Mul(north, north))), kFloats, rho + k);
-      returns |= bitsOf(hn::Eq(x, x)) << k;
       starts |= bitsOf(differ(&image.element[cell + k - 1], hn::LoadU(kWords, &image.element[cell + k]))) << k;
     }
-    if (returns == 0) continue;
     starts = returns & (starts | ~(returns << 1));
     const std::uint32_t ends = ~returns | starts;  // and the sector's
     while (starts != 0) {
@@ -98,8 +100,8 @@ void cutSector(const RangeImage& image, std::int64_t number, float later, const 
       ++count;
     }
   }
-  sector.begin[lasers.end] = count;
-  if (lasers.end == image.lasers.size()) sector.number = number;
+  sector.begin[rows.end] = count;
+  if (rows.end == image.rows.size()) sector.number = number;
 }
 
 }  // namespace HWY_NAMESPACE

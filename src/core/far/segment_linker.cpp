@@ -19,15 +19,15 @@ HWY_BEFORE_NAMESPACE();
 namespace lisco {
 namespace HWY_NAMESPACE {
 
-/// Joins neighbours in the same bin of adjacent lasers.
-void linkSameBins(const RangeImage& image, std::size_t begin, std::size_t end, const RangeImage::Lasers& lasers,
+/// Joins neighbours in the same bin of adjacent lasers' first rows.
+void linkSameBins(const RangeImage& image, std::size_t begin, std::size_t end, const RangeImage::Rows& rows,
                   DisjointSets& subclusters) {
   const FloatVector r2 = hn::Set(kFloats, image.tolerance.squared());
-  for (std::size_t laser = lasers.begin; laser < lasers.end && laser + 1 < image.lasers.size(); ++laser) {
-    if (image.lasers[laser].next_bin == RangeImage::kNoBin || image.lasers[laser + 1].next_bin == RangeImage::kNoBin)
-      continue;
-    const std::size_t upper = image.at(laser, 0);
-    const std::size_t lower = image.at(laser + 1, 0);
+  for (std::size_t row = rows.begin; row < rows.end; ++row) {
+    const std::size_t next = image.rowInSameBins(row);
+    if (next == RangeImage::kNoRow || image.rows[row].isEmpty() || image.rows[next].isEmpty()) continue;
+    const std::size_t upper = image.at(row, 0);
+    const std::size_t lower = image.at(next, 0);
     // Pairs of the same two runs need one merge.
     std::uint32_t above = ~std::uint32_t{0};
     std::uint32_t below = ~std::uint32_t{0};
@@ -51,11 +51,11 @@ void linkSameBins(const RangeImage& image, std::size_t begin, std::size_t end, c
 
 void linkBins(const RangeImage& image, SegmentLinkerState& state, std::size_t begin, std::size_t end,
               DisjointSets& subclusters) {
-  linkSameBins(image, begin, end, image.allLasers(), subclusters);
+  linkSameBins(image, begin, end, image.allRows(), subclusters);
   SegmentSearch search(image, state, subclusters);
   for (std::size_t bin = begin; bin < end; bin += RangeImage::kSector) {
     const auto sector = static_cast<std::int64_t>(bin / RangeImage::kSector);
-    search.prepareSector(sector, image.allLasers());
+    search.prepareSector(sector, image.allRows());
     search.linkSector(sector, 0, 1);
   }
 }
@@ -69,13 +69,13 @@ void linkPartOfSector(const RangeImage& image, SegmentLinkerState& state, std::s
   const auto sector = static_cast<std::int64_t>(bin / RangeImage::kSector);
   SegmentSearch search(image, state, subclusters);
   if (part < kSame) {
-    const RangeImage::Lasers lasers = image.someLasers(part, kSame);
-    linkSameBins(image, bin, bin + RangeImage::kSector, lasers, subclusters);
-    state.work += (lasers.end - lasers.begin) * kWorkOfSameBins;
+    const RangeImage::Rows rows = image.someRows(part, kSame);
+    linkSameBins(image, bin, bin + RangeImage::kSector, rows, subclusters);
+    state.work += (rows.end - rows.begin) * kWorkOfSameBins;
   } else if (part < kSame + kPrepare) {
-    const RangeImage::Lasers lasers = image.someLasers(part - kSame, kPrepare);
-    search.prepareSector(sector, lasers);
-    state.work += (lasers.end - lasers.begin) * kWorkOfCutting;
+    const RangeImage::Rows rows = image.someRows(part - kSame, kPrepare);
+    search.prepareSector(sector, rows);
+    state.work += (rows.end - rows.begin) * kWorkOfCutting;
   } else {
     search.linkSector(sector, part - kSame - kPrepare, kLink);
   }
@@ -103,11 +103,11 @@ void searchOne(const RangeImage& image, const RangeImage::Unplaced& point, Disjo
     const std::int64_t from = std::max<std::int64_t>(0, center - before);
     const std::int64_t to = std::min(last, center + before);
     if (from > to) continue;
-    for (std::size_t laser = 0; laser < image.lasers.size(); ++laser) {
-      if (image.lowest[laser] > elevation + angle + kAngleRounding ||
-          image.highest[laser] < elevation - angle - kAngleRounding)
+    for (std::size_t row = 0; row < image.rows.size(); ++row) {
+      if (image.rows[row].isEmpty() || image.lowest[row] > elevation + angle + kAngleRounding ||
+          image.highest[row] < elevation - angle - kAngleRounding)
         continue;
-      for (std::size_t cell = image.at(laser, from); cell <= image.at(laser, to); ++cell)
+      for (std::size_t cell = image.at(row, from); cell <= image.at(row, to); ++cell)
         if (!image.isFree(cell) && squaredDistance(image.x[cell] - point.x, image.y[cell] - point.y,
                                                    image.z[cell] - point.z) < image.tolerance.squared())
           subclusters.merge(point.element, image.element[cell]);
@@ -136,11 +136,11 @@ void SegmentLinker::prepare(const RangeImage& image) {
   fit(image);
 }
 
-/// Grows to the lasers of the image.
+/// Grows to the rows of the image.
 void SegmentLinker::fit(const RangeImage& image) {
-  const std::size_t count = image.lasers.size();
+  const std::size_t count = image.rows.size();
   if (masks.size() == count) return;
-  linked_parts_ = 0;  // of a sector with fewer lasers
+  linked_parts_ = 0;  // of a sector with fewer rows
   masks.assign(count, NeighborMask());
   const std::size_t segments = count * RangeImage::kSector + RangeImage::kSector;  // vectors are read behind the last
   const auto grow = [&](Sector& sector) {
@@ -171,7 +171,7 @@ void SegmentLinker::schedule(RangeImage& image) {
 
 std::size_t SegmentLinker::linkPart(RangeImage& image, DisjointSets& subclusters) {
   fit(image);
-  if (image.lowest.size() < image.lasers.size()) image.updateElevations();  // lasers were added since schedule ()
+  if (image.lowest.size() < image.rows.size()) image.updateElevations();  // rows were added since schedule ()
   const std::size_t before = work;
   HWY_DYNAMIC_DISPATCH(linkPartOfSector)(image, *this, image.linked, linked_parts_, subclusters);
   if (++linked_parts_ == kParts) {
@@ -201,8 +201,8 @@ void SegmentLinker::linkRest(RangeImage& image, DisjointSets& subclusters) {
 void SegmentLinker::linkTo(RangeImage& image, RangeImage& other, DisjointSets& subclusters) {
   if (!image.started || !other.started) return;
   if (&other != &image) {
-    image.shareElevations(other);
-    other.shareElevations(image);
+    image.shareRows(other);
+    other.shareRows(image);
     other.updateElevations();
   }
   fit(image);

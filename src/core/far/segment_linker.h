@@ -29,8 +29,8 @@ struct Sector {
 struct NeighborMask {
   float nearest = 0;  ///< horizontal distance, metres
   int before = 0;     ///< sigma: bins that it reaches over
-  std::uint32_t first_laser = 0, last_laser = 0;
-  std::uint32_t above = 0, below = 0;  ///< lambda: the same lasers, counted from this one; where the next search begins
+  std::uint32_t first_row = 0, last_row = 0;
+  std::uint32_t above = 0, below = 0;  ///< lambda: the same rows, counted from this one; where the next search begins
   bool by_bins = false;                ///< comparing bins is cheaper than comparing segments
 };
 

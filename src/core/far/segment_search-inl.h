@@ -50,22 +50,22 @@ class SegmentSearch {
   SegmentSearch(const RangeImage& image, SegmentLinkerState& linking, DisjointSets& subclusters)
       : image_(image), state_(linking), subclusters_(subclusters), bins_per_radian_(1.00001F / image.radians_per_bin) {}
 
-  /// Cuts some lasers of a sector and makes their masks. Ranges of lasers follow each other, from the first on.
-  void prepareSector(std::int64_t number, const RangeImage::Lasers& lasers) {
+  /// Cuts some rows of a sector and makes their masks. Ranges of rows follow each other, from the first on.
+  void prepareSector(std::int64_t number, const RangeImage::Rows& rows) {
     Sector& sector = sectorOf(number);
-    cutSector(image_, number, 0.0F, lasers, sector, subclusters_);
-    for (std::size_t laser = lasers.begin; laser < lasers.end; ++laser) prepareMask(sector, laser);
+    cutSector(image_, number, 0.0F, rows, sector, subclusters_);
+    for (std::size_t row = rows.begin; row < rows.end; ++row) prepareMask(sector, row);
   }
 
-  /// Links a sector with itself and with those before it, for every one_in-th of its lasers from first_laser on.
-  void linkSector(std::int64_t number, std::size_t first_laser, std::size_t one_in) {
+  /// Links a sector with itself and with those before it, for every one_in-th of its rows from first_row on.
+  void linkSector(std::int64_t number, std::size_t first_row, std::size_t one_in) {
     Sector& sector = sectorOf(number);
-    for (std::size_t laser = first_laser; laser < image_.lasers.size(); laser += one_in) {
-      if (sector.begin[laser] == sector.begin[laser + 1]) continue;
-      if (state_.masks[laser].by_bins)
-        compareBins(number, laser);
+    for (std::size_t row = first_row; row < image_.rows.size(); row += one_in) {
+      if (sector.begin[row] == sector.begin[row + 1]) continue;
+      if (state_.masks[row].by_bins)
+        compareBins(number, row);
       else
-        forEachSegment(image_, sector, laser, [&](Segment& segment) {
+        forEachSegment(image_, sector, row, [&](Segment& segment) {
           const std::int64_t sectors = sectorsWithin(segment.before);
           for (std::int64_t other = std::max<std::int64_t>(number - sectors, 0); other < number; ++other)
             search(segment, cut(other), ~0U);
@@ -86,10 +86,10 @@ class SegmentSearch {
         sectorAt(std::min(static_cast<double>(other.end), static_cast<double>(image_.end) + reach - later));
     for (std::int64_t number = first_of_other; number <= last_of_other; ++number) {
       Sector& sector = state_.beyond;
-      cutSector(other, number, static_cast<float>(later), image_.allLasers(), sector, subclusters_);
-      for (std::size_t laser = 0; laser < image_.lasers.size(); ++laser) {
-        prepareMask(sector, laser);
-        forEachSegment(other, sector, laser, [&](Segment& segment) {
+      cutSector(other, number, static_cast<float>(later), image_.allRows(), sector, subclusters_);
+      for (std::size_t row = 0; row < image_.rows.size(); ++row) {
+        prepareMask(sector, row);
+        forEachSegment(other, sector, row, [&](Segment& segment) {
           segment.first -= 1;
           segment.last += 1;
           const std::int64_t from = std::max<std::int64_t>(0, sectorAt(static_cast<double>(segment.first)));
@@ -106,7 +106,7 @@ class SegmentSearch {
     std::uint32_t index;
     std::uint32_t root;
     std::int64_t before;  ///< bins that the mask reaches over
-    std::size_t first_laser, last_laser;
+    std::size_t first_row, last_row;
     Returns returns;
     float nearest, farthest, lowest, highest, first, last;
   };
@@ -126,40 +126,42 @@ class SegmentSearch {
 
   Sector& cut(std::int64_t number) {
     Sector& sector = sectorOf(number);
-    if (sector.number != number) cutSector(image_, number, 0.0F, image_.allLasers(), sector, subclusters_);
+    if (sector.number != number) cutSector(image_, number, 0.0F, image_.allRows(), sector, subclusters_);
     return sector;
   }
 
-  /// getNeighborMask (Algorithm 2) of a laser's returns in a sector; chooses what is cheaper to compare, segments or
+  /// getNeighborMask (Algorithm 2) of a row's returns in a sector; chooses what is cheaper to compare, segments or
   /// bins.
-  void prepareMask(const Sector& sector, std::size_t laser) {
-    const std::uint32_t begin = sector.begin[laser];
-    const std::uint32_t end = sector.begin[laser + 1];
+  void prepareMask(const Sector& sector, std::size_t row) {
+    const std::uint32_t begin = sector.begin[row];
+    const std::uint32_t end = sector.begin[row + 1];
     if (begin == end) return;
     float nearest = sector.nearest[begin];
     for (std::uint32_t i = begin + 1; i < end; ++i) nearest = std::min(nearest, sector.nearest[i]);
     const float angle = asinBound(image_.reach / nearest);
-    NeighborMask& mask = state_.masks[laser];
+    NeighborMask& mask = state_.masks[row];
     mask.nearest = nearest;
     mask.before = binsWithin(angle);
-    reachLasers(laser, angle, mask);
+    reachRows(row, angle, mask);
     const auto registers = static_cast<std::uint32_t>(RangeImage::kSector / kLanes);
-    const std::uint32_t by_bins =
-        (mask.last_laser - mask.first_laser + 1) * static_cast<std::uint32_t>(mask.before) * registers;
+    const auto lasers = (mask.last_row - mask.first_row) / static_cast<std::uint32_t>(image_.layers) + 1;
+    const std::uint32_t by_bins = lasers * static_cast<std::uint32_t>(mask.before) * registers;
     const std::uint32_t by_segments = (end - begin) * static_cast<std::uint32_t>(sectorsWithin(mask.before) + 1);
     mask.by_bins = by_bins < kSegmentCost * by_segments;
   }
 
-  /// Compares a laser's bins in a sector with all bins of its mask, up to its own, sixteen at a time. Where the other
-  /// laser is compared by segments, this one compares both directions.
-  void compareBins(std::int64_t sector, std::size_t laser) {
-    const NeighborMask& mask = state_.masks[laser];
+  /// Compares a row's bins in a sector with all bins of its mask, up to its own, sixteen at a time. Where the other
+  /// row is compared by segments, this one compares both directions.
+  void compareBins(std::int64_t sector, std::size_t row) {
+    const NeighborMask& mask = state_.masks[row];
     const std::int64_t bin = sector * static_cast<std::int64_t>(RangeImage::kSector);
-    const std::size_t own = image_.at(laser, bin);
-    for (std::uint32_t other = mask.first_laser; other <= mask.last_laser; ++other) {
+    const std::size_t own = image_.at(row, bin);
+    const std::size_t compared = image_.rowInSameBins(row);
+    for (std::uint32_t other = mask.first_row; other <= mask.last_row; ++other) {
+      if (image_.rows[other].isEmpty()) continue;
       const std::size_t same = image_.at(other, bin);
-      const bool both_ways = other < laser && !state_.masks[other].by_bins;
-      const int first = both_ways ? -mask.before : other > laser + 1 ? 0 : 1;  // the next laser's: linkSameBins
+      const bool both_ways = other < row && !state_.masks[other].by_bins;
+      const int first = both_ways ? -mask.before : other > row && other != compared ? 0 : 1;
       state_.work += static_cast<std::size_t>(mask.before + 1 - first) * (RangeImage::kSector / kLanes) * kWorkOfBins;
       for (int k = first; k <= mask.before; ++k)
         compareBinsWith(own, same - static_cast<std::size_t>(static_cast<std::int64_t>(k)));
@@ -186,17 +188,17 @@ class SegmentSearch {
     }
   }
 
-  /// Calls visit with each of a laser's segments. It may change the segment's root.
+  /// Calls visit with each of a row's segments. It may change the segment's root.
   template <typename Visit>
-  void forEachSegment(const RangeImage& image, Sector& sector, std::size_t laser, Visit&& visit) {
-    const NeighborMask& mask = state_.masks[laser];
+  void forEachSegment(const RangeImage& image, Sector& sector, std::size_t row, Visit&& visit) {
+    const NeighborMask& mask = state_.masks[row];
     Segment segment{};
-    for (std::uint32_t i = sector.begin[laser]; i < sector.begin[laser + 1]; ++i) {
+    for (std::uint32_t i = sector.begin[row]; i < sector.begin[row + 1]; ++i) {
       const float reach = image_.reach + 1e-6F * sector.farthest[i];
       segment.before = mask.before;
-      segment.first_laser = mask.first_laser;
-      segment.last_laser = mask.last_laser;
-      if (sector.nearest[i] > kWorthNarrowing * mask.nearest) narrow(laser, sector.nearest[i], segment);
+      segment.first_row = mask.first_row;
+      segment.last_row = mask.last_row;
+      if (sector.nearest[i] > kWorthNarrowing * mask.nearest) narrow(row, sector.nearest[i], segment);
       const auto bins = static_cast<float>(segment.before);
       segment.index = i;
       segment.root = subclusters_.find(sector.root[i]);
@@ -217,38 +219,38 @@ class SegmentSearch {
     return std::min(kMaxReach, static_cast<int>(angle * bins_per_radian_ + (2 * kDeviation + 0.02F)));
   }
 
-  /// Narrows the mask of a segment that is further away than the nearest of its laser, for which the mask was made.
-  void narrow(std::size_t laser, float nearest, Segment& segment) const {
+  /// Narrows the mask of a segment that is further away than the nearest of its row, for which the mask was made.
+  void narrow(std::size_t row, float nearest, Segment& segment) const {
     const float angle = asinBound(image_.reach / nearest);
     segment.before = binsWithin(angle);
-    const float top = image_.highest[laser] + angle + kAngleRounding;
-    const float bottom = image_.lowest[laser] - angle - kAngleRounding;
-    while (segment.first_laser < laser && image_.lowest_above[segment.first_laser] > top) ++segment.first_laser;
-    while (segment.last_laser > laser && image_.highest_below[segment.last_laser] < bottom) --segment.last_laser;
+    const float top = image_.highest[row] + angle + kAngleRounding;
+    const float bottom = image_.lowest[row] - angle - kAngleRounding;
+    while (segment.first_row < row && image_.lowest_above[segment.first_row] > top) ++segment.first_row;
+    while (segment.last_row > row && image_.highest_below[segment.last_row] < bottom) --segment.last_row;
   }
 
-  /// Sets the lasers whose elevations come within the angle of this one's: lambda of Algorithm 2.
-  void reachLasers(std::size_t laser, float angle, NeighborMask& mask) {
-    const float top = image_.highest[laser] + angle + kAngleRounding;
-    const float bottom = image_.lowest[laser] - angle - kAngleRounding;
-    const auto last_of_all = image_.lasers.size() - 1;
-    std::size_t first = laser - std::min<std::size_t>(laser, mask.above);
+  /// Sets the rows whose elevations come within the angle of this one's: lambda of Algorithm 2.
+  void reachRows(std::size_t row, float angle, NeighborMask& mask) {
+    const float top = image_.highest[row] + angle + kAngleRounding;
+    const float bottom = image_.lowest[row] - angle - kAngleRounding;
+    const auto last_of_all = image_.rows.size() - 1;
+    std::size_t first = row - std::min<std::size_t>(row, mask.above);
     while (first > 0 && image_.lowest_above[first - 1] <= top) --first;
-    while (first < laser && image_.lowest_above[first] > top) ++first;
-    std::size_t last = std::min<std::size_t>(last_of_all, laser + mask.below);
+    while (first < row && image_.lowest_above[first] > top) ++first;
+    std::size_t last = std::min<std::size_t>(last_of_all, row + mask.below);
     while (last < last_of_all && image_.highest_below[last + 1] >= bottom) ++last;
-    while (last > laser && image_.highest_below[last] < bottom) --last;
-    mask.above = static_cast<std::uint32_t>(laser - first);
-    mask.below = static_cast<std::uint32_t>(last - laser);
-    mask.first_laser = static_cast<std::uint32_t>(first);
-    mask.last_laser = static_cast<std::uint32_t>(last);
+    while (last > row && image_.highest_below[last] < bottom) --last;
+    mask.above = static_cast<std::uint32_t>(row - first);
+    mask.below = static_cast<std::uint32_t>(last - row);
+    mask.first_row = static_cast<std::uint32_t>(first);
+    mask.last_row = static_cast<std::uint32_t>(last);
   }
 
   /// cluster (p) of Algorithm 4 for a segment: compares it with the segments of a sector that its mask shows.
   /// \param limit only with those before this one
   HWY_INLINE void search(Segment& segment, Sector& other, std::uint32_t limit) {
-    const std::uint32_t begin = other.begin[segment.first_laser];
-    const std::uint32_t end = std::min(limit, other.begin[segment.last_laser + 1]);
+    const std::uint32_t begin = other.begin[segment.first_row];
+    const std::uint32_t end = std::min(limit, other.begin[segment.last_row + 1]);
     state_.work += 1 + (end - begin) / kLanes;
     for (std::uint32_t i = begin; i < end; i += std::uint32_t{kLanes}) {
       const auto load = [&](const std::vector<float>& bound) { return hn::LoadU(kFloats, &bound[i]); };
