@@ -39,7 +39,7 @@ inline constexpr float kWidening = 1e-3F;
 
 /// Returns are far where about this many of a flat surface's lie in a square of the tolerance's size. More: masks grow;
 /// fewer: voxels hold few returns each. Rough: the returns of a laser do not form runs, so segments are short.
-inline constexpr double kReturnsPerSquare = 400.0;
+inline constexpr double kReturnsPerSquare = 100.0;
 inline constexpr double kRoughReturnsPerSquare = 60.0;
 inline constexpr double kMinRangeInTolerances = 2.5;
 
