@@ -181,7 +181,7 @@ void measure(const Problem& problem, const Options& options, const Rivals& rival
                       tried_ms, options.runs};
   };
   const std::vector<Times> times = timeInTurn({contestant(rivals.grid, grid_ms), contestant(rivals.lisco, lisco_ms)},
-                                              [](std::size_t, std::size_t) {});
+                                              Clock::kThread, [](std::size_t, std::size_t) {});
   result.grid = times[0];
   result.lisco = times[1];
 }

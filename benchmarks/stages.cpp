@@ -333,8 +333,9 @@ class ThreadsTable : public Table {
                              },
                              0, runs});
     // OpenMP's threads spin for some milliseconds before they sleep.
-    const std::vector<Times> times = timeInTurn(
-        contestants, [](std::size_t, std::size_t) { std::this_thread::sleep_for(std::chrono::milliseconds(20)); });
+    const std::vector<Times> times = timeInTurn(contestants, Clock::kWall, [](std::size_t, std::size_t) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    });
 
     const double best = median(times.front().runs);
     std::string level_row = one.head() + timed(times.front().runs);

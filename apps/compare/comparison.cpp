@@ -117,7 +117,7 @@ CaseResult compareAt(const ComparedScan& scan, double tolerance, const CompareSe
     contestant_of.push_back(result.baselines.size() - 1);
   }
 
-  const std::vector<Times> times = timeInTurn(contestants, [&](std::size_t round, std::size_t rounds) {
+  const std::vector<Times> times = timeInTurn(contestants, Clock::kWall, [&](std::size_t round, std::size_t rounds) {
     progress("run " + std::to_string(round + 1) + " of " + std::to_string(rounds),
              static_cast<double>(round) / static_cast<double>(rounds));
   });

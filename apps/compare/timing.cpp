@@ -2,7 +2,8 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "compare/timing.h"
 
-#include <chrono>
+#include <time.h>
+
 #include <cmath>
 #include <limits>
 
@@ -29,13 +30,18 @@ double Times::confidence99() const {
   return t * std::sqrt(squares / (n - 1) / n);
 }
 
-double millisecondsOf(const std::function<void()>& run) {
-  const auto start = std::chrono::steady_clock::now();
+double millisecondsOf(const std::function<void()>& run, Clock clock) {
+  const auto now = [clock] {
+    timespec time{};
+    clock_gettime(clock == Clock::kThread ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC, &time);
+    return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+  };
+  const double start = now();
   run();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return now() - start;
 }
 
-std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants,
+std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants, Clock clock,
                               const std::function<void(std::size_t, std::size_t)>& between) {
   constexpr double kMaxShort = 50;  // milliseconds of a run that is repeated at once
   std::size_t rounds = 0;
@@ -46,8 +52,9 @@ std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants,
     for (std::size_t i = 0; i < contestants.size(); ++i) {
       const Contestant& contestant = contestants[i];
       if (round * contestant.runs / rounds == (round + 1) * contestant.runs / rounds) continue;
-      times[i].cold.push_back(millisecondsOf(contestant.run));
-      times[i].runs.push_back(contestant.tried_ms < kMaxShort ? millisecondsOf(contestant.run) : times[i].cold.back());
+      times[i].cold.push_back(millisecondsOf(contestant.run, clock));
+      times[i].runs.push_back(contestant.tried_ms < kMaxShort ? millisecondsOf(contestant.run, clock)
+                                                              : times[i].cold.back());
     }
   }
   return times;

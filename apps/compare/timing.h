@@ -29,6 +29,9 @@ struct Times {
   double confidence99() const;
 };
 
+/// Time that passes, or that this thread computes.
+enum class Clock { kWall, kThread };
+
 /// Something to be timed.
 struct Contestant {
   std::function<void()> run;
@@ -39,12 +42,13 @@ struct Contestant {
 /// Times contestants in turn, round by round, so that disturbances of the machine are shared. Contestants with fewer
 /// runs skip rounds, evenly spread. A short run is repeated at once, and the repetition counts: the first, cold run
 /// refills the caches that the others have displaced.
+/// \param clock what is timed; kThread leaves out what other programs take from a busy machine, and other threads
 /// \param between called before each round with its number and the number of rounds
-std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants,
+std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants, Clock clock,
                               const std::function<void(std::size_t round, std::size_t rounds)>& between);
 
 /// Duration of a call, milliseconds.
-double millisecondsOf(const std::function<void()>& run);
+double millisecondsOf(const std::function<void()>& run, Clock clock = Clock::kWall);
 
 /// The mean of ratios: twice as fast and half as fast cancel out.
 double geometricMean(const std::vector<double>& values);
