@@ -208,6 +208,13 @@ TEST(SegmentLinker, IsOfUseOnlyWhereItsHintsAre) {
   }
   hints.far_distance = 1.001F * near_end;
   EXPECT_TRUE(inUse(1.0F, hints));
+  for (const float slope : {kNan, 0.51F, -1e30F}) {
+    hints.tilt = {0.5F, -0.5F};
+    EXPECT_TRUE(inUse(1.0F, hints));
+    hints.tilt[1] = slope;
+    EXPECT_FALSE(inUse(1.0F, hints)) << slope;
+  }
+  hints.tilt = {};
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (const float coordinate : {kNan, 1e30F, -std::numeric_limits<float>::infinity()}) {
       hints.origin = {1.0F, 2.0F, 3.0F};
@@ -644,6 +651,8 @@ CriticalPair criticalPair(Random& random) {
   const double near_end = random.chance(0.3) ? random.magnitude(1e-17, 1e11) : random.magnitude(1.0, 100.0);
   if (random.chance(0.3))
     for (float& axis : pair.hints.origin) axis = static_cast<float>(near_end * random.between(-0.5, 0.5));
+  if (random.chance(0.3))
+    for (float& slope : pair.hints.tilt) slope = static_cast<float>(random.between(-0.5, 0.5));
   const double reach = near_end * spacing;
 
   // One of them stands ahead; the other is reached from there.
@@ -832,6 +841,8 @@ Rotation randomRotation(Random& random, double kept, std::size_t crowding = 1) {
                 static_cast<float>(scale * rho * std::sin(azimuth)) + hints.origin[1],
                 static_cast<float>(scale * rho * std::tan(elevation)) + hints.origin[2]});
     }
+  if (random.chance(0.3))
+    for (float& slope : hints.tilt) slope = static_cast<float>(random.between(-0.5, 0.5));
   std::sort(rotation.distances.begin(), rotation.distances.end());
   if (rotation.distances.empty()) rotation.distances.push_back(1.0);
   return rotation;

@@ -5,8 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "random.h"
 #include "scans.h"
@@ -62,8 +65,83 @@ TEST(SensorEstimator, AnUnorganizedCloudIsNoView) {
   EXPECT_TRUE(isUnknown(estimate(scan)));
 }
 
-TEST(SensorEstimator, FromFarAwayThereIsNoView) {
-  EXPECT_TRUE(isUnknown(estimate(rotation({10000.0F, 0.0F, 0.0F}))));
+/// A sensor in a frame that is not its own.
+struct Mounting {
+  std::array<double, 3> place{};
+  double pitch = 0;  ///< radians
+};
+
+/// A rotation in a hall with uneven walls and a floor. Some returns are wrong.
+Scan mountedRotation(const Mounting& mounting, double wrong = 0.0) {
+  Random random(7);
+  Scan scan(kColumns, kLasers);
+  const double cosine = std::cos(mounting.pitch);
+  const double sine = std::sin(mounting.pitch);
+  for (std::size_t laser = 0; laser < kLasers; ++laser)
+    for (std::size_t column = 0; column < kColumns; ++column) {
+      const double azimuth = 6.283185307179586 * static_cast<double>(column) / static_cast<double>(kColumns);
+      const double slope = 0.03 * (static_cast<double>(laser) - 10.0);
+      double rho = 12.0 + 5.0 * std::sin(3.0 * azimuth) + 3.0 * std::sin(7.0 * azimuth);
+      if (slope < 0) rho = std::min(rho, -1.8 / slope);
+      if (random.chance(wrong)) rho *= random.between(0.3, 1.5);
+      const double x = rho * std::cos(azimuth);
+      const double z = rho * (slope + (random.chance(wrong) ? random.between(-0.1, 0.1) : 0.0));
+      scan.set(laser, column,
+               {static_cast<float>(mounting.place[0] + cosine * x + sine * z),
+                static_cast<float>(mounting.place[1] + rho * std::sin(azimuth)),
+                static_cast<float>(mounting.place[2] - sine * x + cosine * z)});
+    }
+  return scan;
+}
+
+void expectFound(const Mounting& mounting, const lisco::SensorHints& hints, double metres) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(static_cast<double>(hints.origin[axis]), mounting.place[axis], metres) << "axis " << axis;
+  EXPECT_NEAR(static_cast<double>(hints.tilt[0]), -std::tan(mounting.pitch), 0.003);
+  EXPECT_NEAR(static_cast<double>(hints.tilt[1]), 0.0, 0.003);
+  EXPECT_NEAR(hints.steps_per_turn, static_cast<int>(kColumns), 2);
+}
+
+TEST(SensorEstimator, FindsTheSensorInTheFrameOfAVehicle) {
+  for (const double pitch : {0.0, 0.01, -0.05})
+    for (const double wrong : {0.0, 0.1}) {
+      SCOPED_TRACE("pitch " + std::to_string(pitch) + ", wrong " + std::to_string(wrong));
+      const Mounting mounting{{-2.5, 0.4, 1.7}, pitch};
+      expectFound(mounting, estimate(mountedRotation(mounting, wrong)), 0.15);
+      expectFound(mounting, estimate(mountedRotation(mounting, wrong), {50.0F, 0.0F, 0.0F}), 0.15);
+    }
+}
+
+TEST(SensorEstimator, FindsTheSensorInMapCoordinates) {
+  const Mounting mounting{{500000.0, 540000.0, 310.0}, 0.0};
+  expectFound(mounting, estimate(mountedRotation(mounting)), 0.3);
+}
+
+TEST(SensorEstimator, TakesAnExactOriginAsItIs) {
+  EXPECT_EQ(estimate(mountedRotation({})).origin, kHere);
+  EXPECT_EQ(estimate(mountedRotation({})).tilt, (std::array<float, 2>{0.0F, 0.0F}));
+  EXPECT_EQ(estimate(mountedRotation({}, 0.1)).origin, kHere);
+  const Origin declared{-2.5F, 0.5F, 1.75F};
+  EXPECT_EQ(estimate(mountedRotation({{-2.5, 0.5, 1.75}, 0.0}), declared).origin, declared);
+}
+
+TEST(SensorEstimator, StaysWhereNothingIsClearlyBetter) {
+  Scan scan(kColumns, kLasers);
+  Random random(3);
+  for (std::size_t laser = 0; laser < kLasers; ++laser)
+    for (std::size_t column = 0; column < kColumns; ++column)
+      scan.set(laser, column,
+               {static_cast<float>(random.between(-9.0, 9.0)), static_cast<float>(random.between(-9.0, 9.0)),
+                static_cast<float>(random.between(-9.0, 9.0))});
+  EXPECT_EQ(estimate(scan).origin, kHere);
+  EXPECT_EQ(estimate(scan).tilt, (std::array<float, 2>{0.0F, 0.0F}));
+}
+
+TEST(SensorEstimator, FindsASensorFarFromTheOrigin) {
+  const lisco::SensorHints hints = estimate(rotation({10000.0F, 0.0F, 0.0F}));
+  EXPECT_EQ(hints.steps_per_turn, static_cast<int>(kColumns));
+  EXPECT_NEAR(hints.origin[0], 10000.0F, 0.1F);
+  EXPECT_NEAR(hints.origin[1], 0.0F, 0.1F);
 }
 
 TEST(SensorEstimator, ADisplacedSensorIsUsedIfTheCloudTells) {
@@ -77,7 +155,7 @@ TEST(SensorEstimator, ASensorThatIsNoNumberIsNotUsed) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   for (const Origin& sensor : {Origin{nan, nan, nan}, Origin{10000.0F, nan, 0.0F}, Origin{infinity, 0.0F, 0.0F}})
-    EXPECT_TRUE(isUnknown(estimate(rotation({10000.0F, 0.0F, 0.0F}), sensor)));
+    EXPECT_NEAR(estimate(rotation({10000.0F, 0.0F, 0.0F}), sensor).origin[0], 10000.0F, 0.1F);
 }
 
 // As a sensor leaves them that measures at every other step: no return has another right beside it.

@@ -15,6 +15,7 @@ namespace lisco {
 /// What may be known of the sensor before a rotation. Decides the speed, never the result.
 struct SensorHints {
   std::array<float, 3> origin{0.0F, 0.0F, 0.0F};  ///< position of the sensor, metres
+  std::array<float, 2> tilt{0.0F, 0.0F};          ///< by which the sensor's horizon rises along x and y (slopes)
   float elevation_step = 0.0087F;                 ///< typical angle between adjacent lasers, radians
   int steps_per_turn = 0;                         ///< columns of a whole turn; 0: unknown, or no rotating sensor
   bool clockwise = false;                         ///< sense of rotation, seen from above
@@ -25,9 +26,9 @@ struct SensorHints {
 };
 
 /// Estimates the sensor of an organized cloud (lasers > 1) from about a hundred of its cells, or of a rotation before.
-/// Allocates nothing. Without a clear answer, steps_per_turn is 0.
-/// \param declared_origin position that the cloud states for its sensor, metres; used if the cloud does not lie around
-///        (0, 0, 0)
+/// Allocates nothing. Without a clear answer, steps_per_turn is 0. The origin is (0, 0, 0), the declared one, or an
+/// estimate, if the cloud shows clearly that it is there; so is the tilt, which otherwise is 0.
+/// \param declared_origin position that the cloud states for its sensor, metres
 LISCO_EXPORT SensorHints estimateSensor(std::size_t columns, std::size_t lasers,
                                         const std::array<float, 3>& declared_origin, const CellSource& cells);
 

@@ -54,7 +54,9 @@ void measureBlock(RingBlock& block, float squared_tolerance, const FarRange& ran
         hn::And(hn::Ge(rho, hn::Set(kFloats, range.interior_min)), hn::Lt(rho, hn::Set(kFloats, range.interior_max)));
     info.far |= std::uint64_t{bitsOf(far)} << k;
     info.interior |= std::uint64_t{bitsOf(interior)} << k;
-    const FloatVector slope = hn::Div(hn::Sub(z, hn::Set(kFloats, range.origin[2])), rho);
+    const FloatVector horizon =
+        hn::Add(hn::Mul(east, hn::Set(kFloats, range.tilt[0])), hn::Mul(north, hn::Set(kFloats, range.tilt[1])));
+    const FloatVector slope = hn::Div(hn::Sub(hn::Sub(z, hn::Set(kFloats, range.origin[2])), horizon), rho);
     lowest = hn::Min(lowest, hn::IfThenElse(far, slope, infinity));
     highest = hn::Max(highest, hn::IfThenElse(far, slope, hn::Neg(infinity)));
   }

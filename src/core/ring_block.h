@@ -23,7 +23,7 @@ struct RingBlockInfo {
   std::uint64_t starts;                    ///< of these, those that are no neighbour of a return in the column before
   std::uint64_t far;                       ///< horizontal distance within [FarRange::min_range, FarRange::max_range)
   std::uint64_t interior;                  ///< of these, those whose neighbours are all far
-  float lowest, highest;                   ///< slope (z / rho) of the far ones; lowest > highest if there are none
+  float lowest, highest;                   ///< slope of the far ones; lowest > highest if there are none
   float rho[RingBlock::kColumns];          ///< horizontal distance, metres
   std::uint32_t run[RingBlock::kColumns];  ///< the run of each return; set by Runs::add
 };
@@ -31,6 +31,7 @@ struct RingBlockInfo {
 /// Which returns are far, by their horizontal distance from the sensor, metres.
 struct FarRange {
   std::array<float, 3> origin{};  ///< of the sensor
+  std::array<float, 2> tilt{};    ///< of its horizon, from which slopes are measured
   float min_range = 0;
   float max_range = 0;     ///< beyond, returns go to the voxels: their squares may overflow
   float interior_min = 0;  ///< from here on all neighbours are at least at min_range

@@ -45,21 +45,50 @@ bool mayHaveSeen(const std::array<float, 3>& origin, const Box& box) {
   return true;
 }
 
+std::array<double, 3> toDouble(const std::array<float, 3>& point) {
+  return {static_cast<double>(point[0]), static_cast<double>(point[1]), static_cast<double>(point[2])};
+}
+
 }  // namespace
+
+/// Chooses the origin from which the lasers' slopes spread least: (0, 0, 0), the declared one if that is clearly
+/// better, or the one that fits best if that is. \return false if none may have seen the cloud
+bool SensorEstimator::estimateFrame(const std::array<float, 3>& declared_origin, SensorHints& hints) const {
+  constexpr double kTidy = 0.25;          // of a step between lasers: a better frame saves nothing
+  constexpr double kClearlyBetter = 0.5;  // as a ratio of spreads
+  constexpr double kClear = 1.0;          // steps between lasers, if there is nothing to compare with
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  for (const auto* pairs : {&along_row_, &along_column_})
+    for (const Pair& pair : *pairs) box.add(Box::around(pair.a.x, pair.a.y, pair.a.z));
+
+  bool found = false;
+  double spread = kClear / kClearlyBetter;
+  for (const auto& origin : {std::array<float, 3>{0.0F, 0.0F, 0.0F}, declared_origin}) {
+    if ((found && spread < kTidy) || !mayHaveSeen(origin, box)) continue;
+    const double seen = frame_.spread({toDouble(origin), {}});
+    if (found && !(seen < kClearlyBetter * spread)) continue;
+    hints.origin = origin;
+    spread = seen;
+    found = true;
+  }
+  if (found && spread < kTidy) return true;
+  const SensorFrame fit = frame_.fit();
+  const std::array<float, 3> origin{static_cast<float>(fit.origin[0]), static_cast<float>(fit.origin[1]),
+                                    static_cast<float>(fit.origin[2])};
+  if (!mayHaveSeen(origin, box) || !(frame_.spread({toDouble(origin), fit.tilt}) < kClearlyBetter * spread))
+    return found;
+  hints.origin = origin;
+  hints.tilt = {static_cast<float>(fit.tilt[0]), static_cast<float>(fit.tilt[1])};
+  return true;
+}
 
 SensorHints SensorEstimator::estimate(const std::array<float, 3>& declared_origin) const {
   constexpr std::size_t kMinPairs = 8;
   SensorHints hints;
   if (along_row_.size() + along_column_.size() < kMinPairs || further_.size() < kMinPairs) return hints;
 
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-  for (const auto* pairs : {&along_row_, &along_column_})
-    for (const Pair& pair : *pairs) box.add(Box::around(pair.a.x, pair.a.y, pair.a.z));
-  if (!mayHaveSeen(hints.origin, box)) {
-    if (!mayHaveSeen(declared_origin, box)) return hints;
-    hints.origin = declared_origin;
-  }
+  if (!estimateFrame(declared_origin, hints)) return hints;
   const auto& origin = hints.origin;
 
   const auto rangeOf = [&origin](const Return& point) {
@@ -116,6 +145,11 @@ SensorHints estimateSensor(std::size_t columns, std::size_t lasers, const std::a
   const auto valid = [](const Return& cell) { return isReturn(cell.x, cell.y, cell.z); };
 
   SensorEstimator estimator;
+  struct BelowOne {
+    std::size_t laser;
+    Return point;
+  };
+  Sample<BelowOne> below_ones;
   const std::size_t row_step = std::max<std::size_t>(1, lasers / kSampledRows);
   const std::size_t samples_per_row = std::max<std::size_t>(1, kSamples * row_step / lasers);
   const std::size_t column_step = std::max<std::size_t>(1, columns / samples_per_row);
@@ -131,8 +165,12 @@ SensorHints estimateSensor(std::size_t columns, std::size_t lasers, const std::a
       else
         estimator.addAlone();
       if (valid(further)) estimator.addFurtherAlongRow(cell, further, kFurther);
-      if (valid(below)) estimator.addAlongColumn(cell, below);
+      estimator.addOfLaser(laser, cell);
+      if (!valid(below)) continue;
+      estimator.addAlongColumn(cell, below);
+      below_ones.push_back({laser + 1, below});
     }
+  for (const BelowOne& one : below_ones) estimator.addOfLaser(one.laser, one.point);
   SensorHints hints = estimator.estimate(declared_origin);
   if (static_cast<std::size_t>(hints.steps_per_turn) > kMinShare * columns) hints.steps_per_turn = 0;
   return hints;

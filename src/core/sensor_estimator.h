@@ -5,31 +5,12 @@
 #include <array>
 #include <cstddef>
 
+#include "core/sample.h"
+#include "core/sensor_frame.h"
 #include "lisco/return.h"
 #include "lisco/sensor_hints.h"
 
 namespace lisco {
-
-/// Fixed-capacity vector, without memory of the heap; ignores elements beyond its capacity.
-template <typename T>
-class Sample {
- public:
-  static constexpr std::size_t kCapacity = 512;
-
-  void push_back(const T& element) {
-    if (size_ < kCapacity) elements_[size_++] = element;
-  }
-  std::size_t size() const { return size_; }
-  bool empty() const { return size_ == 0; }
-  T* begin() { return elements_.data(); }
-  T* end() { return begin() + size_; }
-  const T* begin() const { return elements_.data(); }
-  const T* end() const { return begin() + size_; }
-
- private:
-  std::array<T, kCapacity> elements_;
-  std::size_t size_ = 0;
-};
 
 /// Estimates the sensor from a few pairs of cells near each other.
 class SensorEstimator {
@@ -44,12 +25,15 @@ class SensorEstimator {
   }
   /// Two returns of adjacent lasers in one column.
   void addAlongColumn(const Return& a, const Return& b) { along_column_.push_back({a, b}); }
+  /// Returns of a laser, one laser after the other.
+  void addOfLaser(std::size_t laser, const Return& point) { frame_.add(laser, point); }
 
-  /// \param declared_origin position that the cloud states for its sensor; used if the cloud does not lie around (0, 0,
-  /// 0)
+  /// \param declared_origin position that the cloud states for its sensor
   SensorHints estimate(const std::array<float, 3>& declared_origin) const;
 
  private:
+  bool estimateFrame(const std::array<float, 3>& declared_origin, SensorHints& hints) const;
+
   struct Pair {
     Return a, b;
   };
@@ -59,6 +43,7 @@ class SensorEstimator {
   };
   Sample<Pair> along_row_, along_column_;
   Sample<FurtherPair> further_;
+  SensorFrameEstimator frame_;
   std::size_t alone_ = 0;
 };
 

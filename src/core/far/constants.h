@@ -18,6 +18,9 @@ inline constexpr float kAngleRounding = 1e-4F;
 /// Metres; beyond, returns go to the voxels: their squares may overflow.
 inline constexpr float kMaxRange = 1e15F;
 
+/// Of the sensor's horizon, along x and y.
+inline constexpr float kMaxTilt = 0.5F;
+
 // --- Limits of the range image --------------------------------------------------------------------------------------
 
 /// Bins that a mask reaches over; nearer returns are not far.

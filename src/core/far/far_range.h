@@ -25,6 +25,7 @@ inline FarRange farRangeFor(const Tolerance& tolerance, const SensorHints& hints
   constexpr float kNone = std::numeric_limits<float>::infinity();
   FarRange range;
   range.origin = hints.origin;
+  range.tilt = hints.tilt;
   range.min_range = range.interior_min = kNone;
 
   const double steps = std::max(hints.steps_per_turn, 1);
@@ -37,9 +38,11 @@ inline FarRange farRangeFor(const Tolerance& tolerance, const SensorHints& hints
       tolerance.reach() * std::max({1 / spacing, kMinRangeInTolerances, 1 / std::sin((kMaxReach - 3) * step)});
   const bool is_origin_valid = std::all_of(hints.origin.begin(), hints.origin.end(),
                                            [](float coordinate) { return std::fabs(coordinate) <= kMaxRange; });
-  const bool is_useful = is_origin_valid && steps >= kMinSteps && steps <= kMaxSteps && tolerance.joinsAnything() &&
-                         spacing > 1e-5 && spacing < 10 && min_range > 1e-18 && min_range < 1e15 &&
-                         min_range < static_cast<double>(hints.far_distance);
+  const bool is_tilt_valid =
+      std::all_of(hints.tilt.begin(), hints.tilt.end(), [](float slope) { return std::fabs(slope) <= kMaxTilt; });
+  const bool is_useful = is_origin_valid && is_tilt_valid && steps >= kMinSteps && steps <= kMaxSteps &&
+                         tolerance.joinsAnything() && spacing > 1e-5 && spacing < 10 && min_range > 1e-18 &&
+                         min_range < 1e15 && min_range < static_cast<double>(hints.far_distance);
   if (!is_useful) return range;
   const float reach = paddedReach(tolerance);
   range.min_range = static_cast<float>(min_range);

@@ -35,6 +35,9 @@ void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hint
   }
   const auto new_steps = static_cast<std::size_t>(hints.steps_per_turn);
   reach = paddedReach(tolerance);
+  // Measuring heights from a tilted plane is a shear, by whose norm distances may grow.
+  const float tilt = std::hypot(range.tilt[0], range.tilt[1]);
+  slope_reach = reach * (0.5F * (tilt + std::sqrt(tilt * tilt + 4.0F)) * 1.00001F);
   direction = hints.clockwise ? -1.0F : 1.0F;
   const std::size_t new_bins = (std::min(columns, new_steps) + kSector - 1) / kSector * kSector + 4 * kMargin;
   if (new_steps != steps || new_bins > bins) {

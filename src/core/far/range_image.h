@@ -33,7 +33,7 @@ struct RangeImage {
 
   struct Row {
     std::size_t first_cell;  ///< of bin -kMargin, if it is in use
-    float lowest, highest;   ///< slopes (z / rho) measured on its laser so far
+    float lowest, highest;   ///< slopes measured on its laser so far: (z - tilt_x x - tilt_y y) / rho
     std::int64_t next_bin;   ///< after the laser's last return, in its first row; kNoBin: the row has no returns yet
     std::uint32_t next_column;
 
@@ -111,6 +111,10 @@ struct RangeImage {
   FromStart fromStart(float east, float north) const {
     return {east * start_cosine + north * start_sine, direction * (north * start_cosine - east * start_sine)};
   }
+  /// Height above the sensor's horizon.
+  float heightOf(float east, float north, float up) const {
+    return up - (east * range.tilt[0] + north * range.tilt[1]);
+  }
   /// The bin of an azimuth, within half a turn of bin 0.
   std::int64_t binOf(const FromStart& seen) const {
     return std::llround(static_cast<double>(std::atan2(seen.v, seen.u)) / static_cast<double>(radians_per_bin));
@@ -119,6 +123,7 @@ struct RangeImage {
   Tolerance tolerance;
   FarRange range;
   float reach = 0;
+  float slope_reach = 0;   ///< the same where heights are measured from the tilted horizon
   std::size_t steps = 0;   ///< bins of a turn
   std::size_t bins = 0;    ///< of a row: some more than columns, or than a turn
   std::size_t stride = 0;  ///< floats per row

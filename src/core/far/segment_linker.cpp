@@ -96,21 +96,30 @@ void searchOne(const RangeImage& image, const RangeImage::Unplaced& point, Disjo
   const std::int64_t middle = bin < 0 ? bin + turn : bin;
   const float angle = asinBound(image.reach / rho);
   const auto before = static_cast<std::int64_t>(angle / image.radians_per_bin + (kDeviation + 1.0F));
-  const float slope = std::atan((point.z - image.range.origin[2]) / rho);
+  const float slope = std::atan(image.heightOf(east, north, point.z - image.range.origin[2]) / rho);
   const float elevation = image.upside_down ? -slope : slope;
+  const float around = asinBound(image.slope_reach / rho) + kAngleRounding;
+  const FloatVector x = hn::Set(kFloats, point.x);
+  const FloatVector y = hn::Set(kFloats, point.y);
+  const FloatVector z = hn::Set(kFloats, point.z);
+  const FloatVector r2 = hn::Set(kFloats, image.tolerance.squared());
   const auto last = static_cast<std::int64_t>(image.end) - 1;
   for (const std::int64_t center : {middle - turn, middle, middle + turn}) {
     const std::int64_t from = std::max<std::int64_t>(0, center - before);
     const std::int64_t to = std::min(last, center + before);
     if (from > to) continue;
     for (std::size_t row = 0; row < image.rows.size(); ++row) {
-      if (image.rows[row].isEmpty() || image.lowest[row] > elevation + angle + kAngleRounding ||
-          image.highest[row] < elevation - angle - kAngleRounding)
+      if (image.rows[row].isEmpty() || image.lowest[row] > elevation + around ||
+          image.highest[row] < elevation - around)
         continue;
-      for (std::size_t cell = image.at(row, from); cell <= image.at(row, to); ++cell)
-        if (!image.isFree(cell) && squaredDistance(image.x[cell] - point.x, image.y[cell] - point.y,
-                                                   image.z[cell] - point.z) < image.tolerance.squared())
-          subclusters.merge(point.element, image.element[cell]);
+      // Bins behind the last one do no harm.
+      for (std::size_t cell = image.at(row, from); cell <= image.at(row, to); cell += kLanes) {
+        const FloatMask near = areNeighbours(hn::Sub(hn::LoadU(kFloats, &image.x[cell]), x),
+                                             hn::Sub(hn::LoadU(kFloats, &image.y[cell]), y),
+                                             hn::Sub(hn::LoadU(kFloats, &image.z[cell]), z), r2);
+        for (std::uint32_t left = bitsOf(near); left != 0; left &= left - 1)
+          subclusters.merge(point.element, image.element[cell + static_cast<std::size_t>(__builtin_ctz(left))]);
+      }
     }
   }
 }

@@ -138,11 +138,10 @@ class SegmentSearch {
     if (begin == end) return;
     float nearest = sector.nearest[begin];
     for (std::uint32_t i = begin + 1; i < end; ++i) nearest = std::min(nearest, sector.nearest[i]);
-    const float angle = asinBound(image_.reach / nearest);
     NeighborMask& mask = state_.masks[row];
     mask.nearest = nearest;
-    mask.before = binsWithin(angle);
-    reachRows(row, angle, mask);
+    mask.before = binsWithin(asinBound(image_.reach / nearest));
+    reachRows(row, nearest, mask);
     const auto registers = static_cast<std::uint32_t>(RangeImage::kSector / kLanes);
     const auto lasers = (mask.last_row - mask.first_row) / static_cast<std::uint32_t>(image_.layers) + 1;
     const std::uint32_t by_bins = lasers * static_cast<std::uint32_t>(mask.before) * registers;
@@ -221,18 +220,25 @@ class SegmentSearch {
 
   /// Narrows the mask of a segment that is further away than the nearest of its row, for which the mask was made.
   void narrow(std::size_t row, float nearest, Segment& segment) const {
-    const float angle = asinBound(image_.reach / nearest);
-    segment.before = binsWithin(angle);
-    const float top = image_.highest[row] + angle + kAngleRounding;
-    const float bottom = image_.lowest[row] - angle - kAngleRounding;
+    segment.before = binsWithin(asinBound(image_.reach / nearest));
+    const float top = topOf(row, nearest);
+    const float bottom = bottomOf(row, nearest);
     while (segment.first_row < row && image_.lowest_above[segment.first_row] > top) ++segment.first_row;
     while (segment.last_row > row && image_.highest_below[segment.last_row] < bottom) --segment.last_row;
   }
 
-  /// Sets the rows whose elevations come within the angle of this one's: lambda of Algorithm 2.
-  void reachRows(std::size_t row, float angle, NeighborMask& mask) {
-    const float top = image_.highest[row] + angle + kAngleRounding;
-    const float bottom = image_.lowest[row] - angle - kAngleRounding;
+  /// The highest and the lowest elevation of neighbours of a row's returns from a distance on.
+  float topOf(std::size_t row, float nearest) const {
+    return image_.highest[row] + asinBound(image_.slope_reach / nearest) + kAngleRounding;
+  }
+  float bottomOf(std::size_t row, float nearest) const {
+    return image_.lowest[row] - asinBound(image_.slope_reach / nearest) - kAngleRounding;
+  }
+
+  /// Sets the rows whose elevations come within reach of this one's: lambda of Algorithm 2.
+  void reachRows(std::size_t row, float nearest, NeighborMask& mask) {
+    const float top = topOf(row, nearest);
+    const float bottom = bottomOf(row, nearest);
     const auto last_of_all = image_.rows.size() - 1;
     std::size_t first = row - std::min<std::size_t>(row, mask.above);
     while (first > 0 && image_.lowest_above[first - 1] <= top) --first;

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace lisco {
+
+/// Fixed-capacity vector, without memory of the heap; ignores elements beyond its capacity.
+template <typename T>
+class Sample {
+ public:
+  static constexpr std::size_t kCapacity = 512;
+
+  void push_back(const T& element) {
+    if (size_ < kCapacity) elements_[size_++] = element;
+  }
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  void clear() { size_ = 0; }
+  T* begin() { return elements_.data(); }
+  T* end() { return begin() + size_; }
+  const T* begin() const { return elements_.data(); }
+  const T* end() const { return begin() + size_; }
+  const T& operator[](std::size_t i) const { return elements_[i]; }
+
+ private:
+  std::array<T, kCapacity> elements_;
+  std::size_t size_ = 0;
+};
+
+/// The element of a sorted range at a part of its length; sorts partially. The range is not empty.
+template <typename T>
+T quantile(T* begin, T* end, double part) {
+  T* const element = begin + static_cast<std::ptrdiff_t>(part * static_cast<double>(end - begin - 1));
+  std::nth_element(begin, element, end);
+  return *element;
+}
+
+}  // namespace lisco

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "core/sensor_frame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lisco {
+namespace {
+
+constexpr std::size_t kUnknowns = 5;  // the origin, and the tilt
+using Vector = std::array<double, kUnknowns>;
+using Matrix = std::array<Vector, kUnknowns>;
+
+constexpr std::size_t kMinOfLaser = 4;   // returns
+constexpr std::size_t kMinReturns = 40;  // of all such lasers
+
+/// Solves a x = b for a symmetric, positive definite matrix, by Gaussian elimination.
+Vector solve(Matrix a, Vector b) {
+  for (std::size_t i = 0; i < kUnknowns; ++i)
+    for (std::size_t row = i + 1; row < kUnknowns; ++row) {
+      const double factor = a[row][i] / a[i][i];
+      for (std::size_t column = i; column < kUnknowns; ++column) a[row][column] -= factor * a[i][column];
+      b[row] -= factor * b[i];
+    }
+  for (std::size_t i = kUnknowns; i-- > 0;) {
+    for (std::size_t column = i + 1; column < kUnknowns; ++column) b[i] -= a[i][column] * b[column];
+    b[i] /= a[i][i];
+  }
+  return b;
+}
+
+}  // namespace
+
+/// The slopes of all returns as seen from a frame, laser by laser, and how they deviate from their laser's median.
+class SensorFrameEstimator::Slopes {
+ public:
+  Slopes(const Sample<LaserReturn>& returns, const SensorFrame& frame) {
+    for (const LaserReturn& one : returns) {
+      Seen seen;
+      seen.x = static_cast<double>(one.point.x) - frame.origin[0];
+      seen.y = static_cast<double>(one.point.y) - frame.origin[1];
+      seen.rho = std::sqrt(seen.x * seen.x + seen.y * seen.y);
+      seen.slope =
+          (static_cast<double>(one.point.z) - frame.origin[2] - frame.tilt[0] * seen.x - frame.tilt[1] * seen.y) /
+          seen.rho;
+      seen_.push_back(seen);
+    }
+    Sample<double> sorted;
+    for (std::size_t first = 0; first < returns.size();) {
+      sorted.clear();
+      std::size_t end = first;
+      for (; end < returns.size() && returns[end].laser == returns[first].laser; ++end)
+        sorted.push_back(seen_[end].slope);
+      if (end - first >= kMinOfLaser) {
+        const double median = quantile(sorted.begin(), sorted.end(), 0.5);
+        rings_.push_back({first, end, median});
+        bounds_.add(static_cast<double>(returns[first].laser), median);
+        for (std::size_t i = first; i < end; ++i) deviations_.push_back(std::fabs(seen_[i].slope - median));
+      }
+      first = end;
+    }
+  }
+
+  /// Of most slopes about their laser's; infinite if there are too few, or if they are no numbers.
+  double spread() {
+    constexpr double kMost = 0.75;  // moved objects and bad returns may be among the others
+    if (deviations_.size() < kMinReturns) return std::numeric_limits<double>::infinity();
+    const double spread = quantile(deviations_.begin(), deviations_.end(), kMost);
+    return spread < std::numeric_limits<double>::infinity() ? spread : std::numeric_limits<double>::infinity();
+  }
+
+  /// Between lasers that follow each other.
+  double laserStep() const { return (bounds_.highest - bounds_.lowest) / std::max(1.0, bounds_.last - bounds_.first); }
+
+  /// By how much the frame is to change: a Gauss-Newton step on the deviations from each laser's mean, whose weights
+  /// fall with the deviation.
+  Vector step(const SensorFrame& frame, double scale) const {
+    constexpr double kDamping = 1e-5;  // what cannot be told stays as it is
+    Matrix a{};
+    Vector b{};
+    for (const Ring& ring : rings_) {
+      // Sums of the derivatives and of their products; the ring's mean is taken away from these at the end.
+      double weights = 0;
+      double sum = 0;
+      Vector sums{};
+      for (std::size_t i = ring.begin; i < ring.end; ++i) {
+        const Seen& seen = seen_[i];
+        const double deviation = seen.slope - ring.median;
+        const double outlying = deviation / scale;
+        const double weight = 1 / ((1 + outlying * outlying) * (1 + outlying * outlying));
+        const double inverse = 1 / seen.rho;
+        const double turned = seen.slope * inverse * inverse;
+        const Vector derivative{turned * seen.x + frame.tilt[0] * inverse, turned * seen.y + frame.tilt[1] * inverse,
+                                -inverse, -seen.x * inverse, -seen.y * inverse};
+        weights += weight;
+        sum += weight * deviation;
+        for (std::size_t j = 0; j < kUnknowns; ++j) {
+          const double weighted = weight * derivative[j];
+          sums[j] += weighted;
+          b[j] -= weighted * deviation;
+          for (std::size_t k = 0; k <= j; ++k) a[j][k] += weighted * derivative[k];
+        }
+      }
+      for (std::size_t j = 0; j < kUnknowns; ++j) {
+        b[j] += sums[j] * sum / weights;
+        for (std::size_t k = 0; k <= j; ++k) a[j][k] -= sums[j] * sums[k] / weights;
+      }
+    }
+    for (std::size_t j = 0; j < kUnknowns; ++j) {
+      a[j][j] += kDamping * (a[j][j] + 1e-6);
+      for (std::size_t k = 0; k < j; ++k) a[k][j] = a[j][k];
+    }
+    return solve(a, b);
+  }
+
+ private:
+  /// A return as seen from the sensor.
+  struct Seen {
+    double x, y, rho, slope;
+  };
+  struct Ring {
+    std::size_t begin, end;
+    double median;
+  };
+  struct Bounds {
+    double first = std::numeric_limits<double>::infinity(), last = -first;       ///< lasers
+    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;  ///< slopes
+    void add(double laser, double slope) {
+      first = std::min(first, laser);
+      last = std::max(last, laser);
+      lowest = std::min(lowest, slope);
+      highest = std::max(highest, slope);
+    }
+  };
+  Sample<Seen> seen_;
+  Sample<Ring> rings_;
+  Bounds bounds_;
+  Sample<double> deviations_;
+};
+
+double SensorFrameEstimator::spread(const SensorFrame& frame) const {
+  Slopes slopes(returns_, frame);
+  const double spread = slopes.spread() / slopes.laserStep();
+  return std::isnan(spread) ? std::numeric_limits<double>::infinity() : spread;
+}
+
+SensorFrame SensorFrameEstimator::middle() const {
+  Sample<double> x, y, z;
+  for (const LaserReturn& one : returns_) {
+    x.push_back(static_cast<double>(one.point.x));
+    y.push_back(static_cast<double>(one.point.y));
+    z.push_back(static_cast<double>(one.point.z));
+  }
+  SensorFrame frame;
+  if (!returns_.empty())
+    frame.origin = {quantile(x.begin(), x.end(), 0.5), quantile(y.begin(), y.end(), 0.5),
+                    quantile(z.begin(), z.end(), 0.5)};
+  return frame;
+}
+
+SensorFrame SensorFrameEstimator::fit() const {
+  constexpr int kSteps = 8;
+  constexpr double kSettled = 0.002;  // metres
+  constexpr double kMaxTilt = 0.3;
+  constexpr double kMinScale = 1e-5;  // of slopes: rounding
+  SensorFrame frame = middle();
+  for (int i = 0; i < kSteps; ++i) {
+    Slopes slopes(returns_, frame);
+    const double spread = slopes.spread();
+    if (std::isinf(spread)) break;
+    const Vector step = slopes.step(frame, 2 * spread + kMinScale);
+    for (std::size_t axis = 0; axis < 3; ++axis) frame.origin[axis] += step[axis];
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      frame.tilt[axis] = std::clamp(frame.tilt[axis] + step[3 + axis], -kMaxTilt, kMaxTilt);
+    if (std::fabs(step[0]) + std::fabs(step[1]) + std::fabs(step[2]) < kSettled) break;
+  }
+  return frame;
+}
+
+}  // namespace lisco
