@@ -12,6 +12,7 @@
 #include <pcl/search/octree.h>
 #include <pcl/segmentation/extract_clusters.h>
 #include <pcl/segmentation/lisco_cluster_extraction.h>
+#include <pcl/segmentation/lisco_cluster_writer.h>
 
 #include "io/point_geometry.h"
 #include "lisco/return.h"
@@ -65,25 +66,16 @@ class ComponentsToClusters {
               Clusters& clusters) {
     size_.assign(component_count, 0);
     for (const std::uint32_t component : component_of) ++size_[component];
-    cluster_.assign(component_count, kNone);
-    const pcl::Indices& returns = *problem.returns;
-    for (std::size_t i = 0; i < component_of.size(); ++i) {
-      const std::uint32_t component = component_of[i];
-      if (size_[component] < problem.min_size || size_[component] > problem.max_size) continue;
-      if (cluster_[component] == kNone) {
-        cluster_[component] = static_cast<std::uint32_t>(clusters.size());
-        clusters.emplace_back();
-        clusters.back().header = problem.cloud->header;
-        clusters.back().indices.reserve(size_[component]);
-      }
-      clusters[cluster_[component]].indices.push_back(returns[i]);
-    }
+    writer_.start(component_count, problem.cloud->header, problem.min_size, problem.max_size, clusters);
+    for (std::size_t i = 0; i < component_of.size(); ++i)
+      if (pcl::Indices* const members = writer_.indicesOf(component_of[i], size_[component_of[i]]))
+        members->push_back((*problem.returns)[i]);
     std::sort(clusters.rbegin(), clusters.rend(), pcl::comparePointClusters);
   }
 
  private:
-  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  std::vector<std::uint32_t> size_, cluster_;
+  std::vector<std::uint32_t> size_;
+  pcl::detail::LiscoClusterWriter writer_;
 };
 
 lisco::Return returnAt(const Problem& problem, pcl::index_t index) {
@@ -93,7 +85,7 @@ lisco::Return returnAt(const Problem& problem, pcl::index_t index) {
 
 class ByVoxelGrid {
  public:
-  void extract(const Problem& problem, Clusters& clusters) {
+  void operator()(const Problem& problem, Clusters& clusters) {
     // As Lisco does, it finds the returns in the cloud; the reference takes indices.
     returns_.clear();
     const ComparedCloud& cloud = *problem.cloud;
@@ -111,7 +103,7 @@ class ByVoxelGrid {
 
 class ByThePaper {
  public:
-  void extract(const Problem& problem, Clusters& clusters) {
+  void operator()(const Problem& problem, Clusters& clusters) {
     const ComparedCloud& cloud = *problem.cloud;
     if (cloud_ != problem.cloud) {  // the sensor is known beforehand
       sensor_ = nominalSensor(cloud);
@@ -143,18 +135,11 @@ class ByThePaper {
 
 class ByLisco {
  public:
-  void extract(const Problem& problem, Clusters& clusters) { extractBy(extraction_, problem, clusters); }
+  void operator()(const Problem& problem, Clusters& clusters) { extractBy(extraction_, problem, clusters); }
 
  private:
   pcl::LiscoClusterExtraction<ComparedPoint> extraction_;
 };
-
-template <typename Method>
-auto withOwnMemory() {
-  return [method = std::make_shared<Method>()](const Problem& problem, Clusters& clusters) {
-    method->extract(problem, clusters);
-  };
-}
 
 }  // namespace
 
@@ -193,9 +178,9 @@ std::vector<Baseline> allBaselines() {
           {"pcl-octree", "PCL, Octree", byPcl(octree), 0x56B4E9},
           {"pcl-default", "PCL, no search method given", byPcl([](const Problem&) { return Search::Ptr(); }), 0xF0E442,
            false},
-          {"grid", "voxel grid", withOwnMemory<ByVoxelGrid>(), 0x0072B2},
-          {"paper", "Lisco as in the paper", withOwnMemory<ByThePaper>(), 0xE69F00, true, true},
-          {"lisco", "Lisco for PCL", withOwnMemory<ByLisco>(), 0xD55E00}};
+          {"grid", "voxel grid", ByVoxelGrid(), 0x0072B2},
+          {"paper", "Lisco as in the paper", ByThePaper(), 0xE69F00, true, true},
+          {"lisco", "Lisco for PCL", ByLisco(), 0xD55E00}};
 }
 
 }  // namespace lisco_apps
