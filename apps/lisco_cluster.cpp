@@ -22,12 +22,10 @@
 #include "io/cloud_file.h"
 #include "io/clusters.h"
 #include "io/options.h"
-#include "io/result_files.h"
 #include "io/terminal_line.h"
 
 namespace {
 
-namespace fs = std::filesystem;
 namespace po = boost::program_options;
 using namespace lisco_apps;
 
@@ -50,14 +48,12 @@ bool parse(int argc, char** argv, Options& options) {
       "Finds the Euclidean clusters of LiDAR scans: the clusters of PCL's EuclideanClusterExtraction.\n"
       "An input is a scan (.pcd .ply, KITTI .bin, the paper authors' .csv) or a folder of scans.\n\n"
       "Options");
-  std::string threads = "1";
-  std::string output;
   options.clustering.addTo(shown);
   // clang-format off
   shown.add_options()
-    ("threads", po::value<std::string>(&threads)->value_name("N"),
+    ("threads", countOption("--threads", options.threads, 0),
      "cluster N files at the same time (default 1; 0: one per processor)")
-    ("output,o", po::value<std::string>(&output)->value_name("DIR"),
+    ("output,o", pathOption("DIR", "--output", options.output),
      "folder for labels.pcd, clusters.csv, range_image.png and top_view.png; with several inputs, a folder in it for "
      "each")
     ("clouds", po::bool_switch(&options.cloud_per_cluster), "also write one cloud per cluster (needs --output)");
@@ -65,12 +61,9 @@ bool parse(int argc, char** argv, Options& options) {
   po::variables_map given;
   if (!readCommandLine(argc, argv, "lisco_cluster", shown, &options.inputs, given)) return false;
   if (options.inputs.empty()) throw std::runtime_error("no input; see --help");
-  options.clustering.check(given);
-  options.threads = countOf(threads, "--threads", 0);
+  options.clustering.check();
   if (options.threads == 0) options.threads = std::max(1U, std::thread::hardware_concurrency());
-  if (given.count("output") != 0 && output.empty()) throw std::runtime_error("--output is empty");
-  options.output = output;
-  if (options.cloud_per_cluster && output.empty()) throw std::runtime_error("--clouds needs --output");
+  if (options.cloud_per_cluster && options.output.empty()) throw std::runtime_error("--clouds needs --output");
   return true;
 }
 

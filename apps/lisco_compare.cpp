@@ -13,6 +13,7 @@
 
 #include <omp.h>
 
+#include <boost/algorithm/string/join.hpp>
 #include <boost/program_options.hpp>
 
 #include "compare/comparison.h"
@@ -26,7 +27,6 @@
 
 namespace {
 
-namespace fs = std::filesystem;
 namespace po = boost::program_options;
 using namespace lisco_apps;
 
@@ -50,7 +50,8 @@ std::vector<Baseline> baselinesNamed(const std::string& keys, const char* option
     chosen.push_back(std::move(baseline));
   }
   if (!asked.empty())
-    throw std::runtime_error(std::string(option) + " knows no '" + asked.front() + "' (but " + listOf(known) + ")");
+    throw std::runtime_error(std::string(option) + ": there is no baseline '" + asked.front() + "'; known are " +
+                             boost::join(known, ", "));
   return chosen;
 }
 
@@ -68,8 +69,8 @@ bool parse(int argc, char** argv, Options& options) {
       "Exit code: 0 if the clusters of those that must agree are identical everywhere, 1 if not, otherwise 2 on bad\n"
       "input or usage.\n\n"
       "Options");
-  std::string tolerances, json, csv, plot;
-  std::string min_size = "10", runs = "20", max_seconds = "10";
+  CompareSettings& settings = options.settings;
+  std::string tolerances;
   std::string baselines = "pcl,pcl-tutorial,pcl-octree,grid,paper,lisco";
   std::string must_agree = "lisco";
   std::vector<std::string> ground;
@@ -78,22 +79,22 @@ bool parse(int argc, char** argv, Options& options) {
   shown.add_options()
     ("tolerance,t", po::value<std::string>(&tolerances)->value_name("M[,M...]"),
      "points nearer to each other than this many metres belong together")
-    ("min-size", po::value<std::string>(&min_size)->value_name("N"), "least returns of a cluster (default 10)")
+    ("min-size", countOption("--min-size", settings.min_size, 1), "least returns of a cluster (default 10)")
     ("ground-z", po::value<std::vector<std::string>>(&ground)->value_name("M"),
      "leave out returns below this height in metres (default: none); NAME=M: of the input with this file name "
      "(without ending) only; may be given several times")
-    ("runs", po::value<std::string>(&runs)->value_name("N"), "timed runs of each baseline (default 20)")
-    ("max-seconds", po::value<std::string>(&max_seconds)->value_name("S"),
+    ("runs", countOption("--runs", settings.runs, 1), "timed runs of each baseline (default 20)")
+    ("max-seconds", numberOption("S", "--max-seconds", settings.max_seconds),
      "fewer runs, at least 3, for a baseline that would take longer than this for all of them (default 10)")
     ("check-only", po::bool_switch(&check_only), "compare the clusters only, without times")
     ("baselines", po::value<std::string>(&baselines)->value_name("A,B,..."),
      "the methods to compare (default: all but pcl-default)")
     ("must-agree", po::value<std::string>(&must_agree)->value_name("A,B,..."),
      "those of them that must find PCL's clusters (default lisco)")
-    ("unorganized", po::bool_switch(&options.settings.unorganized), "cluster the returns as an unorganized cloud")
-    ("json", po::value<std::string>(&json)->value_name("FILE"), "write everything, each run's time included")
-    ("csv", po::value<std::string>(&csv)->value_name("FILE"), "write a row per input, tolerance and baseline")
-    ("plot", po::value<std::string>(&plot)->value_name("DIR"), "draw charts (PNG) into a folder; needs gnuplot");
+    ("unorganized", po::bool_switch(&settings.unorganized), "cluster the returns as an unorganized cloud")
+    ("json", pathOption("FILE", "--json", options.json), "write everything, each run's time included")
+    ("csv", pathOption("FILE", "--csv", options.csv), "write a row per input, tolerance and baseline")
+    ("plot", pathOption("DIR", "--plot", options.plot), "draw charts (PNG) into a folder; needs gnuplot");
   // clang-format on
   po::options_description hidden;
   hidden.add_options()("rivals", po::value<std::string>(&baselines));  // the former name of --baselines
@@ -101,12 +102,8 @@ bool parse(int argc, char** argv, Options& options) {
   if (!readCommandLine(argc, argv, "lisco_compare", shown, &options.inputs, given, hidden)) return false;
   if (options.inputs.empty()) throw std::runtime_error("no input; see --help");
   if (given.count("tolerance") == 0) throw std::runtime_error("--tolerance is missing; see --help");
-  CompareSettings& settings = options.settings;
   for (const std::string& item : itemsOf(tolerances)) settings.tolerances.push_back(toleranceOf(item));
-  settings.min_size = countOf(min_size, "--min-size", 1);
-  settings.runs = countOf(runs, "--runs", 1);
   if (check_only) settings.runs = 0;
-  settings.max_seconds = numberOf(max_seconds, "--max-seconds");
   if (!(settings.max_seconds > 0)) throw std::runtime_error("--max-seconds must be positive");
   options.ground = GroundHeights(ground);
   settings.baselines = baselinesNamed(baselines, "--baselines");
@@ -116,14 +113,11 @@ bool parse(int argc, char** argv, Options& options) {
     if (given.count("must-agree") != 0 && std::none_of(settings.baselines.begin(), settings.baselines.end(), is_it))
       throw std::runtime_error("--must-agree names " + baseline.key + ", which --baselines does not");
   }
-  for (const auto& [option, value] : {std::pair("json", json), std::pair("csv", csv), std::pair("plot", plot)})
-    if (given.count(option) != 0 && value.empty()) throw std::runtime_error(std::string("--") + option + " is empty");
-  options.json = json;
-  options.csv = csv;
-  options.plot = plot;
-  if (!json.empty() && !csv.empty() && fs::absolute(json).lexically_normal() == fs::absolute(csv).lexically_normal())
-    throw std::runtime_error("--json and --csv are one file: " + json);
-  if (check_only && !plot.empty()) throw std::runtime_error("--plot needs times, --check-only takes none");
+  if (!options.json.empty() && !options.csv.empty() &&
+      fs::absolute(options.json).lexically_normal() == fs::absolute(options.csv).lexically_normal())
+    throw std::runtime_error("--json and --csv are one file: " + options.json.string());
+  if (check_only && !options.plot.empty())
+    throw std::runtime_error("--plot needs times, which --check-only leaves out");
   return true;
 }
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include <boost/algorithm/string/join.hpp>
 #include <boost/program_options.hpp>
 
 #include "io/options.h"
@@ -25,7 +26,6 @@
 
 namespace {
 
-namespace fs = std::filesystem;
 namespace po = boost::program_options;
 using namespace lisco_apps;
 using namespace lisco_simulation;
@@ -52,12 +52,12 @@ struct Options {
 
 void checkKnown(const std::string& name, const std::vector<std::string>& names, const std::string& what) {
   if (std::find(names.begin(), names.end(), name) == names.end())
-    throw std::runtime_error("there is no " + what + " '" + name + "'; known are " + listOf(names));
+    throw std::runtime_error("there is no " + what + " '" + name + "'; known are " + boost::join(names, ", "));
 }
 
 /// \return false if --help or --version was given
 bool parse(int argc, char** argv, Options& options) {
-  po::options_description shown(
+  std::string usage =
       "Usage: lisco_simulate --scene N -o SCAN.pcd [options]\n"
       "       lisco_simulate --case NAME -o SCAN.pcd [options]\n\n"
       "Simulates one rotation of a LiDAR in one of the five scenes of the evaluation of Lisco's paper:\n"
@@ -66,40 +66,35 @@ bool parse(int argc, char** argv, Options& options) {
       "  3  many objects near, among them a row of parked cars on each side\n"
       "  4  the same objects far away\n"
       "  5  a closed, crowded room\n"
-      "or one of these cases, each a worst case of clustering in one way:\n"
-      "  room        a closed, empty room: one cluster\n"
-      "  wall        a round wall 1 m away on all sides\n"
-      "  random      each return at a random range between 1 and 60 m\n"
-      "  sheets      two sheets a gap apart, hit alternately by neighbouring cells\n"
-      "  singletons  as many returns as possible that are farther than a gap from each other\n"
-      "  blocked     an obstacle on the sensor's cover: all returns within 0.3 m\n"
-      "  poles       a comb of thin vertical poles\n"
+      "or one of these cases, each a worst case of clustering in one way:\n";
+  for (const std::string& name : caseNames())
+    usage += formatted("  %-11s %s\n", name.c_str(), describeCase(name).c_str());
+  usage +=
       "Writes an organized cloud, a row per laser and a column per step, with fields x y z label; the label\n"
       "is the number of the object that was hit, 0 the ground. Cells without return are NaN. Cases have no ground.\n\n"
-      "Options");
-  std::string scene, lasers, steps, output;
-  std::string seed = "1", noise = "0.02", drop_outs = "0.005", gap = "0.41";
-  const std::string cases = listOf(caseNames());
-  const std::string sensors = listOf(sensorNames()) + " (default " + options.sensor + ")";
+      "Options";
+  po::options_description shown(usage);
+  const std::string cases = boost::join(caseNames(), ", ");
+  const std::string sensors = boost::join(sensorNames(), ", ") + " (default " + options.sensor + ")";
   // clang-format off
   shown.add_options()
-    ("scene", po::value<std::string>(&scene)->value_name("N"), "1 to 5")
+    ("scene", countOption("--scene", options.scene, 1, kScenes), "1 to 5")
     ("case", po::value<std::string>(&options.worst_case)->value_name("NAME"), cases.c_str())
     ("vehicle", po::bool_switch(&options.vehicle),
      "adds the vehicle below the sensor as one more object (scenes 1 to 4): roof, rack, mast and mirrors nearer than "
      "1.5 m, with a quarter of the returns of a default hdl64e")
-    ("gap", po::value<std::string>(&gap)->value_name("M"),
+    ("gap", numberOption("M", "--gap", options.gap),
      "between the two sheets, or between singletons, in metres (default 0.41)")
-    ("output,o", po::value<std::string>(&output)->value_name("FILE"), "the scan to write (PCD)")
-    ("seed", po::value<std::string>(&seed)->value_name("N"),
+    ("output,o", pathOption("FILE", "--output", options.output), "the scan to write (PCD)")
+    ("seed", countOption("--seed", options.seed, 0),
      "seed of the layout, noise and drop-outs (default 1)")
     ("sensor", po::value<std::string>(&options.sensor)->value_name("NAME"), sensors.c_str())
-    ("lasers", po::value<std::string>(&lasers)->value_name("N"),
+    ("lasers", countOption("--lasers", options.lasers, 1),
      "another number of lasers, between the sensor's highest and lowest")
-    ("steps", po::value<std::string>(&steps)->value_name("N"), "another number of steps of the rotation")
-    ("noise", po::value<std::string>(&noise)->value_name("M"),
+    ("steps", countOption("--steps", options.steps, 1), "another number of steps of the rotation")
+    ("noise", numberOption("M", "--noise", options.disturbance.range_noise),
      "standard deviation of the ranges in metres (default 0.02)")
-    ("drop-outs", po::value<std::string>(&drop_outs)->value_name("P"),
+    ("drop-outs", numberOption("P", "--drop-outs", options.disturbance.drop_outs),
      "part of the returns that is lost (default 0.005)");
   // clang-format on
   po::variables_map given;
@@ -108,31 +103,18 @@ bool parse(int argc, char** argv, Options& options) {
     throw std::runtime_error("--scene or --case is missing; see --help");
   if (given.count("scene") != 0 && given.count("case") != 0)
     throw std::runtime_error("--scene and --case exclude each other");
-  if (given.count("scene") != 0) {
-    if (scene.size() != 1 || scene[0] < '1' || scene[0] > '0' + kScenes)
-      throw std::runtime_error("--scene must be 1, 2, 3, 4 or 5, not '" + scene + "'");
-    options.scene = scene[0] - '0';
-  } else {
-    checkKnown(options.worst_case, caseNames(), "case");
-  }
+  if (options.scene == 0) checkKnown(options.worst_case, caseNames(), "case");
+  if (options.gap < kMinGap || options.gap > kMaxGap)
+    throw std::runtime_error(formatted("--gap must be from 0.001 to 100 metres, not %g", options.gap));
   if (options.vehicle && (options.scene < 1 || options.scene > 4))
     throw std::runtime_error("--vehicle needs a street: --scene 1, 2, 3 or 4");
-  options.gap = numberOf(gap, "--gap");
-  if (options.gap < kMinGap || options.gap > kMaxGap)
-    throw std::runtime_error("--gap must be from 0.001 to 100 metres, not '" + gap + "'");
   if (given.count("gap") != 0 && (options.scene != 0 || !caseHasGap(options.worst_case)))
     throw std::runtime_error("--gap is of --case sheets and --case singletons only");
-  if (output.empty()) throw std::runtime_error("--output is missing; see --help");
-  options.output = output;
+  if (options.output.empty()) throw std::runtime_error("--output is missing; see --help");
   if (options.output.extension() != ".pcd")
-    throw std::runtime_error("--output must end in .pcd, not be '" + output + "'");
-  options.seed = countOf(seed, "--seed", 0);
+    throw std::runtime_error("--output must end in .pcd, not be '" + options.output.string() + "'");
   options.disturbance.seed = options.seed;
-  if (given.count("lasers") != 0) options.lasers = countOf(lasers, "--lasers", 1);
-  if (given.count("steps") != 0) options.steps = countOf(steps, "--steps", 1);
-  options.disturbance.range_noise = numberOf(noise, "--noise");
   if (options.disturbance.range_noise < 0) throw std::runtime_error("--noise must not be negative");
-  options.disturbance.drop_outs = numberOf(drop_outs, "--drop-outs");
   if (options.disturbance.drop_outs < 0 || options.disturbance.drop_outs >= 1)
     throw std::runtime_error("--drop-outs must be at least 0 and less than 1");
   return true;
@@ -179,7 +161,7 @@ std::string kindsOf(const Scene& scene) {
   for (const Object& object : scene.objects)
     if (counts[object.kind]++ == 0) kinds.push_back(object.kind);
   for (std::string& kind : kinds) kind = std::to_string(counts[kind]) + " x " + kind;
-  return listOf(kinds);
+  return boost::join(kinds, ", ");
 }
 
 void printSensor(const Options& options, const Scan& scan) {

@@ -14,9 +14,11 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
+#include <boost/algorithm/string/join.hpp>
 #include <boost/program_options.hpp>
 
 #include "io/options.h"
@@ -27,14 +29,12 @@
 #include "stream/endless_stream.h"
 #include "stream/labelled_pcd.h"
 #include "stream/other_sensors.h"
-#include "stream/paced_capture.h"
 #include "stream/packet_queue.h"
 #include "stream/report.h"
 #include "stream/rotation_stream.h"
 
 namespace {
 
-namespace fs = std::filesystem;
 namespace po = boost::program_options;
 using namespace lisco_apps;
 
@@ -64,6 +64,12 @@ void listenToSignals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
+bool isEndless(const std::string& mode) {
+  if (mode != "rotation" && mode != "endless")
+    throw std::runtime_error("--mode must be rotation or endless, not '" + mode + "'");
+  return mode == "endless";
+}
+
 /// \return false if --help or --version was given
 bool parse(int argc, char** argv, Options& options) {
   po::options_description shown(
@@ -90,9 +96,9 @@ bool parse(int argc, char** argv, Options& options) {
       "Exit code 0; 2 on wrong usage, if no packet is one of the sensor's, or if the capture breaks off (after\n"
       "the packets before it have been clustered).\n\n"
       "Options");
-  const std::string sensors = listOf(sensorModelNames());
+  const std::string sensors = boost::join(sensorModelNames(), ", ");
   std::vector<std::string> inputs;
-  std::string port, mode, calibration, output, rotations;
+  std::string port;
   ClusterOptions clustering;
   // clang-format off
   shown.add_options()
@@ -101,14 +107,15 @@ bool parse(int argc, char** argv, Options& options) {
   shown.add_options()
     ("port", po::value<std::string>(&port)->value_name("N")->implicit_value(std::to_string(kDefaultPort)),
      "UDP port to receive from (without a number: 2368; 0: any that is free); with a capture, take only packets to it")
-    ("mode", po::value<std::string>(&mode)->value_name("NAME"), "rotation or endless (default rotation)")
-    ("calibration", po::value<std::string>(&calibration)->value_name("FILE"),
+    ("mode", textOption("NAME", [&](const std::string& text) { options.endless = isEndless(text); }),
+     "rotation or endless (default rotation)")
+    ("calibration", textOption("FILE", [&](const std::string& text) { options.calibration = text; }),
      "the calibration (db.xml) of the hdl64e, each of which has its own")
-    ("rotations", po::value<std::string>(&rotations)->value_name("N"), "end after N rotations")
+    ("rotations", countOption("--rotations", options.stream.rotations, 1), "end after N rotations")
     ("realtime", po::bool_switch(&options.realtime),
      "read a capture at the pace of its recording, without breaks of more than ten seconds (default: as fast as "
      "possible)")
-    ("output,o", po::value<std::string>(&output)->value_name("DIR"),
+    ("output,o", pathOption("DIR", "--output", options.output),
      "folder for rotation_000001.pcd and so on: each rotation as an organized cloud of x y z intensity label, where "
      "the label is the cluster's id, 0 for none; in mode endless, written once all its clusters have been delivered. "
      "Removes those of an earlier run")
@@ -126,19 +133,12 @@ bool parse(int argc, char** argv, Options& options) {
     options.port = static_cast<std::uint16_t>(countOf(port, "--port", 0, std::numeric_limits<std::uint16_t>::max()));
   if (options.realtime && options.capture.empty()) throw std::runtime_error("--realtime is for captures only");
   if (options.sensor.empty()) throw std::runtime_error("--sensor is missing (" + sensors + "); see --help");
-  options.calibration = calibration;
 
-  clustering.check(given);
+  clustering.check();
   options.stream.tolerance = static_cast<float>(clustering.tolerance);
   options.stream.ground_z = clustering.ground_z;
   options.stream.min_size = clustering.min_size;
   options.stream.max_size = clustering.max_size;
-  if (given.count("rotations") != 0) options.stream.rotations = countOf(rotations, "--rotations", 1);
-  if (!mode.empty() && mode != "rotation" && mode != "endless")
-    throw std::runtime_error("--mode must be rotation or endless, not '" + mode + "'");
-  options.endless = mode == "endless";
-  if (given.count("output") != 0 && output.empty()) throw std::runtime_error("--output is empty");
-  options.output = output;
   return true;
 }
 
@@ -150,6 +150,47 @@ class UntilInterrupted : public PacketSource {
 
  private:
   PacketSource& source_;
+};
+
+/// The packets of a capture at the pace of their recording. Breaks of more than ten seconds are skipped.
+class PacedCapture : public PacketSource {
+ public:
+  explicit PacedCapture(std::unique_ptr<PacketSource> capture) : capture_(std::move(capture)) {}
+
+  Arrival next(Packet& packet) override {
+    if (!waits_) {
+      const Arrival arrival = capture_->next(waiting_);
+      foreign_ = capture_->foreign();
+      error_ = capture_->error();
+      if (arrival != Arrival::kPacket) return arrival;
+      const std::chrono::microseconds gap(waiting_.time_us - last_time_us_);
+      const auto now = Clock::now();
+      const bool goes_on = packets_ > 0 && waiting_.time_us >= last_time_us_ && gap <= kMaxBreak;
+      due_ = goes_on ? due_ + gap : now;
+      last_time_us_ = waiting_.time_us;
+      waits_ = true;
+    }
+    const auto return_by = Clock::now() + kMaxWait;
+    if (due_ > return_by) {
+      std::this_thread::sleep_until(return_by);
+      return Arrival::kNothing;
+    }
+    std::this_thread::sleep_until(due_);
+    waits_ = false;
+    ++packets_;
+    packet = waiting_;
+    return Arrival::kPacket;
+  }
+
+ private:
+  static constexpr std::chrono::seconds kMaxBreak{10};
+  static constexpr std::chrono::milliseconds kMaxWait{50};
+
+  std::unique_ptr<PacketSource> capture_;
+  Packet waiting_;  ///< until it is due
+  bool waits_ = false;
+  std::int64_t last_time_us_ = 0;
+  Clock::time_point due_;
 };
 
 struct Input {

@@ -12,6 +12,7 @@
 #include <pcl/search/octree.h>
 #include <pcl/segmentation/extract_clusters.h>
 #include <pcl/segmentation/lisco_cluster_extraction.h>
+#include <pcl/segmentation/lisco_cluster_writer.h>
 
 #include "io/point_geometry.h"
 #include "lisco/return.h"
@@ -94,7 +95,7 @@ lisco::Return returnAt(const Problem& problem, pcl::index_t index) {
 
 class ByVoxelGrid {
  public:
-  void extract(const Problem& problem, Clusters& clusters) {
+  void operator()(const Problem& problem, Clusters& clusters) {
     // As Lisco does, it finds the returns in the cloud; the reference takes indices.
     const ComparedCloud& cloud = *problem.cloud;
     returns_.resize(cloud.size());
@@ -116,7 +117,7 @@ class ByVoxelGrid {
 
 class ByThePaper {
  public:
-  void extract(const Problem& problem, Clusters& clusters) {
+  void operator()(const Problem& problem, Clusters& clusters) {
     const ComparedCloud& cloud = *problem.cloud;
     if (cloud_ != problem.cloud) {  // the sensor is known beforehand
       sensor_ = nominalSensor(cloud);
@@ -148,18 +149,11 @@ class ByThePaper {
 
 class ByLisco {
  public:
-  void extract(const Problem& problem, Clusters& clusters) { extractBy(extraction_, problem, clusters); }
+  void operator()(const Problem& problem, Clusters& clusters) { extractBy(extraction_, problem, clusters); }
 
  private:
   pcl::LiscoClusterExtraction<ComparedPoint> extraction_;
 };
-
-template <typename Method>
-auto withOwnMemory() {
-  return [method = std::make_shared<Method>()](const Problem& problem, Clusters& clusters) {
-    method->extract(problem, clusters);
-  };
-}
 
 }  // namespace
 
@@ -198,9 +192,9 @@ std::vector<Baseline> allBaselines() {
           {"pcl-octree", "PCL, Octree", byPcl(octree), 0x56B4E9},
           {"pcl-default", "PCL, no search method given", byPcl([](const Problem&) { return Search::Ptr(); }), 0xF0E442,
            false},
-          {"grid", "voxel grid", withOwnMemory<ByVoxelGrid>(), 0x0072B2},
-          {"paper", "Lisco as in the paper", withOwnMemory<ByThePaper>(), 0xE69F00, true, true},
-          {"lisco", "Lisco for PCL", withOwnMemory<ByLisco>(), 0xD55E00}};
+          {"grid", "voxel grid", ByVoxelGrid(), 0x0072B2},
+          {"paper", "Lisco as in the paper", ByThePaper(), 0xE69F00, true, true},
+          {"lisco", "Lisco for PCL", ByLisco(), 0xD55E00}};
 }
 
 }  // namespace lisco_apps

@@ -17,7 +17,7 @@
 
 namespace lisco_apps {
 
-using ComparedPoint = pcl::PointXYZI;  ///< what drivers of LiDARs deliver
+using ComparedPoint = pcl::PointXYZI;  ///< the point type of LiDAR drivers
 using ComparedCloud = pcl::PointCloud<ComparedPoint>;
 
 /// The input of every baseline.
@@ -36,7 +36,7 @@ struct Baseline {
   std::function<void(const Problem&, Clusters&)> extract;  ///< appends clusters; keeps its memory from call to call
   unsigned color = 0;                                      ///< in charts, 0xRRGGBB
   bool timed = true;                                       ///< false: clusters are compared only
-  bool needs_rows = false;                                 ///< takes organized clouds only
+  bool needs_rows = false;                                 ///< for organized clouds only
 };
 
 /// Key of the reference, PCL with KdTree (false), whose clusters are the right ones.

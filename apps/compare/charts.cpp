@@ -15,7 +15,7 @@ namespace {
 /// \param add_points (baseline, points) appends its points
 template <typename AddPoints>
 void drawLines(const CompareSettings& settings, const std::string& title, const char* x_label, bool log_x,
-               const std::filesystem::path& png, AddPoints&& add_points) {
+               const fs::path& png, AddPoints&& add_points) {
   Chart chart{title, x_label, "milliseconds, mean with 99% confidence", log_x};
   for (const Baseline& baseline : settings.baselines) {
     Chart::Line line{baseline.title, baseline.color, {}};
@@ -53,8 +53,7 @@ std::vector<std::string> chartsOf(const std::vector<std::string>& input_names, c
   return charts;
 }
 
-void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& settings,
-                const std::filesystem::path& folder) {
+void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& settings, const fs::path& folder) {
   for (const InputResult& input : inputs)
     drawLines(settings, formatted("%s: %zu returns", input.name.c_str(), input.returns), kOverTolerance, false,
               folder / overTolerance(input.name), [&](const Baseline& baseline, auto& points) {

@@ -85,7 +85,8 @@ CaseResult compareAt(const ComparedScan& scan, double tolerance, const CompareSe
   if (!scan.object_of.empty()) result.objects = scoreObjects(problem, expected, scan.object_of);
 
   std::vector<Contestant> contestants;
-  std::vector<std::size_t> contestant_of;
+  std::vector<BaselineResult*> results;  // of the contestants
+  result.baselines.reserve(settings.baselines.size());
   for (const Baseline& baseline : settings.baselines) {
     BaselineResult& entry = result.baselines.emplace_back();
     entry.baseline = &baseline;
@@ -114,14 +115,14 @@ CaseResult compareAt(const ComparedScan& scan, double tolerance, const CompareSe
                              baseline.extract(problem, clusters);
                            },
                            tried_ms, affordableRuns(tried_ms, settings)});
-    contestant_of.push_back(result.baselines.size() - 1);
+    results.push_back(&entry);
   }
 
   const std::vector<Times> times = timeInTurn(contestants, Clock::kWall, [&](std::size_t round, std::size_t rounds) {
     progress("run " + std::to_string(round + 1) + " of " + std::to_string(rounds),
              static_cast<double>(round) / static_cast<double>(rounds));
   });
-  for (std::size_t i = 0; i < times.size(); ++i) result.baselines[contestant_of[i]].times = times[i];
+  for (std::size_t i = 0; i < times.size(); ++i) results[i]->times = times[i];
   return result;
 }
 

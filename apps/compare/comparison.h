@@ -16,7 +16,7 @@
 
 namespace lisco_apps {
 
-/// What to compare, and how.
+/// Settings of a comparison.
 struct CompareSettings {
   std::vector<Baseline> baselines;      ///< in the order of the tables
   std::vector<std::string> must_agree;  ///< keys of those that must find the reference's clusters

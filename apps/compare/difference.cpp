@@ -36,42 +36,36 @@ std::set<pcl::Indices> setsOf(const Clusters& clusters) {
   return sets;
 }
 
-/// The best naming: pairs of corresponding labels of the reference and the baseline (0 for 0).
-class Naming {
- public:
-  Naming(const pcl::Indices& returns, const Labels& expected, const Labels& found) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> shared;
-    for (const auto index : returns) ++shared[{expected[at(index)], found[at(index)]}];
-    std::vector<std::pair<std::size_t, std::pair<std::uint32_t, std::uint32_t>>> by_size;
-    for (const auto& [labels, points] : shared) by_size.push_back({points, labels});
-    std::sort(by_size.rbegin(), by_size.rend());
-    std::set<std::uint32_t> named, taken;
-    for (const auto& [points, labels] : by_size) {
-      const auto& [a, b] = labels;
-      if ((a == 0) != (b == 0)) continue;
-      if (named.count(a) != 0 || taken.count(b) != 0) continue;
-      named.insert(a);
-      taken.insert(b);
-      pairs_.insert(labels);
-    }
-  }
-  bool agree(std::uint32_t expected, std::uint32_t found) const { return pairs_.count({expected, found}) != 0; }
+using LabelPairs = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 
- private:
-  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs_;
-};
+/// The best naming: pairs of corresponding labels of the reference and the baseline (0 for 0).
+LabelPairs bestNaming(const pcl::Indices& returns, const Labels& expected, const Labels& found) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> shared;
+  for (const auto index : returns) ++shared[{expected[at(index)], found[at(index)]}];
+  std::vector<std::pair<std::size_t, std::pair<std::uint32_t, std::uint32_t>>> by_size;
+  for (const auto& [labels, points] : shared) by_size.push_back({points, labels});
+  std::sort(by_size.rbegin(), by_size.rend());
+  LabelPairs pairs;
+  std::set<std::uint32_t> named, taken;
+  for (const auto& [points, labels] : by_size) {
+    const auto& [a, b] = labels;
+    if ((a == 0) != (b == 0) || named.count(a) != 0 || taken.count(b) != 0) continue;
+    named.insert(a);
+    taken.insert(b);
+    pairs.insert(labels);
+  }
+  return pairs;
+}
 
 /// Two points that only one of the two connects.
 struct DecidingPair {
-  enum class Kind {
-    kKeptApart,  ///< neighbours that the method keeps apart
-    kJoined,     ///< not connected, and the method joins them
-    kMissed      ///< neighbours that the method joins, and that the search of PCL's tree misses
-  };
   pcl::index_t a, b;
   float d2;
-  Kind kind;
+  const char* kind;
 };
+constexpr const char* kKeptApart = "neighbours, which the method keeps apart";
+constexpr const char* kJoined = "not connected, which the method joins";
+constexpr const char* kMissed = "neighbours; PCL's tree missed this pair";
 
 /// A pair of neighbours by the definition, one of `inside` and one of `joined`: the tree over `joined` is searched a
 /// little beyond the tolerance, so that its own rounding misses none.
@@ -93,7 +87,7 @@ std::optional<DecidingPair> missedPair(const Problem& problem, pcl::search::KdTr
     for (const auto other : near) {
       const ComparedPoint& q = cloud[at(other)];
       const float d2 = lisco::squaredDistance(p.x - q.x, p.y - q.y, p.z - q.z);
-      if (d2 < tolerance.squared()) return DecidingPair{index, other, d2, DecidingPair::Kind::kMissed};
+      if (d2 < tolerance.squared()) return DecidingPair{index, other, d2, kMissed};
     }
   }
   return std::nullopt;
@@ -122,8 +116,7 @@ std::optional<DecidingPair> decidingPair(const Problem& problem, pcl::index_t po
   for (const auto index : *inside) {
     tree.radiusSearch((*problem.cloud)[at(index)], radius, near, squared);
     for (std::size_t i = 0; i < near.size(); ++i)
-      if (near[i] != index && !joined_with(near[i], index))
-        return DecidingPair{index, near[i], squared[i], DecidingPair::Kind::kKeptApart};
+      if (near[i] != index && !joined_with(near[i], index)) return DecidingPair{index, near[i], squared[i], kKeptApart};
   }
   if (joined->empty()) return std::nullopt;
   tree.setInputCloud(problem.cloud, joined);
@@ -132,25 +125,13 @@ std::optional<DecidingPair> decidingPair(const Problem& problem, pcl::index_t po
   for (const auto index : *inside)
     if (joined_with(index, point) && tree.nearestKSearch((*problem.cloud)[at(index)], 1, near, squared) == 1 &&
         (!nearest || squared[0] < nearest->d2))
-      nearest = DecidingPair{index, near[0], squared[0], DecidingPair::Kind::kJoined};
+      nearest = DecidingPair{index, near[0], squared[0], kJoined};
   return nearest;
 }
 
 std::string inWords(std::uint32_t label, const Clusters& clusters) {
   if (label == 0) return "noise";
   return formatted("cluster %u (%zu points)", label, clusters[label - 1].indices.size());
-}
-
-std::string inWords(DecidingPair::Kind kind) {
-  switch (kind) {
-    case DecidingPair::Kind::kKeptApart:
-      return "neighbours, which the method keeps apart";
-    case DecidingPair::Kind::kJoined:
-      return "not connected, which the method joins";
-    case DecidingPair::Kind::kMissed:
-      return "neighbours; PCL's tree missed this pair";
-  }
-  return "";
 }
 
 std::string whereIs(const Problem& problem, pcl::index_t index) {
@@ -205,10 +186,10 @@ Difference differenceOf(const Problem& problem, const Baseline& reference, const
   const std::size_t points = problem.cloud->size();
   const Labels expected_label = labelsOf(expected, points);
   const Labels found_label = labelsOf(found, points);
-  const Naming naming(*problem.returns, expected_label, found_label);
+  const LabelPairs naming = bestNaming(*problem.returns, expected_label, found_label);
   std::optional<pcl::index_t> first;
   for (const auto index : *problem.returns) {
-    if (naming.agree(expected_label[at(index)], found_label[at(index)])) continue;
+    if (naming.count({expected_label[at(index)], found_label[at(index)]}) != 0) continue;
     ++difference.mislabelled;
     if (!first) first = index;
   }
@@ -235,9 +216,8 @@ Difference differenceOf(const Problem& problem, const Baseline& reference, const
   if (pair) {
     const double r2 = static_cast<double>(lisco::Tolerance(static_cast<float>(problem.tolerance)).squared());
     difference.details += "the pair that decides: " + whereIs(problem, pair->a) + " and " + whereIs(problem, pair->b) +
-                          formatted(", d2 = %.9g, r2 = %.9g: ", static_cast<double>(pair->d2), r2) +
-                          inWords(pair->kind) + "\n";
-    difference.missed_by_reference = pair->kind == DecidingPair::Kind::kMissed;
+                          formatted(", d2 = %.9g, r2 = %.9g: ", static_cast<double>(pair->d2), r2) + pair->kind + "\n";
+    difference.missed_by_reference = pair->kind == kMissed;
   }
   return difference;
 }

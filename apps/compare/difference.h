@@ -18,16 +18,16 @@ struct Difference {
   std::size_t clusters = 0;          ///< clusters of the reference that the baseline lacks
   std::size_t mislabelled = 0;       ///< points with another label under the best naming, see differenceOf ()
   bool missed_by_reference = false;  ///< the deciding pair are neighbours that the search of PCL's tree misses
-  std::string details;               ///< lines that say where; empty if identical
+  std::string details;               ///< lines that locate it; empty if identical
 };
 
 /// Compares a baseline's clusters with the reference's.
 ///
 /// Clusters are paired one to one, those that share most points first, and noise with noise; a point is mislabelled if
 /// its clusters are not paired. The details name the first such point with its coordinates, its neighbours within the
-/// tolerance, and the pair that decides: neighbours that the baseline keeps apart, neighbours that it joins and PCL's tree
-/// misses by rounding (doc/contract.md), or the nearest two unconnected points that it joins. To find the pair, both are
-/// run again with clusters of any size.
+/// tolerance, and the pair that decides: neighbours that the baseline keeps apart, neighbours that it joins and PCL's
+/// tree misses by rounding (doc/contract.md), or the nearest two unconnected points that it joins. To find the pair,
+/// both are run again with clusters of any size.
 Difference differenceOf(const Problem& problem, const Baseline& reference, const Clusters& expected,
                         const Baseline& baseline, const Clusters& found);
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <sstream>
 #include <thread>
 
+#include <boost/algorithm/string.hpp>
 #include <nlohmann/json.hpp>
 
 #include <pcl/pcl_config.h>
@@ -46,18 +46,7 @@ std::string verdictOn(const BaselineResult& result) {
   return formatted("DIFFERENT: %zu points, %zu clusters", result.difference.mislabelled, result.clusters);
 }
 
-std::string indented(const std::string& lines, const char* by) {
-  std::istringstream stream(lines);
-  std::string result, line;
-  while (std::getline(stream, line)) result += by + line + "\n";
-  return result;
-}
-
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-double orNan(const std::optional<double>& value) {
-  return value.value_or(kNan);
-}
 
 /// JSON has no NaN.
 nlohmann::ordered_json finiteOrNull(double value) {
@@ -87,7 +76,7 @@ nlohmann::ordered_json jsonOf(const CaseResult& result, const BaselineResult& en
   json["median_ms"] = median(entry.times->runs);
   json["lower_quartile_ms"] = quantile(entry.times->runs, 0.25);
   json["upper_quartile_ms"] = quantile(entry.times->runs, 0.75);
-  json["ratio"] = finiteOrNull(orNan(result.ratio(entry)));
+  json["ratio"] = finiteOrNull(result.ratio(entry).value_or(kNan));
   json["cold_median_ms"] = median(entry.times->cold);
   json["times_ms"] = entry.times->runs;
   return json;
@@ -130,7 +119,7 @@ std::string tableOf(const CaseResult& result) {
   for (const BaselineResult& entry : result.baselines) {
     text += formatted("  %-30s ", entry.baseline->title.c_str());
     if (entry.times) {
-      const double ratio = orNan(result.ratio(entry));
+      const double ratio = result.ratio(entry).value_or(kNan);
       const double confidence = entry.times->confidence99();
       text +=
           formatted("%5zu %11.3f %9s %11.3f ", entry.times->runs.size(), entry.times->mean(),
@@ -143,7 +132,8 @@ std::string tableOf(const CaseResult& result) {
   }
   for (const BaselineResult& entry : result.baselines)
     if (!entry.difference.details.empty())
-      text += "  " + entry.baseline->title + ":\n" + indented(entry.difference.details, "    ");
+      text += "  " + entry.baseline->title + ":\n    " +
+              boost::replace_all_copy(boost::trim_right_copy(entry.difference.details), "\n", "\n    ") + "\n";
   return text;
 }
 
@@ -186,10 +176,7 @@ std::string csvOf(const std::vector<InputResult>& inputs, const CompareSettings&
   for (const InputResult& input : inputs)
     for (const CaseResult& result : input.cases)
       for (const BaselineResult& entry : result.baselines) {
-        // Quoted, for names with commas or quotes.
-        std::string name = "\"";
-        for (const char c : input.name) name += c == '"' ? "\"\"" : std::string(1, c);
-        text += name + "\"" +
+        text += "\"" + boost::replace_all_copy(input.name, "\"", "\"\"") + "\"" +
                 formatted(",%zu,%zu,%zu,%s,%.10g,%u,%zu,%s", input.rows, input.columns, input.returns,
                           number(static_cast<double>(input.ground_z)).c_str(), result.tolerance, settings.min_size,
                           result.clusters, entry.baseline->key.c_str());
@@ -202,7 +189,7 @@ std::string csvOf(const std::vector<InputResult>& inputs, const CompareSettings&
         const Times& times = entry.times ? *entry.times : none;
         for (const double value :
              {times.mean(), times.confidence99(), median(times.runs), median(times.cold), times.min(),
-              quantile(times.runs, 0.25), quantile(times.runs, 0.75), times.max(), orNan(result.ratio(entry))})
+              quantile(times.runs, 0.25), quantile(times.runs, 0.75), times.max(), result.ratio(entry).value_or(kNan)})
           text += "," + number(value);
         if (result.objects)
           text += formatted(",%zu,%zu,%zu,%zu,%zu", result.objects->objects, result.objects->whole,

@@ -2,11 +2,11 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "compare/comparison.h"
+#include "io/text.h"
 
 namespace lisco_apps {
 
@@ -36,7 +36,6 @@ std::vector<std::string> chartsOf(const std::vector<std::string>& input_names, c
 
 /// Draws time over tolerance for each scan; of several scans also its mean, and time over the number of returns for
 /// each tolerance.
-void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& settings,
-                const std::filesystem::path& folder);
+void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& settings, const fs::path& folder);
 
 }  // namespace lisco_apps

@@ -106,7 +106,7 @@ class Canvas {
   }
 
   /// \throws std::runtime_error with one line if the file cannot be written
-  void save(const std::filesystem::path& png) {
+  void save(const fs::path& png) {
     const cairo_status_t status = cairo_surface_write_to_png(surface_.get(), png.c_str());
     if (status != CAIRO_STATUS_SUCCESS) fail(png, std::string("cannot be written: ") + cairo_status_to_string(status));
   }

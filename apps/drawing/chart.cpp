@@ -9,24 +9,21 @@
 #include <limits>
 #include <stdexcept>
 
+#include <boost/algorithm/string/replace.hpp>
+
 #include "io/text.h"
 
 namespace lisco_apps {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// In single quotes, for gnuplot or the shell, which escape quotes inside differently.
-std::string quoted(const std::string& text, const char* quote_inside) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string(quote_inside) : std::string(1, c == '\n' ? ' ' : c);
-  return result + "'";
+/// In single quotes, inside which gnuplot and the shell have different ways of writing one.
+std::string quoted(std::string text, const char* quote_inside) {
+  boost::replace_all(text, "'", quote_inside);
+  boost::replace_all(text, "\n", " ");
+  return "'" + text + "'";
 }
 std::string forGnuplot(const std::string& text) {
   return quoted(text, "''");
-}
-std::string forShell(const std::string& text) {
-  return quoted(text, "'\\''");
 }
 
 void writeScript(const Chart& chart, const fs::path& png, std::ostream& script) {
@@ -77,7 +74,8 @@ void drawChart(const Chart& chart, const fs::path& png) {
   writeScript(chart, png, stream);
   stream.close();
   // NOLINTNEXTLINE(concurrency-mt-unsafe)
-  const bool drawn = stream && std::system(("gnuplot " + forShell(script.string()) + " >/dev/null 2>&1").c_str()) == 0;
+  const bool drawn =
+      stream && std::system(("gnuplot " + quoted(script.string(), "'\\''") + " >/dev/null 2>&1").c_str()) == 0;
   std::error_code ignored;
   fs::remove(script, ignored);
   if (!drawn || !fs::exists(png)) fail(png, "cannot be drawn");

@@ -2,9 +2,10 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
+
+#include "io/text.h"
 
 namespace lisco_apps {
 
@@ -27,7 +28,7 @@ struct Chart {
 void checkGnuplot();
 
 /// Draws a chart as a PNG, or nothing if it has no lines.
-/// \throws std::runtime_error with one line that says what went wrong
-void drawChart(const Chart& chart, const std::filesystem::path& png);
+/// \throws std::runtime_error with one line on the error
+void drawChart(const Chart& chart, const fs::path& png);
 
 }  // namespace lisco_apps

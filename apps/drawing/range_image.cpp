@@ -84,7 +84,7 @@ Cells thinnedOut(Cells cells) {
 
 }  // namespace
 
-void drawRangeImage(const ClusteredScan& scan, const std::filesystem::path& png) {
+void drawRangeImage(const ClusteredScan& scan, const fs::path& png) {
   const bool organized = scan.cloud->height > 1;
   const std::vector<std::uint32_t> colors = pointColors(scan, true);
   const Cells cells = thinnedOut(organized ? shiftedRows(*scan.cloud, colors) : projected(*scan.cloud, colors));
@@ -107,7 +107,7 @@ void drawRangeImage(const ClusteredScan& scan, const std::filesystem::path& png)
   const double right = canvas.width() - kMargin;
   drawHeader(canvas, scan, kMargin, right);
 
-  // The axis below the cells: columns or azimuths, and at its right end what the rows are.
+  // The axis below the cells: columns or azimuths, and the rows at its right end.
   const double bottom = kHeaderHeight + height;
   const double note_width = organized ? 180 : 360;
   const int step =

@@ -57,7 +57,7 @@ void drawScaleBar(Canvas& canvas, double length, double pixels) {
 
 }  // namespace
 
-void drawTopView(const ClusteredScan& scan, const std::filesystem::path& png) {
+void drawTopView(const ClusteredScan& scan, const fs::path& png) {
   Canvas canvas(kSize, kSize + kHeaderHeight);
   const Cloud& cloud = *scan.cloud;
   const bool camera = seenByCamera(cloud);

@@ -5,9 +5,10 @@
 // laser by laser within a step. Distance in metres, 0 for no return; theta, the elevation, and alpha, the azimuth
 // clockwise from +y, in radians: x = d cos(theta) sin(alpha), y = d cos(theta) cos(alpha), z = d sin(theta).
 #include <array>
-#include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <limits>
+#include <sstream>
 
 #include "io/formats.h"
 
@@ -16,46 +17,28 @@ namespace {
 
 constexpr double kMaxSize = 1e6;  ///< lasers, and steps
 
-/// Reads a line's three comma-separated numbers. \return false if it holds anything else
-bool parseThree(std::string_view line, std::array<double, 3>& values) {
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const std::size_t comma = line.find(',');
-    if ((comma == std::string_view::npos) != (i + 1 == values.size())) return false;
-    std::string_view item = line.substr(0, comma);
-    while (!item.empty() && item.front() == ' ') item.remove_prefix(1);
-    while (!item.empty() && (item.back() == ' ' || item.back() == '\r')) item.remove_suffix(1);
-    if (!item.empty() && item.front() == '+') item.remove_prefix(1);
-    const auto result = std::from_chars(item.data(), item.data() + item.size(), values[i]);
-    if (result.ec != std::errc() || result.ptr != item.data() + item.size()) return false;
-    if (comma != std::string_view::npos) line.remove_prefix(comma + 1);
-  }
-  return true;
+/// Reads the three comma-separated numbers of a line. \return false if it has other content
+bool parseThree(const std::string& line, std::array<double, 3>& values) {
+  int end = 0;
+  return std::sscanf(line.c_str(), "%lf ,%lf ,%lf %n", &values[0], &values[1], &values[2], &end) == 3 &&
+         static_cast<std::size_t>(end) == line.size();
 }
 
 }  // namespace
 
-Cloud::Ptr readAuthorsCsv(const std::filesystem::path& file, Labels* /*object_of*/) {
-  const std::string content = wholeContentOf(file);
-  std::string_view rest = content;
-  std::size_t line_number = 0;
-  const auto next_line = [&] {
-    const std::size_t end = rest.find('\n');
-    const std::string_view line = rest.substr(0, end);
-    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-    ++line_number;
-    return line;
-  };
-
+Cloud::Ptr readAuthorsCsv(const fs::path& file, Labels* /*object_of*/) {
+  const std::string text = wholeContentOf(file);
+  std::istringstream content(text);
+  std::string line;
   std::array<double, 3> values{};
-  const bool header = parseThree(next_line(), values);
+  const bool header = std::getline(content, line) && parseThree(line, values);
   if (!header || values[0] < 1 || values[1] < 1 || values[0] > kMaxSize || values[1] > kMaxSize ||
       values[0] != std::floor(values[0]) || values[1] != std::floor(values[1]) || values[2] != 0)
     fail(file,
-         "line 1 is not 'lasers,steps,0', with which the paper authors' .csv begins; no other .csv is read, make it a "
-         ".pcd");
+         "line 1 is not 'lasers,steps,0', as in the paper authors' .csv; any other .csv is not read, make it a .pcd");
   const auto lasers = static_cast<std::size_t>(values[0]);
   const auto steps = static_cast<std::size_t>(values[1]);
-  if (lasers * steps > content.size()) fail(file, "holds fewer cells than its first line says");
+  if (lasers * steps > text.size()) fail(file, "holds fewer cells than its first line says");
 
   auto cloud = std::make_shared<Cloud>();
   cloud->resize(lasers * steps);
@@ -65,11 +48,11 @@ Cloud::Ptr readAuthorsCsv(const std::filesystem::path& file, Labels* /*object_of
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   for (std::size_t step = 0; step < steps; ++step)
     for (std::size_t laser = 0; laser < lasers; ++laser) {
-      if (rest.empty())
-        fail(file, "ends at line " + std::to_string(line_number) + ", its first line promises " +
-                       std::to_string(lasers * steps) + " cells");
-      if (!parseThree(next_line(), values))
-        fail(file, "line " + std::to_string(line_number) + " is not 'distance,theta,alpha'");
+      const std::size_t cells_before = step * lasers + laser;
+      if (!std::getline(content, line))
+        fail(file,
+             formatted("ends at line %zu, before the %zu cells of its first line", cells_before + 1, lasers * steps));
+      if (!parseThree(line, values)) fail(file, formatted("line %zu is not 'distance,theta,alpha'", cells_before + 2));
       const double horizontal = values[0] * std::cos(values[1]);
       (*cloud)[laser * steps + step] = values[0] > 0
                                            ? pcl::PointXYZ(static_cast<float>(horizontal * std::sin(values[2])),
@@ -77,8 +60,8 @@ Cloud::Ptr readAuthorsCsv(const std::filesystem::path& file, Labels* /*object_of
                                                            static_cast<float>(values[0] * std::sin(values[1])))
                                            : pcl::PointXYZ(kNan, kNan, kNan);
     }
-  if (rest.find_first_not_of(" \r\n") != std::string_view::npos)
-    fail(file, "goes on after the " + std::to_string(lasers * steps) + " cells its first line promises");
+  if ((content >> std::ws).peek() != std::istringstream::traits_type::eof())
+    fail(file, formatted("holds more than the %zu cells of its first line", lasers * steps));
   return cloud;
 }
 

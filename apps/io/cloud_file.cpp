@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <new>
 #include <set>
+
+#include <boost/algorithm/string/case_conv.hpp>
 
 #include "io/formats.h"
 #include "io/output_file.h"
@@ -16,8 +17,6 @@
 
 namespace lisco_apps {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct Format {
   std::string_view ending;
@@ -27,10 +26,7 @@ constexpr std::array<Format, 4> kFormats{
     {{".pcd", readPcd}, {".ply", readPly}, {".bin", readKittiBin}, {".csv", readAuthorsCsv}}};
 
 std::string endingOf(const fs::path& file) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
+  return boost::to_lower_copy(file.extension().string());
 }
 
 /// \return nullptr if the ending is none of these

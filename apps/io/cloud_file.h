@@ -3,12 +3,13 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
+
+#include "io/text.h"
 
 namespace lisco_apps {
 
@@ -19,20 +20,19 @@ using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 /// \param object_of if not nullptr, receives the field `label` (uint32) per point, as simulated and annotated scans
 ///        have it; empty if there is none
 /// \throws std::runtime_error with one line that names the file and what is wrong with it
-Cloud::Ptr readCloudFile(const std::filesystem::path& file, std::vector<std::uint32_t>* object_of = nullptr);
+Cloud::Ptr readCloudFile(const fs::path& file, std::vector<std::uint32_t>* object_of = nullptr);
 
 /// The files in a folder that have an ending of readCloudFile, sorted by name, without results written there by
 /// lisco_cluster. Not recursive.
 /// \throws std::runtime_error if the folder cannot be read
-std::vector<std::filesystem::path> cloudFilesIn(const std::filesystem::path& folder);
+std::vector<fs::path> cloudFilesIn(const fs::path& folder);
 
 /// Inputs as given on a command line, each folder replaced by the files in it.
 /// \param failures receives a line for each folder that holds none or cannot be read
-std::vector<std::filesystem::path> expandInputs(const std::vector<std::string>& inputs,
-                                                std::vector<std::string>& failures);
+std::vector<fs::path> expandInputs(const std::vector<std::string>& inputs, std::vector<std::string>& failures);
 
 /// A unique name per file, for its results: without folder and ending, numbered where names repeat.
-std::vector<std::string> namesOf(const std::vector<std::filesystem::path>& files);
+std::vector<std::string> namesOf(const std::vector<fs::path>& files);
 
 /// The points to be clustered: valid returns (see doc/contract.md) with z >= ground_z.
 pcl::Indices returnsAbove(const Cloud& cloud, float ground_z);

@@ -6,7 +6,7 @@
 
 namespace lisco_apps {
 
-Cloud::Ptr readKittiBin(const std::filesystem::path& file, Labels* /*object_of*/) {
+Cloud::Ptr readKittiBin(const fs::path& file, Labels* /*object_of*/) {
   const std::string content = wholeContentOf(file);
   constexpr std::size_t kBytesPerPoint = 4 * sizeof(float);
   if (content.size() % kBytesPerPoint != 0)

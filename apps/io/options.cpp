@@ -8,6 +8,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include <boost/algorithm/string.hpp>
+#include <boost/lexical_cast/try_lexical_convert.hpp>
+
 #include "lisco/version.h"
 
 namespace lisco_apps {
@@ -16,27 +19,17 @@ namespace po = boost::program_options;
 
 namespace {
 
-/// The value of a whole text by std::stod or the like; `invalid` if it has none.
-template <typename Value, typename Parse>
-Value parsed(const std::string& text, Value invalid, Parse&& parse) {
-  try {
-    std::size_t end = 0;
-    const Value value = parse(text, &end);
-    return end == text.size() ? value : invalid;
-  } catch (const std::exception&) {
-    return invalid;
-  }
-}
-
+/// The number that a text is; NaN if it is none.
 double parsedNumber(const std::string& text) {
-  return parsed(text, std::nan(""), [](const std::string& t, std::size_t* end) { return std::stod(t, end); });
+  double number;
+  return boost::conversion::try_lexical_convert(text, number) ? number : std::nan("");
 }
 
 }  // namespace
 
 unsigned countOf(const std::string& text, const char* option, int min, int max) {
-  const long long value = parsed(text, -1LL, [](const std::string& t, std::size_t* end) { return std::stoll(t, end); });
-  if (value < min || value > max)
+  long long value;
+  if (!boost::conversion::try_lexical_convert(text, value) || value < min || value > max)
     throw std::runtime_error(std::string(option) + " must be a whole number from " + std::to_string(min) + " to " +
                              std::to_string(max) + ", not '" + text + "'");
   return static_cast<unsigned>(value);
@@ -62,13 +55,24 @@ float heightOf(const std::string& text) {
 }
 
 std::vector<std::string> itemsOf(const std::string& text) {
-  std::vector<std::string> items(1);
-  for (const char c : text)
-    if (c == ',')
-      items.emplace_back();
-    else
-      items.back() += c;
+  std::vector<std::string> items;
+  boost::split(items, text, [](char c) { return c == ','; });
   return items;
+}
+
+OptionValue* textOption(const char* value_name, const std::function<void(const std::string&)>& read) {
+  return po::value<std::string>()->value_name(value_name)->notifier(read);
+}
+
+OptionValue* numberOption(const char* value_name, const char* option, double& number) {
+  return textOption(value_name, [option, &number](const std::string& text) { number = numberOf(text, option); });
+}
+
+OptionValue* pathOption(const char* value_name, const char* option, fs::path& path) {
+  return textOption(value_name, [option, &path](const std::string& text) {
+    if (text.empty()) throw std::runtime_error(std::string(option) + " is empty");
+    path = text;
+  });
 }
 
 bool readCommandLine(int argc, char** argv, const char* program, po::options_description& shown,
@@ -102,21 +106,17 @@ bool readCommandLine(int argc, char** argv, const char* program, po::options_des
 void ClusterOptions::addTo(po::options_description& shown) {
   // clang-format off
   shown.add_options()
-    ("tolerance,t", po::value<std::string>(&tolerance_)->value_name("M"),
+    ("tolerance,t", textOption("M", [this](const std::string& text) { tolerance = toleranceOf(text); }),
      "points nearer to each other than this many metres belong together")
-    ("min-size", po::value<std::string>(&min_size_)->value_name("N"), "least returns of a cluster (default 10)")
-    ("max-size", po::value<std::string>(&max_size_)->value_name("N"), "most returns of a cluster (default: no limit)")
-    ("ground-z", po::value<std::string>(&ground_z_)->value_name("M"),
+    ("min-size", countOption("--min-size", min_size, 1), "least returns of a cluster (default 10)")
+    ("max-size", countOption("--max-size", max_size, 1), "most returns of a cluster (default: no limit)")
+    ("ground-z", textOption("M", [this](const std::string& text) { ground_z = heightOf(text); }),
      "leave out returns below this height in metres, in the input's coordinates (default: none)");
   // clang-format on
 }
 
-void ClusterOptions::check(const po::variables_map& given) {
-  if (given.count("tolerance") == 0) throw std::runtime_error("--tolerance is missing; see --help");
-  tolerance = toleranceOf(tolerance_);
-  if (given.count("ground-z") != 0) ground_z = heightOf(ground_z_);
-  min_size = countOf(min_size_, "--min-size", 1);
-  if (given.count("max-size") != 0) max_size = countOf(max_size_, "--max-size", 1);
+void ClusterOptions::check() const {
+  if (tolerance == 0) throw std::runtime_error("--tolerance is missing; see --help");
   if (max_size < min_size) throw std::runtime_error("--max-size is smaller than --min-size");
 }
 

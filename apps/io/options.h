@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <functional>
 #include <limits>
 #include <map>
 #include <string>
@@ -11,9 +12,13 @@
 
 #include <boost/program_options.hpp>
 
+#include "io/text.h"
+
 namespace lisco_apps {
 
-// All of these throw std::runtime_error with one line that says what is wrong.
+// Errors of the command line are std::runtime_error with one line.
+
+using OptionValue = boost::program_options::typed_value<std::string>;
 
 /// Reads a whole number from `min` to `max`; boost would also accept "-1" (as a huge one).
 /// \param option named in the error
@@ -27,7 +32,20 @@ float heightOf(const std::string& text);
 /// Splits "a,b,c" at its commas.
 std::vector<std::string> itemsOf(const std::string& text);
 
-/// Reads a command line. Handles --help and --version, which every program has.
+/// An option whose text is passed to `read` by readCommandLine (), unless --help or --version is given.
+OptionValue* textOption(const char* value_name, const std::function<void(const std::string& text)>& read);
+/// An option with a path, which must not be empty.
+OptionValue* pathOption(const char* value_name, const char* option, fs::path& path);
+/// An option with a number, see numberOf ().
+OptionValue* numberOption(const char* value_name, const char* option, double& number);
+/// An option with a whole number, see countOf ().
+template <typename Count>
+OptionValue* countOption(const char* option, Count& count, int min, int max = std::numeric_limits<int>::max()) {
+  return textOption(
+      "N", [=, &count](const std::string& text) { count = static_cast<Count>(countOf(text, option, min, max)); });
+}
+
+/// Reads a command line, including --help and --version.
 /// \param shown the other options, as --help shows them
 /// \param inputs receives the positional arguments; nullptr: there must be none
 /// \param hidden options that --help does not show
@@ -37,19 +55,15 @@ bool readCommandLine(int argc, char** argv, const char* program, boost::program_
                      const boost::program_options::options_description& hidden = {});
 
 /// The options --tolerance, --min-size, --max-size and --ground-z.
-class ClusterOptions {
- public:
-  void addTo(boost::program_options::options_description& shown);
-  /// To be called once the command line has been read.
-  void check(const boost::program_options::variables_map& given);
-
+struct ClusterOptions {
   double tolerance = 0;  ///< metres
   unsigned min_size = 10;
   unsigned max_size = std::numeric_limits<int>::max();
   float ground_z = -std::numeric_limits<float>::infinity();  ///< metres
 
- private:
-  std::string tolerance_, min_size_ = "10", max_size_, ground_z_;
+  void addTo(boost::program_options::options_description& shown);
+  /// To be called once the command line has been read.
+  void check() const;
 };
 
 /// Heights of the ground: of all inputs, or of each by its name.

@@ -15,8 +15,6 @@
 
 namespace lisco_apps {
 
-namespace fs = std::filesystem;
-
 namespace {
 
 // Names of files and folders made aside end with these and the number of the process that makes them.
@@ -37,18 +35,6 @@ void removeAbandoned(const fs::path& folder, const std::string& prefix) {
       fs::remove_all(entry.path(), ignored);
   }
 }
-
-/// Runs an action at the end of its scope, unless its function is replaced by nullptr.
-struct AtEnd {
-  std::function<void()> run;
-
-  explicit AtEnd(std::function<void()> action) : run(std::move(action)) {}
-  ~AtEnd() {
-    if (run) run();
-  }
-  AtEnd(const AtEnd&) = delete;
-  AtEnd& operator=(const AtEnd&) = delete;
-};
 
 /// Checks that entries can be made in an existing folder.
 /// \param wanted named in the error
@@ -108,20 +94,21 @@ void checkMayWriteInto(const fs::path& folder, const std::vector<std::string>& n
 
 void writeOwnFolder(const fs::path& folder, const std::vector<std::string>& names,
                     const std::function<void(const fs::path&)>& make, const std::function<void()>& tidy) {
+  std::error_code ignored;
+  std::vector<fs::path> made;  // innermost first
+  for (fs::path p = fs::absolute(folder).lexically_normal(); fs::status(p, ignored).type() == fs::file_type::not_found;
+       p = p.parent_path())
+    made.push_back(p);
+  const fs::path aside = folder / (kFolderPartial + std::to_string(getpid()));
+  const auto undo = [&] {
+    fs::remove_all(aside, ignored);
+    for (const fs::path& p : made) fs::remove(p, ignored);  // only if empty
+  };
   try {
-    std::error_code ignored;
-    std::vector<fs::path> made;  // innermost first
-    for (fs::path p = fs::absolute(folder).lexically_normal(); !p.empty() && !fs::exists(p); p = p.parent_path())
-      made.push_back(p);
-    AtEnd undo([&] {
-      for (const fs::path& p : made) fs::remove(p, ignored);  // only if empty
-    });
     fs::create_directories(folder);
     checkMayWriteInto(folder, names);
     removeAbandoned(folder, kFolderPartial);
-    const fs::path aside = folder / (kFolderPartial + std::to_string(getpid()));
     fs::create_directory(aside);
-    const AtEnd remove_aside([&] { fs::remove_all(aside, ignored); });
     make(aside);
     std::ofstream marker(folder / kResultMarker);
     marker << "The results in this folder were written by lisco and may be replaced by it.\n";
@@ -137,11 +124,15 @@ void writeOwnFolder(const fs::path& folder, const std::vector<std::string>& name
       for (const auto& entry : fs::directory_iterator(aside / name))
         fs::rename(entry.path(), folder / name / entry.path().filename());
     }
-    undo.run = nullptr;
+    fs::remove_all(aside, ignored);
   } catch (const fs::filesystem_error& error) {
+    undo();
     fs::path path = error.path2().empty() ? error.path1() : error.path2();
     if (path.filename().string().rfind(kFolderPartial, 0) == 0) path = folder;  // the user's name for it
     fail(path, "cannot be written: " + error.code().message());
+  } catch (...) {
+    undo();
+    throw;
   }
 }
 

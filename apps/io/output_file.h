@@ -3,10 +3,11 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
+
+#include "io/text.h"
 
 namespace lisco_apps {
 
@@ -16,33 +17,32 @@ inline constexpr const char* kResultMarker = ".lisco_results";
 /// Checks that a file may be written: its folder exists and is writable, and the file does not exist or was written by
 /// these programs.
 /// \param signature text near the beginning of every file of this kind that these programs write
-/// \throws std::runtime_error with one line that says why not
-void checkMayWrite(const std::filesystem::path& file, const std::string& signature);
+/// \throws std::runtime_error with one line: why not
+void checkMayWrite(const fs::path& file, const std::string& signature);
 
 /// Writes a file, all or nothing: beside its place first, then moved there. Checks as checkMayWrite () does. Makes no
 /// folders.
 /// \param content must hold `signature` within its first kilobyte
-/// \throws std::runtime_error with one line that says why it cannot be written
-void writeOwnFile(const std::filesystem::path& file, const std::string& content, const std::string& signature);
+/// \throws std::runtime_error with one line: why it cannot be written
+void writeOwnFile(const fs::path& file, const std::string& content, const std::string& signature);
 
 /// Checks that files of these names may be written into a folder: these programs have written there before, or the
 /// folder has nothing of these names, or can be made.
 /// \throws std::runtime_error with one line that names what would be overwritten, is no folder, or is not writable
-void checkMayWriteInto(const std::filesystem::path& folder, const std::vector<std::string>& names);
+void checkMayWriteInto(const fs::path& folder, const std::vector<std::string>& names);
 
 /// Writes files and folders of files into a folder, all or nothing: they are made aside and moved into place at the
 /// end. Makes the folder and those above it, and removes them again on failure. Checks as checkMayWriteInto () does.
 /// \param make writes all, or some, of `names` into the folder it is given
 /// \param tidy called before the files are moved into place, to remove those of an earlier run
-/// \throws std::runtime_error with one line that says what cannot be written
+/// \throws std::runtime_error with one line: what cannot be written
 void writeOwnFolder(
-    const std::filesystem::path& folder, const std::vector<std::string>& names,
-    const std::function<void(const std::filesystem::path& aside)>& make, const std::function<void()>& tidy = [] {});
+    const fs::path& folder, const std::vector<std::string>& names,
+    const std::function<void(const fs::path& aside)>& make, const std::function<void()>& tidy = [] {});
 
 /// The files of a folder whose names begin with `prefix` and have this ending.
-/// \throws std::filesystem::filesystem_error if it cannot be read
-std::vector<std::filesystem::path> filesIn(const std::filesystem::path& folder, const std::string& prefix,
-                                           const std::string& ending);
+/// \throws fs::filesystem_error if it cannot be read
+std::vector<fs::path> filesIn(const fs::path& folder, const std::string& prefix, const std::string& ending);
 
 /// The header of an organized binary PCD whose fields hold one value of four bytes each.
 /// \param comment first line, begins with '#'

@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <set>
+#include <map>
 
 #include <pcl/io/pcd_io.h>
+#include <boost/algorithm/string/join.hpp>
 
 #include "io/formats.h"
 
 namespace lisco_apps {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kMaxPointBytes = 1e6;
 constexpr double kMaxCompression = 300;  ///< points, or bytes of data, that a byte of compressed data may hold
@@ -35,41 +34,41 @@ std::size_t valuesIn(std::string_view line) {
 void checkHeader(const fs::path& file, const fs::path& content) {
   std::ifstream stream(content, std::ios::binary);
   const auto file_size = static_cast<double>(fs::file_size(content));
-  std::vector<std::string> names, sizes, types, counts;
-  double width = 0, height = 1, points = 0;
   constexpr std::array<std::string_view, 11> kKeys{"VERSION", "FIELDS", "COLUMNS",   "SIZE",   "TYPE", "COUNT",
                                                    "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
-  std::set<std::string> seen;  // keys so far; each may come once
+  std::map<std::string, std::vector<std::string>> header;  // values by key; each key may occur once
   std::string line;
-  bool is_header = false;
-  std::vector<std::string> words;
-  for (int i = 0; i < kMaxHeaderLines && !is_header && std::getline(stream, line); ++i) {
-    words = wordsOf(line);
+  for (int i = 0; i < kMaxHeaderLines && header.count("DATA") == 0 && std::getline(stream, line); ++i) {
+    const std::vector<std::string> words = wordsOf(line);
     if (words.empty() || words.front()[0] == '#') continue;
-    const std::string key = words.front();
-    if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end() || !seen.insert(key).second ||
+    if (std::find(kKeys.begin(), kKeys.end(), words.front()) == kKeys.end() ||
         line.find_first_of("\v\f") != std::string::npos)
       break;
-    const auto values = [&] { return std::vector<std::string>(words.begin() + 1, words.end()); };
-    if (key == "FIELDS" || key == "COLUMNS") names = values();
-    if (key == "SIZE") sizes = values();
-    if (key == "TYPE") types = values();
-    if (key == "COUNT") counts = values();
-    if (key == "WIDTH") width = headerCount(words, 1);
-    if (key == "HEIGHT") height = headerCount(words, 1);
-    if (key == "POINTS") points = headerCount(words, 1);
-    is_header = key == "DATA";
+    const std::string key = words.front() == "COLUMNS" ? "FIELDS" : words.front();
+    if (!header.insert({key, {words.begin() + 1, words.end()}}).second) break;
   }
-  if (!is_header && !seen.empty()) fail(file, "is damaged or truncated: its header breaks off");
+  const bool is_header = header.count("DATA") != 0;
+  if (!is_header && !header.empty()) fail(file, "is damaged or truncated: its header breaks off");
+  const std::vector<std::string>& names = header["FIELDS"];
   if (!is_header || names.empty()) fail(file, "is no pcd file: it has no header");
-  if (words.size() != 2 || (words[1] != "ascii" && words[1] != "binary" && words[1] != "binary_compressed"))
+  const std::string data = boost::join(header["DATA"], " ");
+  if (data != "ascii" && data != "binary" && data != "binary_compressed")
     fail(file, "is damaged: its header does not say how its data are written");
+  const std::vector<std::string>& sizes = header["SIZE"];
+  const std::vector<std::string>& types = header["TYPE"];
+  std::vector<std::string>& counts = header["COUNT"];
   if (counts.empty()) counts.assign(names.size(), "1");
   if (sizes.size() != names.size() || types.size() != names.size() || counts.size() != names.size())
     fail(file, "is damaged: its header does not describe each of its fields");
+  const auto number = [&](const char* key, double otherwise) {
+    return header.count(key) != 0 ? headerCount(header[key], 0) : otherwise;
+  };
+  const double width = number("WIDTH", 0);
+  const double height = number("HEIGHT", 1);
+  const double points = number("POINTS", 0);
   double values_of_point = 0;
   double stored = 0;  // bytes of a point; compressed files leave out the padding
-  const bool is_compressed = words[1] == "binary_compressed";
+  const bool is_compressed = data == "binary_compressed";
   for (std::size_t i = 0; i < names.size(); ++i) {
     const double size = headerCount(sizes, i);
     const double count = headerCount(counts, i);
@@ -81,10 +80,10 @@ void checkHeader(const fs::path& file, const fs::path& content) {
     values_of_point += count;
   }
   if (!(stored <= kMaxPointBytes)) fail(file, "is damaged: its header describes points of no sensible size");
-  const double max_points = file_size * (is_compressed ? kMaxCompression : 1);  // each takes a byte at least
+  const double max_points = file_size * (is_compressed ? kMaxCompression : 1);  // each needs a byte at least
   if (!(width * height <= max_points) || !(points <= max_points))
     fail(file, "is truncated: it holds fewer points than its header says");
-  if (words[1] == "ascii") {
+  if (data == "ascii") {
     while (std::getline(stream, line))
       if (const std::size_t values = valuesIn(line); values != 0 && static_cast<double>(values) < values_of_point)
         fail(file, "is truncated: a line of it holds fewer values than a point has");

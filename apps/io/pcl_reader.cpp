@@ -23,8 +23,6 @@
 namespace lisco_apps {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::size_t kCopyBytes = std::size_t{1} << 20;  // copied at a time
 
 /// A private copy of a file. PCL maps files into memory: if the original were truncated meanwhile, reading it would end

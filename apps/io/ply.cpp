@@ -11,8 +11,6 @@
 namespace lisco_apps {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// Checks a PLY file before PCL reads it: PCL 1.13's reader allocates all the memory that a wrong header promises, and
 /// aborts at a list in a vertex, at leading blanks, and if there are more vertices than cells.
 void checkHeader(const fs::path& file, const fs::path& content) {
@@ -37,7 +35,7 @@ void checkHeader(const fs::path& file, const fs::path& content) {
     any_element = any_element || words[0] == "element";
     if (words[0] == "element" && in_vertex) vertices = headerCount(words, 2);
     if (words[0] == "property" && in_vertex && words.size() != 3) break;
-    if (words[0] == "element" && !(headerCount(words, 2) <= file_size)) break;  // each takes a byte at least
+    if (words[0] == "element" && !(headerCount(words, 2) <= file_size)) break;  // each needs a byte at least
     if (words[0] != "obj_info" || words.size() < 3) continue;
     if (any_element && (words[1] == "num_cols" || words[1] == "num_rows")) break;
     if (words[1] == "num_cols") columns = headerCount(words, 2);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "io/result_files.h"
+#include "io/clusters.h"
 
 #include <fstream>
 #include <string>
@@ -15,8 +15,6 @@
 
 namespace lisco_apps {
 namespace {
-
-namespace fs = std::filesystem;
 
 const std::vector<std::string> kResults{"labels.pcd", "clusters.csv", "range_image.png", "top_view.png", "clusters"};
 

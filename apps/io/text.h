@@ -11,16 +11,11 @@
 
 namespace lisco_apps {
 
-/// Throws the one-line error of a file or folder.
-[[noreturn]] inline void fail(const std::filesystem::path& file, const std::string& what) {
-  throw std::runtime_error(file.string() + ": " + what);
-}
+namespace fs = std::filesystem;
 
-/// "a, b, c"
-inline std::string listOf(const std::vector<std::string>& items, const char* separator = ", ") {
-  std::string list;
-  for (const std::string& item : items) list += (list.empty() ? "" : separator) + item;
-  return list;
+/// Throws the one-line error of a file or folder.
+[[noreturn]] inline void fail(const fs::path& file, const std::string& what) {
+  throw std::runtime_error(file.string() + ": " + what);
 }
 
 /// printf to a string.

@@ -11,6 +11,8 @@
 #include <cstring>
 #include <system_error>
 
+#include <boost/endian/conversion.hpp>
+
 #include "io/text.h"
 
 namespace lisco_apps {
@@ -22,7 +24,7 @@ struct Bytes {
   std::size_t size;
 
   unsigned u8(std::size_t at) const { return data[at]; }
-  unsigned u16(std::size_t at) const { return u8(at) << 8U | u8(at + 1); }
+  unsigned u16(std::size_t at) const { return boost::endian::load_big_u16(data + at); }
   /// Drops the first bytes. \return false if there are fewer
   bool skip(std::size_t count) {
     if (count > size) return false;
@@ -104,11 +106,10 @@ void CaptureFile::Close::operator()(pcap* capture) const {
   pcap_close(capture);
 }
 
-CaptureFile::CaptureFile(const std::filesystem::path& file, std::optional<std::uint16_t> port)
-    : file_(file), port_(port) {
+CaptureFile::CaptureFile(const fs::path& file, std::optional<std::uint16_t> port) : file_(file), port_(port) {
   std::error_code unknown;
-  if (std::filesystem::is_directory(file, unknown)) fail(file, "is no capture of packets: it is a folder");
-  if (std::filesystem::is_regular_file(file, unknown) && std::filesystem::file_size(file, unknown) == 0)
+  if (fs::is_directory(file, unknown)) fail(file, "is no capture of packets: it is a folder");
+  if (fs::is_regular_file(file, unknown) && fs::file_size(file, unknown) == 0)
     fail(file, "is no capture of packets: it is empty");
   // Opened as a stream, as libpcap takes a file named "-" for the standard input.
   std::FILE* const stream = std::fopen(file.c_str(), "rb");

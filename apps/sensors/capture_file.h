@@ -3,10 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <optional>
 
+#include "io/text.h"
 #include "packet_source.h"
 
 struct pcap;
@@ -20,7 +20,7 @@ class CaptureFile : public PacketSource {
  public:
   /// \param port only packets to this port; nullopt: to any
   /// \throws std::runtime_error with one line if the file is missing, no capture, or of another kind of network
-  explicit CaptureFile(const std::filesystem::path& file, std::optional<std::uint16_t> port = std::nullopt);
+  explicit CaptureFile(const fs::path& file, std::optional<std::uint16_t> port = std::nullopt);
 
   Arrival next(Packet& packet) override;
 
@@ -29,7 +29,7 @@ class CaptureFile : public PacketSource {
     void operator()(pcap* capture) const;
   };
 
-  std::filesystem::path file_;
+  fs::path file_;
   std::optional<std::uint16_t> port_;
   std::unique_ptr<pcap, Close> capture_;
   int link_type_ = 0;

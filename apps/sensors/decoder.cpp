@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include <boost/endian/conversion.hpp>
+
 namespace lisco_apps {
 namespace {
 
@@ -20,12 +22,7 @@ double radians(double degrees) {
   return degrees * kRadiansPerDegree;
 }
 
-unsigned u16(const std::uint8_t* at) {
-  return at[0] | static_cast<unsigned>(at[1]) << 8U;
-}
-std::uint32_t u32(const std::uint8_t* at) {
-  return u16(at) | static_cast<std::uint32_t>(u16(at + 2)) << 16U;
-}
+constexpr auto& u16 = boost::endian::load_little_u16;
 
 unsigned azimuthOf(const std::uint8_t* block) {
   return u16(block + 2);
@@ -63,7 +60,7 @@ bool Decoder::isLaidOut(const std::uint8_t* data, const Layout& layout) const {
 
 std::optional<Decoder::Layout> Decoder::layoutOf(const std::uint8_t* data) const {
   const std::size_t blocks = model_.flags.size();
-  // A second return follows each block, or each firing in packets of the HDL-64E, which do not tell their mode.
+  // A second return follows each block, or each firing in packets of the HDL-64E, which do not contain their mode.
   const bool has_mode = !model_.factory_bytes.empty();
   const Layout dual = has_mode ? Layout{kBlocks / (2 * blocks), 2 * blocks, 2, 1}
                                : Layout{kBlocks / (2 * blocks), 2 * blocks, 1, blocks};
@@ -144,7 +141,8 @@ Decoder::Kind Decoder::decode(const Packet& packet, const std::function<void(con
     return Kind::kForeign;
   }
   packet_period_us_ = static_cast<double>(layout->groups) * blockPeriodUs();
-  const PacketOrder::Place place = order_.place(u32(packet.data + kTimeAt), packet_period_us_);
+  const PacketOrder::Place place =
+      order_.place(boost::endian::load_little_u32(packet.data + kTimeAt), packet_period_us_);
   if (place == PacketOrder::Place::kLate) {
     ++counts_.late;
     return Kind::kLate;
@@ -164,7 +162,8 @@ Decoder::Kind Decoder::decode(const Packet& packet, const std::function<void(con
       decodeFiring(group, *layout, firing);
       const double since_block_us = static_cast<double>(firing) * model_.firing_period_us;
       const double azimuth = azimuthLater(azimuthOf(group) / 100., since_block_us);
-      const double time_us = u32(packet.data + kTimeAt) + static_cast<double>(g) * blockPeriodUs() + since_block_us;
+      const double time_us = boost::endian::load_little_u32(packet.data + kTimeAt) +
+                             static_cast<double>(g) * blockPeriodUs() + since_block_us;
       ++counts_.columns;
       visit({cells_, std::fmod(azimuth, 360.), time_us, after_break});
       after_break = false;
@@ -175,17 +174,6 @@ Decoder::Kind Decoder::decode(const Packet& packet, const std::function<void(con
 double Decoder::columnsPerTurn() const {
   const double step = mean_step_ > 0 ? mean_step_ : step_;
   return step > 0 ? 360. / step * static_cast<double>(model_.firings) : 0.;
-}
-
-double Decoder::stagger() const {
-  if (model_.lasers.empty()) return 0;
-  double least = std::numeric_limits<double>::infinity(), most = -least;
-  for (const Laser& laser : model_.lasers) {
-    const double azimuth = azimuthLater(laser.azimuth_offset, laser.delay_us);
-    least = std::min(least, azimuth);
-    most = std::max(most, azimuth);
-  }
-  return most - least;
 }
 
 double stepIn(PacketSource& capture, const SensorModel& model) {

@@ -15,7 +15,7 @@
 
 namespace lisco_apps {
 
-/// What one laser measured, in the sensor's frame (x forward, y left, z up), metres. All NaN without a return.
+/// The measurement of one laser, in the sensor's frame (x forward, y left, z up), metres. All NaN without a return.
 struct Cell {
   float x, y, z;
   float intensity;  ///< 0..255
@@ -66,18 +66,16 @@ class Decoder {
   const Counts& counts() const { return counts_; }
   const PacketOrder& order() const { return order_; }
 
-  /// Degrees that the sensor turns from one block of all lasers to the next; 0 if it stands still, or before the second
-  /// packet.
+  /// Degrees that the sensor turns from one block of all lasers to the next; 0 if it does not turn, or before the
+  /// second packet.
   double step() const { return step_; }
   /// Sets the step instead of measuring it, for example to stepIn () of the whole capture.
   void setStep(double degrees);
 
   /// Columns and microseconds of a full turn, by the mean of the steps between half and twice the median; 0 if the
-  /// sensor stands still.
+  /// sensor does not turn.
   double columnsPerTurn() const;
   double turnUs() const { return columnsPerTurn() * model_.firing_period_us; }
-  /// Degrees between the first and the last azimuth of a column's lasers.
-  double stagger() const;
   /// Microseconds from packet to packet in the mode of the last one.
   double packetPeriodUs() const { return packet_period_us_; }
 

@@ -44,19 +44,16 @@ PacketOrder::Place PacketOrder::place(std::uint32_t timestamp_us, double period_
   }
   if (gap > 0 && gaps_ < first_gaps_.size()) {
     first_gaps_[gaps_++] = gap_us_;
-    if (gaps_ == first_gaps_.size()) measureUsualGap();
+    const auto middle = first_gaps_.begin() + first_gaps_.size() / 2;
+    if (gaps_ == first_gaps_.size()) {
+      std::nth_element(first_gaps_.begin(), middle, first_gaps_.end());
+      usual_gap_us_ = *middle;
+    }
   }
   const auto periods = static_cast<std::int64_t>(std::llround(gap_us_ / period_us));
   if (periods < 2) return Place::kNext;
   missing_ += static_cast<std::uint64_t>(periods - 1);
   return Place::kAfterGap;
-}
-
-void PacketOrder::measureUsualGap() {
-  std::array<double, 16> gaps = first_gaps_;
-  const auto middle = gaps.begin() + gaps.size() / 2;
-  std::nth_element(gaps.begin(), middle, gaps.end());
-  usual_gap_us_ = *middle;
 }
 
 }  // namespace lisco_apps

@@ -15,7 +15,7 @@ class PacketOrder {
   enum class Place {
     kNext,
     kAfterGap,  ///< others are missing before it
-    kNewClock,  ///< the sensor's clock was set, or another recording begins: what is missing is unknown
+    kNewClock,  ///< the sensor's clock was set, or another recording begins: the gap is unknown
     kLate,      ///< or a second copy; to be dropped
   };
 
@@ -34,15 +34,13 @@ class PacketOrder {
   double usualGap() const { return usual_gap_us_; }
 
  private:
-  void measureUsualGap();
-
   bool started_ = false;
   bool clock_stands_ = false;      ///< all packets have the same time
   std::uint32_t newest_ = 0;       ///< time of the newest packet
   std::uint32_t newest_late_ = 0;  ///< time of the last late one
   unsigned late_in_a_row_ = 0;     ///< in the order of their times
   double gap_us_ = 0, usual_gap_us_ = 0;
-  std::array<double, 16> first_gaps_{};
+  std::array<double, 16> first_gaps_{};  ///< unordered once all are known
   std::size_t gaps_ = 0;
   std::uint64_t missing_ = 0, late_ = 0, clock_jumps_ = 0;
 };

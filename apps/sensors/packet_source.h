@@ -36,7 +36,7 @@ class PacketSource {
   std::uint64_t packets() const { return packets_; }
   /// Frames left out: not UDP, to another port, or fragments.
   std::uint64_t foreign() const { return foreign_; }
-  /// One line on what ended the packets early; empty if nothing did.
+  /// One line: why the packets ended early; empty if they did not.
   const std::string& error() const { return error_; }
 
  protected:

@@ -15,7 +15,7 @@ class RotationCutter {
   explicit RotationCutter(std::optional<double> cut = std::nullopt);
 
   /// \param azimuth of the next column, degrees, finite; steps of more than 350 degrees are steps back
-  /// \param after_break whether at least a whole turn is missing before it, which the azimuth cannot tell
+  /// \param after_break whether at least a whole turn is missing before it, which the azimuth does not show
   /// \return whether a rotation starts with it
   bool startsRotation(double azimuth, bool after_break = false);
 

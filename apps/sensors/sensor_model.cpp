@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
-#include <system_error>
 
+#include <boost/algorithm/string/join.hpp>
+#include <boost/lexical_cast/try_lexical_convert.hpp>
 #include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
 
@@ -52,7 +52,7 @@ std::vector<Laser> lasersAt(const std::array<double, kCount>& elevations, double
   return lasers;
 }
 
-SensorModel modelOf(const std::string& name, const std::filesystem::path& calibration_file) {
+SensorModel modelOf(const std::string& name, const fs::path& calibration_file) {
   if (name == "vlp16") return {name, lasersAt(kVlp16, 2.304), {kUpperBlock}, 2, 55.296, 0.002, {0x22}};
   if (name == "hdl32e") return {name, lasersAt(kHdl32e, 1.152), {kUpperBlock}, 1, 46.08, 0.002, {0x21}};
   if (name == "hdl64e") {
@@ -69,7 +69,7 @@ SensorModel modelOf(const std::string& name, const std::filesystem::path& calibr
     for (Laser& laser : model.lasers) laser.azimuth_offset = kVls128Directions[laser.number % 8];
     return model;
   }
-  throw std::runtime_error("there is no sensor '" + name + "': it is one of " + listOf(sensorModelNames()));
+  throw std::runtime_error("there is no sensor '" + name + "': it is one of " + boost::join(sensorModelNames(), ", "));
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ std::vector<std::string> sensorModelNames() {
   return {"vlp16", "hdl32e", "hdl64e", "vls128"};
 }
 
-SensorModel makeSensorModel(const std::string& name, const std::filesystem::path& calibration_file) {
+SensorModel makeSensorModel(const std::string& name, const fs::path& calibration_file) {
   SensorModel model = modelOf(name, calibration_file);
   if (name != "hdl64e" && !calibration_file.empty())
     throw std::runtime_error("a calibration file is for the hdl64e only, not for the " + name);
@@ -89,7 +89,7 @@ SensorModel makeSensorModel(const std::string& name, const std::filesystem::path
 
 // PCL's HDLGrabber uses uninitialized numbers if the file is missing, and writes out of bounds for a laser number of 64
 // or more.
-std::vector<Laser> readCalibration(const std::filesystem::path& file) {
+std::vector<Laser> readCalibration(const fs::path& file) {
   namespace tree = boost::property_tree;
   std::vector<std::optional<Laser>> found(kCalibratedLasers);
   try {
@@ -101,8 +101,7 @@ std::vector<Laser> readCalibration(const std::filesystem::path& file) {
       const auto value = [&](const char* name) {
         const std::string& text = values.get_child(name).data();
         double read = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), read);
-        if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(read))
+        if (!boost::conversion::try_lexical_convert(text, read) || !std::isfinite(read))
           fail(file, std::string(name) + " is no number: '" + text + "'");
         return read;
       };
@@ -126,7 +125,7 @@ std::vector<Laser> readCalibration(const std::filesystem::path& file) {
   }
   std::vector<Laser> lasers;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (!found[i]) fail(file, "says nothing of laser " + std::to_string(i));
+    if (!found[i]) fail(file, "does not describe laser " + std::to_string(i));
     lasers.push_back(*found[i]);
   }
   return lasers;

@@ -4,9 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
+
+#include "io/text.h"
 
 namespace lisco_apps {
 
@@ -47,11 +48,11 @@ std::vector<std::string> sensorModelNames();
 /// \param calibration_file of the hdl64e, see readCalibration ()
 /// \throws std::runtime_error with one line if the name is unknown, if the hdl64e comes without a calibration or
 ///         another sensor with one, or if readCalibration () throws
-SensorModel makeSensorModel(const std::string& name, const std::filesystem::path& calibration_file = {});
+SensorModel makeSensorModel(const std::string& name, const fs::path& calibration_file = {});
 
 /// The HDL-64E's lasers in the order of their numbers, from the XML file that Velodyne delivers with each sensor
 /// (db.xml) and that PCL's HDLGrabber reads: angles in degrees, lengths in centimetres.
 /// \throws std::runtime_error with one line if it is missing, malformed, or does not describe each of the 64 lasers
-std::vector<Laser> readCalibration(const std::filesystem::path& file);
+std::vector<Laser> readCalibration(const fs::path& file);
 
 }  // namespace lisco_apps

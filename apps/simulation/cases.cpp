@@ -3,11 +3,14 @@
 #include "cases.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <stdexcept>
 #include <unordered_map>
+
+#include <boost/functional/hash.hpp>
 
 #include "random.h"
 #include "solid.h"
@@ -117,34 +120,23 @@ class Apart {
 
   /// \return false, without adding it, if the position is too near to another one
   bool add(const Cell& cell) {
-    const Key key = keyOf(cell);
-    for (int x = -1; x <= 1; ++x)
-      for (int y = -1; y <= 1; ++y)
-        for (int z = -1; z <= 1; ++z) {
-          // Distant cubes may share a number, so distances are compared.
-          const auto [first, last] = positions_.equal_range(numberOf({key.x + x, key.y + y, key.z + z}));
+    const Cube cube{along(cell.x), along(cell.y), along(cell.z)};
+    for (std::int64_t x = -1; x <= 1; ++x)
+      for (std::int64_t y = -1; y <= 1; ++y)
+        for (std::int64_t z = -1; z <= 1; ++z) {
+          const auto [first, last] = positions_.equal_range({cube[0] + x, cube[1] + y, cube[2] + z});
           for (auto other = first; other != last; ++other)
             if (distance(other->second, cell) <= gap_) return false;
         }
-    positions_.emplace(numberOf(key), cell);
+    positions_.emplace(cube, cell);
     return true;
   }
 
  private:
-  struct Key {
-    std::int64_t x, y, z;
-  };
+  using Cube = std::array<std::int64_t, 3>;  ///< numbers along the axes; the side is the gap
 
-  Key keyOf(const Cell& cell) const {
-    const auto along = [this](float value) {
-      return static_cast<std::int64_t>(std::floor(static_cast<double>(value) / gap_));
-    };
-    return {along(cell.x), along(cell.y), along(cell.z)};
-  }
-  static std::uint64_t numberOf(const Key& key) {
-    constexpr std::int64_t kPerAxis = std::int64_t{1} << 21;
-    const auto part = [](std::int64_t value) { return static_cast<std::uint64_t>(value) % kPerAxis; };
-    return (part(key.x) * kPerAxis + part(key.y)) * kPerAxis + part(key.z);
+  std::int64_t along(float value) const {
+    return static_cast<std::int64_t>(std::floor(static_cast<double>(value) / gap_));
   }
   static double distance(const Cell& a, const Cell& b) {
     return length({static_cast<double>(a.x) - static_cast<double>(b.x),
@@ -153,7 +145,7 @@ class Apart {
   }
 
   double gap_;
-  std::unordered_multimap<std::uint64_t, Cell> positions_;
+  std::unordered_multimap<Cube, Cell, boost::hash<Cube>> positions_;
 };
 
 Scan scanSingletons(const Sensor& sensor, const Disturbance& disturbance, double gap) {
@@ -196,13 +188,14 @@ struct Case {
   bool has_gap = false;
 };
 
-constexpr Case kCases[] = {{"room", "a closed, empty room", scanRoom},
-                           {"wall", "a wall 1 m away all around", scanWall},
-                           {"random", "random ranges between 1 and 60 m", scanRandom},
-                           {"sheets", "two interleaved sheets just over a gap apart", scanSheets, true},
-                           {"singletons", "returns farther than a gap from each other", scanSingletons, true},
-                           {"blocked", "a blocked sensor, all returns within 0.3 m", scanBlocked},
-                           {"poles", "a comb of thin vertical poles", scanPoles}};
+constexpr Case kCases[] = {
+    {"room", "a closed, empty room: one cluster", scanRoom},
+    {"wall", "a round wall 1 m away on all sides", scanWall},
+    {"random", "each return at a random range between 1 and 60 m", scanRandom},
+    {"sheets", "two sheets a gap apart, hit alternately by neighbouring cells", scanSheets, true},
+    {"singletons", "as many returns as possible that are farther than a gap from each other", scanSingletons, true},
+    {"blocked", "an obstacle on the sensor's cover: all returns within 0.3 m", scanBlocked},
+    {"poles", "a comb of thin vertical poles", scanPoles}};
 
 const Case& caseOf(const std::string& name) {
   const auto* const found =

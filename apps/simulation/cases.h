@@ -27,8 +27,10 @@ bool caseHasGap(const std::string& name);
 ///   them apart, so that returns of different spheres are at least the gap apart.
 /// - singletons: each return farther than the gap from every other one; cells where none fits have no return
 /// - blocked: an obstacle on the sensor's cover, every return nearer than 0.3 m
-/// - poles: rings of thin vertical poles between 3 and 15 m away, at least 0.5 m apart Objects are numbered: room and
-///   walls 1, sheets 1 and 2, poles from 1 on; in random and singletons each cell is an object.
+/// - poles: rings of thin vertical poles between 3 and 15 m away, at least 0.5 m apart
+///
+/// Objects are numbered: room and walls 1, sheets 1 and 2, poles from 1 on; in random and singletons each cell is an
+/// object.
 /// \param disturbance noise does not apply to random and singletons
 /// \param gap metres, > 0
 /// \throws std::invalid_argument if the name is unknown

@@ -25,15 +25,15 @@ Thing car(Random& random) {
   const double top = random.between(1.42, 1.54);
   const double waist = 0.92;
   const bool estate = random.chance(0.4);
-  std::vector<Solid> solids;
-  solids.push_back(Solid::block({-half, half, -side, side, 0.24}, {-half, half, -side, side, 0.62}));
-  // The bonnet falls towards the front, the boot a little towards the back.
-  solids.push_back(Solid::block({-half, half, -side, side, 0.62},
-                                {-half + (estate ? 0.05 : 0.12), half - 0.85, -side + 0.05, side - 0.05, waist}));
-  // Windscreen, rear window and side windows are slanted.
   const double cabin_back = -half + (estate ? 0.08 : 0.75);
-  solids.push_back(Solid::block({cabin_back, half - 1.0, -side + 0.06, side - 0.06, waist},
-                                {cabin_back + (estate ? 0.25 : 0.6), half - 1.75, -side + 0.22, side - 0.22, top}));
+  std::vector<Solid> solids = {
+      Solid::block({-half, half, -side, side, 0.24}, {-half, half, -side, side, 0.62}),
+      // The bonnet falls towards the front, the boot a little towards the back.
+      Solid::block({-half, half, -side, side, 0.62},
+                   {-half + (estate ? 0.05 : 0.12), half - 0.85, -side + 0.05, side - 0.05, waist}),
+      // Windscreen, rear window and side windows are slanted.
+      Solid::block({cabin_back, half - 1.0, -side + 0.06, side - 0.06, waist},
+                   {cabin_back + (estate ? 0.25 : 0.6), half - 1.75, -side + 0.22, side - 0.22, top})};
   addWheels(solids, half - 0.8, -half + 0.8, side);
   return {{"car", solids}, 2 * half};
 }
@@ -41,13 +41,11 @@ Thing car(Random& random) {
 Thing sensorCar() {
   constexpr double kHalf = 1.75;
   constexpr double kSide = 0.8;
-  std::vector<Solid> solids;
-  solids.push_back(Solid::block({-kHalf, kHalf, -kSide, kSide, 0.24}, {-kHalf, kHalf, -kSide, kSide, 0.6}));
-  solids.push_back(Solid::block({-kHalf, kHalf, -kSide, kSide, 0.6},
-                                {-kHalf + 0.1, kHalf - 0.4, -kSide + 0.05, kSide - 0.05, 0.85}));
-  solids.push_back(
-      Solid::block({-kHalf + 0.1, kHalf - 0.5, -kSide + 0.05, kSide - 0.05, 0.85}, {-0.7, 0.7, -0.55, 0.55, 1.35}));
-  solids.push_back(Solid::cylinder({0, 0, 1.35}, {0, 0, 1.65}, 0.05));  // the sensor's mount
+  std::vector<Solid> solids = {
+      Solid::block({-kHalf, kHalf, -kSide, kSide, 0.24}, {-kHalf, kHalf, -kSide, kSide, 0.6}),
+      Solid::block({-kHalf, kHalf, -kSide, kSide, 0.6}, {-kHalf + 0.1, kHalf - 0.4, -kSide + 0.05, kSide - 0.05, 0.85}),
+      Solid::block({-kHalf + 0.1, kHalf - 0.5, -kSide + 0.05, kSide - 0.05, 0.85}, {-0.7, 0.7, -0.55, 0.55, 1.35}),
+      Solid::cylinder({0, 0, 1.35}, {0, 0, 1.65}, 0.05)};  // the sensor's mount
   addWheels(solids, kHalf - 0.6, -kHalf + 0.6, kSide);
   return {{"sensor car", solids}, 2 * kHalf};
 }
@@ -57,7 +55,7 @@ Thing vehicleTop(double drop) {
   constexpr double kBack = -1.1;
   constexpr double kSide = 0.7;
   std::vector<Solid> solids = {Solid::box({kBack, -kSide, -drop - 0.05}, {kFront, kSide, -drop})};
-  // Both ends of a bar stand on the roof.
+  // Each bar has a post on the roof at both ends.
   constexpr double kBar = 0.02;
   constexpr double kBarSide = 0.6;
   for (const double x : {-0.55, 0.5}) {

@@ -28,7 +28,7 @@ double staggerOf(const SensorModel& model) {
 }  // namespace
 
 EndlessStream::EndlessStream(const StreamOptions& options, const Decoder& decoder, Listener& listener)
-    : options_(options), decoder_(decoder), listener_(listener) {
+    : Stream(options, decoder, listener) {
   lisco::EndlessParameters parameters;
   parameters.tolerance = options.tolerance;
   parameters.min_size = options.min_size;
@@ -42,11 +42,11 @@ EndlessStream::EndlessStream(const StreamOptions& options, const Decoder& decode
 
 bool EndlessStream::add(const Column& column, const Origin& origin) {
   const auto start = Clock::now();
-  const bool stands_still = has_begun_ && turns_.back().turn.columns() == kMaxColumns;
-  if (stands_still) finish();
-  if (cutter_.startsRotation(column.azimuth, column.after_break) || stands_still) {
+  const bool is_too_long = has_begun_ && turns_.back().turn.columns() == kMaxColumns;
+  if (is_too_long) finish();
+  if (cutter_.startsRotation(column.azimuth, column.after_break) || is_too_long) {
     endTurn();
-    if (options_.rotations != 0 && rotations_ == options_.rotations) return false;
+    if (isOver()) return false;
     begin(column);
   }
   time_us_ = origin.time_us;
@@ -84,8 +84,7 @@ void EndlessStream::endTurn() {
   if (!has_begun_) return;
   has_begun_ = false;
   Turn& turn = turns_.back().turn;
-  turn.lost = decoder_.order().missing() - missing_before_;
-  missing_before_ = decoder_.order().missing();
+  turn.lost = takeLost();
   listener_.turnEnds(turn);
 }
 
@@ -127,7 +126,7 @@ void EndlessStream::deliver(const lisco::EndlessCluster& cluster) {
   delivered.found.id = delivered_;
   cluster.forEachRun([&](const std::uint32_t* indices, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
-      // The turn that holds the index; differences are right across the wrap-around of indices.
+      // The turn that holds the index; differences are correct across the wrap-around of indices.
       auto open = turns_.rbegin();
       while (indices[i] - open->first_index >= open->turn.cells.size()) ++open;
       const std::size_t cell = indices[i] - open->first_index;

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "lisco/endless_clusterer.h"
-#include "sensors/rotation_cutter.h"
 #include "stream.h"
 #include "turn_position.h"
 
@@ -49,22 +48,16 @@ class EndlessStream : public Stream {
   void deliver(const lisco::EndlessCluster& cluster);
   std::optional<Clock::time_point> closedAt(double reach_end) const;
 
-  const StreamOptions options_;
-  const Decoder& decoder_;
-  Listener& listener_;
-  RotationCutter cutter_;
   TurnPosition position_;
   lisco::EndlessClusterer clusterer_;
   std::deque<OpenTurn> turns_;  ///< the current one is last
   std::vector<OpenTurn> spare_;
-  bool has_begun_ = false, is_finishing_ = false;
-  std::uint64_t rotations_ = 0, missing_before_ = 0;
+  bool is_finishing_ = false;
   std::uint32_t next_index_ = 0;  ///< wraps around to 0
   std::optional<double> last_time_us_;
   std::int64_t time_us_ = 0;
   std::uint32_t delivered_ = 0;
   std::vector<Mark> marks_;  ///< of the latest columns
-  std::vector<lisco::Return> returns_;
 };
 
 }  // namespace lisco_apps

@@ -14,8 +14,6 @@
 namespace lisco_apps {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// First words of every file of this program.
 constexpr const char* kSignature = "# made by lisco_stream ";
 constexpr const char* kPrefix = "rotation_";

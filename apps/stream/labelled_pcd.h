@@ -2,9 +2,8 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <filesystem>
-
-#include "turn.h"
+#include "io/text.h"
+#include "stream.h"
 
 namespace lisco_apps {
 
@@ -14,13 +13,13 @@ class LabelledClouds {
  public:
   /// Makes the folder, and those above it, and removes the files of an earlier run.
   /// \throws std::runtime_error with one line on failure, or if the folder has foreign files of such names
-  explicit LabelledClouds(std::filesystem::path folder);
+  explicit LabelledClouds(fs::path folder);
 
   /// \throws std::runtime_error with one line if it cannot be written
   void write(const Turn& turn) const;
 
  private:
-  std::filesystem::path folder_;
+  fs::path folder_;
 };
 
 }  // namespace lisco_apps

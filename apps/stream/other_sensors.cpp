@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include <boost/algorithm/string/join.hpp>
+
 #include "io/text.h"
 
 namespace lisco_apps {
@@ -26,7 +28,7 @@ std::vector<std::string> sensorsThat(Fits&& fits) {
 }
 
 std::string questionOf(const std::vector<std::string>& sensors) {
-  return sensors.empty() ? "; is it another --sensor?" : "; is it a " + listOf(sensors, " or ") + "?";
+  return sensors.empty() ? "; is it another --sensor?" : "; is it a " + boost::join(sensors, " or ") + "?";
 }
 
 }  // namespace

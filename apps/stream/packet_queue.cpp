@@ -48,26 +48,22 @@ void PacketQueue::receive() {
     ended_ = arrival == Arrival::kEnd;
     filled_.notify_one();
     if (ended_) return;
-    if (count_ == kCapacity) continue;
-    Slot& slot = slots_[(first_ + count_) % kCapacity];
+    if (slots_.full()) continue;
+    slots_.push_back({});
+    Slot& slot = slots_.back();
     slot.size = std::min(packet.size, slot.data.size());
     std::memcpy(slot.data.data(), packet.data, slot.size);
     slot.time_us = packet.time_us;
-    ++count_;
   }
 }
 
 PacketSource::Arrival PacketQueue::next(Packet& packet) {
   constexpr std::chrono::milliseconds kMaxWait{50};
   std::unique_lock<std::mutex> lock(mutex_);
-  if (holds_slot_) {
-    first_ = (first_ + 1) % kCapacity;
-    --count_;
-    holds_slot_ = false;
-  }
-  if (!filled_.wait_for(lock, kMaxWait, [this] { return count_ > 0 || ended_; })) return Arrival::kNothing;
-  if (count_ == 0) return Arrival::kEnd;
-  const Slot& slot = slots_[first_];
+  if (std::exchange(holds_slot_, false)) slots_.pop_front();
+  if (!filled_.wait_for(lock, kMaxWait, [this] { return !slots_.empty() || ended_; })) return Arrival::kNothing;
+  if (slots_.empty()) return Arrival::kEnd;
+  const Slot& slot = slots_.front();
   holds_slot_ = true;
   ++packets_;
   packet = {slot.data.data(), slot.size, slot.time_us};

@@ -10,7 +10,8 @@
 #include <memory>
 #include <mutex>
 #include <thread>
-#include <vector>
+
+#include <boost/circular_buffer.hpp>
 
 #include "sensors/packet_source.h"
 
@@ -41,10 +42,9 @@ class PacketQueue : public PacketSource {
   void receive();
 
   std::unique_ptr<PacketSource> source_;
-  std::vector<Slot> slots_;
-  std::mutex mutex_;  ///< guards the slots and the next four
+  boost::circular_buffer<Slot> slots_;
+  std::mutex mutex_;  ///< guards the slots and the next three
   std::condition_variable filled_;
-  std::size_t first_ = 0, count_ = 0;
   bool ended_ = false;
   bool holds_slot_ = false;  ///< whether the reader's current packet is in the first slot
   std::atomic<bool> stop_{false};

@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lisco/sensor_hints.h"
 
 namespace lisco_apps {
 namespace {
 
-/// What the sensor's model tells of a rotation before it comes.
+/// The sensor of a rotation, by its model.
 lisco::SensorHints hintsFor(const Decoder& decoder) {
   lisco::SensorHints hints;
   hints.clockwise = true;
@@ -27,14 +28,11 @@ lisco::SensorHints hintsFor(const Decoder& decoder) {
 
 }  // namespace
 
-RotationStream::RotationStream(const StreamOptions& options, const Decoder& decoder, Listener& listener)
-    : options_(options), decoder_(decoder), listener_(listener) {}
-
 bool RotationStream::add(const Column& column, const Origin& origin) {
   auto start = Clock::now();
   if (cutter_.startsRotation(column.azimuth, column.after_break) || turn_.columns() == kMaxColumns) {
     end();
-    if (options_.rotations != 0 && rotations_ == options_.rotations) return false;
+    if (isOver()) return false;
     start = Clock::now();
     begin(column);
   }
@@ -80,37 +78,29 @@ void RotationStream::end() {
   collect();
   const auto latency = last_column_took_ + (Clock::now() - start);
   cluster_latency_.add(latency);
-  turn_.lost = decoder_.order().missing() - missing_before_;
-  missing_before_ = decoder_.order().missing();
+  turn_.lost = takeLost();
   listener_.rotation(turn_, clusters_, latency);
 }
 
 /// Numbers the clusters in PCL's order, and labels the cells.
 void RotationStream::collect() {
-  constexpr std::uint32_t kUnseen = ~std::uint32_t{0}, kNone = kUnseen - 1;
+  constexpr std::uint32_t kUnseen = ~std::uint32_t{0};
   candidates_.clear();
-  rank_of_subcluster_.assign(clusterer_.subclusterCount(), kUnseen);
+  label_of_subcluster_.assign(clusterer_.subclusterCount(), kUnseen);
   clusterer_.forEachRun([&](const std::uint32_t*, std::size_t, std::uint32_t subcluster) {
-    std::uint32_t& rank = rank_of_subcluster_[subcluster];
-    if (rank != kUnseen) return;
+    if (std::exchange(label_of_subcluster_[subcluster], 0) != kUnseen) return;
     const std::uint32_t size = clusterer_.sizeOf(subcluster);
-    const bool is_cluster = size >= options_.min_size && size <= options_.max_size;
-    rank = is_cluster ? static_cast<std::uint32_t>(candidates_.size()) : kNone;
-    if (is_cluster) candidates_.push_back({size, rank});
+    if (size >= options_.min_size && size <= options_.max_size) candidates_.push_back({size, subcluster});
   });
   // The sort is unstable: among equal sizes, only PCL's own call on the same sequence gives PCL's order.
   std::sort(candidates_.rbegin(), candidates_.rend(),
             [](const Candidate& a, const Candidate& b) { return a.size < b.size; });
-  label_of_rank_.resize(candidates_.size());
   clusters_.assign(candidates_.size(), {});
-  for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    clusters_[i].id = static_cast<std::uint32_t>(i + 1);
-    label_of_rank_[candidates_[i].rank] = clusters_[i].id;
-  }
+  for (std::size_t i = 0; i < candidates_.size(); ++i)
+    clusters_[i].id = label_of_subcluster_[candidates_[i].subcluster] = static_cast<std::uint32_t>(i + 1);
   clusterer_.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-    const std::uint32_t rank = rank_of_subcluster_[subcluster];
-    if (rank == kNone) return;
-    const std::uint32_t label = label_of_rank_[rank];
+    const std::uint32_t label = label_of_subcluster_[subcluster];
+    if (label == 0) return;
     for (std::size_t i = 0; i < count; ++i) {
       turn_.labels[cells[i]] = label;
       clusters_[label - 1].add(turn_.cells[cells[i]]);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "lisco/column_clusterer.h"
-#include "sensors/rotation_cutter.h"
 #include "stream.h"
 
 namespace lisco_apps {
@@ -15,7 +14,7 @@ namespace lisco_apps {
 /// as an organized cloud (a row per laser, from top to bottom), in the same order.
 class RotationStream : public Stream {
  public:
-  RotationStream(const StreamOptions& options, const Decoder& decoder, Listener& listener);
+  using Stream::Stream;
 
   bool add(const Column& column, const Origin& origin) override;
   void wait() override {}
@@ -27,24 +26,17 @@ class RotationStream : public Stream {
   void collect();
   lisco::Parameters parameters() const;
 
-  const StreamOptions options_;
-  const Decoder& decoder_;
-  Listener& listener_;
-  RotationCutter cutter_;
   lisco::ColumnClusterer clusterer_;
   Turn turn_;
-  bool has_begun_ = false;
-  std::uint64_t rotations_ = 0, missing_before_ = 0;
   Clock::duration last_column_took_{};
-  std::vector<lisco::Return> returns_;
   std::vector<FoundCluster> clusters_;
 
-  /// A subcluster of an accepted size; its rank is by first points.
+  /// A subcluster of an accepted size.
   struct Candidate {
-    std::uint32_t size, rank;
+    std::uint32_t size, subcluster;
   };
-  std::vector<Candidate> candidates_;
-  std::vector<std::uint32_t> rank_of_subcluster_, label_of_rank_;
+  std::vector<Candidate> candidates_;               ///< by first points, then by size
+  std::vector<std::uint32_t> label_of_subcluster_;  ///< 0: in no cluster
 };
 
 }  // namespace lisco_apps

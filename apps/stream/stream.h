@@ -6,16 +6,57 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
-#include "io/cluster_shape.h"
+#include "io/point_geometry.h"
 #include "latency.h"
+#include "lisco/return.h"
 #include "sensors/decoder.h"
-#include "turn.h"
+#include "sensors/rotation_cutter.h"
 
 namespace lisco_apps {
 
-/// How a stream of columns is to be clustered.
+/// The columns received of one turn of the sensor.
+struct Turn {
+  std::uint64_t number = 0;  ///< from 1
+  std::size_t lasers = 0;
+  std::vector<Cell> cells;            ///< column by column, in each from the top laser to the bottom one
+  std::vector<std::uint32_t> labels;  ///< of the cells: cluster id, 0: in none
+  double azimuth = 0;                 ///< of its first column, degrees clockwise
+  std::int64_t time_us = 0;           ///< of the packet of its last column, microseconds since 1970
+  std::uint64_t returns = 0;          ///< above the ground
+  std::uint64_t lost = 0;             ///< packets missing in it, or between it and the next one
+
+  std::size_t columns() const { return lasers == 0 ? 0 : cells.size() / lasers; }
+
+  /// Starts an empty turn; keeps its memory.
+  void begin(std::uint64_t new_number, std::size_t new_lasers, double new_azimuth) {
+    cells.clear();
+    labels.clear();
+    *this = {new_number, new_lasers, std::move(cells), std::move(labels), new_azimuth, 0, 0, 0};
+  }
+
+  /// Adds a column.
+  /// \param ground_z returns below it are not clustered, metres
+  /// \param first_index source index of the column's first cell; the others follow
+  /// \param to_cluster receives the column without the ground
+  void add(const std::vector<Cell>& column, float ground_z, std::uint32_t first_index,
+           std::vector<lisco::Return>& to_cluster) {
+    cells.insert(cells.end(), column.begin(), column.end());
+    labels.resize(cells.size(), 0);
+    to_cluster.resize(column.size());
+    for (std::size_t i = 0; i < column.size(); ++i) {
+      const Cell& cell = column[i];
+      const bool is_clustered = lisco::isReturn(cell.x, cell.y, cell.z) && cell.z >= ground_z;
+      to_cluster[i] = is_clustered ? lisco::Return{cell.x, cell.y, cell.z, first_index + static_cast<std::uint32_t>(i)}
+                                   : lisco::kNoReturn;
+      if (is_clustered) ++returns;
+    }
+  }
+};
+
+/// Settings of a stream.
 struct StreamOptions {
   float tolerance = 0;  ///< metres
   std::size_t min_size = 10;
@@ -30,7 +71,7 @@ struct Origin {
   Clock::time_point received;  ///< when the packet was at hand
 };
 
-/// A turn ends after this many columns, which bounds its memory if the sensor stands still: 0.01 degrees per column,
+/// A turn ends after this many columns, which bounds its memory if the sensor does not turn: 0.01 degrees per column,
 /// the resolution of azimuths in packets.
 inline constexpr std::size_t kMaxColumns = 36000;
 
@@ -66,12 +107,14 @@ class Listener {
 /// Clusters a stream of columns and passes the results to a Listener.
 class Stream {
  public:
+  Stream(const StreamOptions& options, const Decoder& decoder, Listener& listener)
+      : options_(options), decoder_(decoder), listener_(listener) {}
   virtual ~Stream() = default;
 
-  /// Takes the next column.
+  /// Clusters the next column.
   /// \return false, without taking it, if it belongs to a rotation beyond StreamOptions::rotations
   virtual bool add(const Column& column, const Origin& origin) = 0;
-  /// To be called when no column comes for a while.
+  /// To be called when no column has come for a while.
   virtual void wait() = 0;
   /// To be called at the end of the stream.
   virtual void finish() = 0;
@@ -84,7 +127,25 @@ class Stream {
   const Latency& clusterLatency() const { return cluster_latency_; }
 
  protected:
+  /// Whether the rotation that the next column starts is beyond StreamOptions::rotations.
+  bool isOver() const { return options_.rotations != 0 && rotations_ == options_.rotations; }
+  /// Packets missing since the last call.
+  std::uint64_t takeLost() {
+    const std::uint64_t before = std::exchange(missing_before_, decoder_.order().missing());
+    return missing_before_ - before;
+  }
+
+  const StreamOptions options_;
+  const Decoder& decoder_;
+  Listener& listener_;
+  RotationCutter cutter_;
+  bool has_begun_ = false;       ///< the current turn
+  std::uint64_t rotations_ = 0;  ///< begun
+  std::vector<lisco::Return> returns_;
   Latency column_latency_, cluster_latency_;
+
+ private:
+  std::uint64_t missing_before_ = 0;
 };
 
 }  // namespace lisco_apps

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 #include <numeric>
+#include <sstream>
+#include <stdexcept>
 #include <type_traits>
 #include <utility>
 
@@ -13,14 +15,13 @@
 #include <pcl/io/lisco_point_cloud2.h>
 #include <pcl/point_types.h>
 #include <pcl/segmentation/extract_clusters.h>  // comparePointClusters
-#include <pcl/impl/instantiate.hpp>
 
 #include "lisco/return.h"
 
 namespace {
 
 /// Calls visit with a value of the type that a field's number stands for. The first eight are those of sensor_msgs; the
-/// others are PCL's, some of them only of its later versions. \return whatever visit does, or fallback if it is none
+/// others are PCL's, some of them only of its later versions. \return the result of visit; fallback for other numbers
 template <typename Visit, typename Result>
 Result withType(std::uint8_t datatype, Visit&& visit, Result fallback) {
   switch (datatype) {
@@ -53,6 +54,15 @@ Result withType(std::uint8_t datatype, Visit&& visit, Result fallback) {
 
 constexpr std::uint8_t kFloat32 = 7;
 constexpr std::uint8_t kFloat64 = 8;
+constexpr auto kMaxPoints = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());  // of the engine, too
+
+/// Throws the error of a message, a sentence from its parts.
+template <typename... Parts>
+[[noreturn]] void reject(const Parts&... parts) {
+  std::ostringstream sentence;
+  (sentence << ... << parts);
+  throw std::invalid_argument(sentence.str());
+}
 
 /// Bytes of a number; 0: no such type.
 std::size_t sizeOf(std::uint8_t datatype) {
@@ -60,14 +70,15 @@ std::size_t sizeOf(std::uint8_t datatype) {
       datatype, [](auto type) { return sizeof(type); }, std::size_t{0});
 }
 
-double readNumber(const std::uint8_t* from, std::uint8_t datatype) {
-  if (datatype == kFloat32) {  // nearly all are
+double readNumber(const std::uint8_t* point, const pcl::PCLPointField& field) {
+  const std::uint8_t* const from = point + field.offset;
+  if (field.datatype == kFloat32) {  // the most frequent type
     float number;
     std::memcpy(&number, from, sizeof(number));
     return static_cast<double>(number);
   }
   return withType(
-      datatype,
+      field.datatype,
       [from](auto number) {
         std::memcpy(&number, from, sizeof(number));
         return static_cast<double>(number);
@@ -89,19 +100,19 @@ Number limited(double value) {
   return static_cast<Number>(value);
 }
 
-void writeNumber(double value, std::uint8_t* to, std::uint8_t datatype) {
+void writeNumber(double value, std::uint8_t* point, const pcl::PCLPointField& field) {
   withType(
-      datatype,
+      field.datatype,
       [&](auto number) {
         number = limited<decltype(number)>(value);
-        std::memcpy(to, &number, sizeof(number));
+        std::memcpy(point + field.offset, &number, sizeof(number));
         return true;
       },
       false);
 }
 
-/// Color is one number of four bytes, whatever its name and type say.
-bool isColor(const pcl::detail::LiscoField& field) {
+/// Colour is one number of four bytes: float or integer, named rgb or rgba.
+bool isColor(const pcl::PCLPointField& field) {
   return (field.name == "rgb" || field.name == "rgba") && field.count == 1 && sizeOf(field.datatype) == 4;
 }
 
@@ -118,34 +129,35 @@ struct Firings {
   std::uint32_t columns = 0;
 };
 
-/// Cuts points into columns: what lies within most of a firing's duration is one. Several of one row in one firing get
+/// Cuts points into columns: points within most of a firing's duration make one. Several of one row in one firing get
 /// columns side by side, so that no two points have the same row and column.
-/// \param keys when each point was measured, or at which azimuth; finite
-/// \param least_step what differs by less was measured at once
-/// \return no columns, if no row has two points that differ
+/// \param keys the time or azimuth of each point; finite
+/// \param min_step points that differ by less are of one firing
+/// \return no columns if no row has two points that differ
 Firings cutFirings(const std::vector<double>& keys, const std::vector<std::uint32_t>& row_of_point, std::size_t rows,
-                   double least_step) {
+                   double min_step) {
   std::vector<std::uint32_t> order(keys.size());
   std::iota(order.begin(), order.end(), 0U);
   if (!std::is_sorted(keys.begin(), keys.end()))
     std::sort(order.begin(), order.end(),
               [&](std::uint32_t a, std::uint32_t b) { return std::pair(keys[a], a) < std::pair(keys[b], b); });
 
-  // From one firing to the next: what one ring's points differ by, if most firings return. Some do not.
+  // The step from one firing to the next: the lower quartile of those between a ring's points, since some firings are
+  // without return.
   std::vector<double> last(rows, std::numeric_limits<double>::quiet_NaN());
   std::vector<double> steps;
   steps.reserve(keys.size());
   for (const std::uint32_t point : order) {
     double& before = last[row_of_point[point]];
-    if (keys[point] - before > least_step) steps.push_back(keys[point] - before);
+    if (keys[point] - before > min_step) steps.push_back(keys[point] - before);
     before = keys[point];
   }
   Firings firings;
   if (steps.empty()) return firings;
   const auto quarter = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 4);
   std::nth_element(steps.begin(), quarter, steps.end());
-  constexpr double kMost = 0.75;  // the lasers of one column fire within so much of the time to the next column
-  const double duration = kMost * *quarter;
+  constexpr double kFiringShare = 0.75;  // of the time to the next column, within which the lasers of a column fire
+  const double duration = kFiringShare * *quarter;
 
   firings.column_of_point.resize(keys.size());
   std::vector<std::uint32_t> next_column(rows, 0);
@@ -166,170 +178,139 @@ Firings cutFirings(const std::vector<double>& keys, const std::vector<std::uint3
 
 }  // namespace
 
-bool pcl::detail::LiscoMessageReader::open(const PCLPointCloud2& message, const std::vector<LiscoField>& fields,
+bool pcl::detail::LiscoMessageReader::open(const PCLPointCloud2& message, const std::vector<PCLPointField>& fields,
                                            const char* caller) {
   message_ = &message;
   copies_.clear();
   cells_.clear();
   points_ = width_ = height_ = 0;
-  if (message.width == 0 || message.height == 0) {
-    if (message.data.empty()) return (true);
-    PCL_ERROR("[%s] The message has %zu bytes of data but no points (%zu x %zu).\n", caller, message.data.size(),
-              static_cast<std::size_t>(message.width), static_cast<std::size_t>(message.height));
+  try {
+    checkLayout();
+    if (points_ == 0) return (true);
+    selectFields(fields);
+    arrange();
+    return (true);
+  } catch (const std::invalid_argument& error) {
+    PCL_ERROR("[%s] %s\n", caller, error.what());
     return (false);
   }
-  if (!checkLayout(caller)) return (false);
-
-  for (const auto& [name, field] : {std::pair("x", &x_), {"y", &y_}, {"z", &z_}}) {
-    bool is_there = false;
-    if (!findField(name, caller, *field, is_there)) return (false);
-    if (!is_there) {
-      PCL_ERROR("[%s] The message has no field '%s'.\n", caller, name);
-      return (false);
-    }
-    if (field->count != 1 || (field->datatype != kFloat32 && field->datatype != kFloat64)) {
-      PCL_ERROR("[%s] Field '%s' must be one FLOAT32 or FLOAT64.\n", caller, name);
-      return (false);
-    }
-  }
-  for (const LiscoField& to : fields) {
-    LiscoField from;
-    bool is_there = false;
-    if (!findField(to.name, caller, from, is_there)) return (false);
-    if (!is_there && isColor(to) && !findField(to.name == "rgb" ? "rgba" : "rgb", caller, from, is_there))
-      return (false);
-    if (!is_there) continue;
-    const bool is_same_type =
-        (from.datatype == to.datatype && from.count == to.count) || (isColor(from) && isColor(to));
-    if (is_same_type || (from.count == 1 && to.count == 1 && !isColor(to))) copies_.push_back({from, to, is_same_type});
-  }
-  return (arrange(caller));
 }
 
-bool pcl::detail::LiscoMessageReader::checkLayout(const char* caller) {
+void pcl::detail::LiscoMessageReader::checkLayout() {
   const PCLPointCloud2& message = *message_;
-  if ((message.is_bigendian == 0) != isLittleEndian()) {
-    PCL_ERROR("[%s] The message's byte order (is_bigendian = %d) is not this machine's.\n", caller,
-              static_cast<int>(message.is_bigendian));
-    return (false);
-  }
   const std::size_t width = message.width;
   const std::size_t height = message.height;
-  constexpr auto kMostPoints =
-      static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());  // of the engine, too
-  if (width > kMostPoints / height) {
-    PCL_ERROR("[%s] The message has %zu x %zu points, more than pcl::index_t can number.\n", caller, width, height);
-    return (false);
-  }
   const std::size_t point_step = message.point_step;
   const std::size_t row_step = message.row_step;
   const std::size_t bytes = message.data.size();
+  if (width == 0 || height == 0) {
+    if (bytes > 0) reject("The message has ", bytes, " bytes of data but no points (", width, " x ", height, ").");
+    return;
+  }
+  if ((message.is_bigendian == 0) != isLittleEndian())
+    reject("The message's byte order (is_bigendian = ", +message.is_bigendian, ") is not this machine's.");
+  if (width > kMaxPoints / height)
+    reject("The message has ", width, " x ", height, " points, more than pcl::index_t can number.");
   if (point_step == 0 || width > bytes / point_step ||
-      (height > 1 && row_step != 0 && height - 1 > (bytes - width * point_step) / row_step)) {
-    PCL_ERROR("[%s] %zu x %zu points of %zu bytes, in rows of %zu bytes, are not what %zu bytes of data hold.\n",
-              caller, width, height, point_step, row_step, bytes);
-    return (false);
-  }
-  if (height > 1 && row_step < width * point_step) {
-    PCL_ERROR("[%s] Rows of %zu points of %zu bytes do not fit into a row_step of %zu.\n", caller, width, point_step,
-              row_step);
-    return (false);
-  }
+      (height > 1 && row_step != 0 && height - 1 > (bytes - width * point_step) / row_step))
+    reject(width, " x ", height, " points of ", point_step, " bytes, in rows of ", row_step, " bytes, are not what ",
+           bytes, " bytes of data hold.");
+  if (height > 1 && row_step < width * point_step)
+    reject("Rows of ", width, " points of ", point_step, " bytes do not fit into a row_step of ", row_step, ".");
   points_ = width * height;
-  return (true);
 }
 
-bool pcl::detail::LiscoMessageReader::findField(const std::string& name, const char* caller, LiscoField& field,
-                                                bool& is_there) const {
-  const auto found = std::find_if(message_->fields.begin(), message_->fields.end(),
-                                  [&](const PCLPointField& candidate) { return (candidate.name == name); });
-  is_there = found != message_->fields.end();
-  if (!is_there) return (true);
-  field = {name, found->offset, found->datatype, std::max<std::size_t>(1, found->count)};  // some drivers write 0
-  const std::size_t size = sizeOf(field.datatype);
-  if (size == 0) {
-    PCL_ERROR("[%s] Field '%s' is of the unknown type %d.\n", caller, name.c_str(), static_cast<int>(field.datatype));
-    return (false);
+void pcl::detail::LiscoMessageReader::selectFields(const std::vector<PCLPointField>& fields) {
+  for (const auto& [name, field] : {std::pair("x", &x_), {"y", &y_}, {"z", &z_}}) {
+    const auto found = findField(name);
+    if (!found) reject("The message has no field '", name, "'.");
+    if (found->count != 1 || (found->datatype != kFloat32 && found->datatype != kFloat64))
+      reject("Field '", name, "' must be one FLOAT32 or FLOAT64.");
+    *field = *found;
   }
-  const std::size_t point_step = message_->point_step;
-  if (field.offset > point_step || field.count > (point_step - field.offset) / size) {
-    PCL_ERROR("[%s] Field '%s' (%zu bytes at offset %zu) reaches beyond a point_step of %zu.\n", caller, name.c_str(),
-              size * field.count, field.offset, point_step);
-    return (false);
+  for (const PCLPointField& to : fields) {
+    auto from = findField(to.name);
+    if (!from && isColor(to)) from = findField(to.name == "rgb" ? "rgba" : "rgb");
+    if (!from) continue;
+    const bool is_same_type =
+        (from->datatype == to.datatype && from->count == to.count) || (isColor(*from) && isColor(to));
+    if (is_same_type || (from->count == 1 && to.count == 1 && !isColor(to)))
+      copies_.push_back({*from, to, is_same_type});
   }
-  return (true);
 }
 
-bool pcl::detail::LiscoMessageReader::arrange(const char* caller) {
-  LiscoField ring;
-  bool has_ring = false;
-  for (const char* const name : {"ring", "channel"})
-    if (!has_ring && !findField(name, caller, ring, has_ring)) return (false);
-  if (has_ring && ring.count != 1) {
-    PCL_ERROR("[%s] Field '%s' has %zu elements.\n", caller, ring.name.c_str(), ring.count);
-    return (false);
+/// \return the field of this name, which lies within the points and is of a known type; nullopt if there is none
+std::optional<pcl::PCLPointField> pcl::detail::LiscoMessageReader::findField(const std::string& name) const {
+  for (PCLPointField field : message_->fields) {
+    if (field.name != name) continue;
+    if (field.count == 0) field.count = 1;  // as some drivers write it
+    const std::size_t size = sizeOf(field.datatype);
+    if (size == 0) reject("Field '", name, "' is of the unknown type ", +field.datatype, ".");
+    const std::size_t point_step = message_->point_step;
+    if (field.offset > point_step || field.count > (point_step - field.offset) / size)
+      reject("Field '", name, "' (", size * field.count, " bytes at offset ", field.offset,
+             ") reaches beyond a point_step of ", point_step, ".");
+    return (field);
   }
-  if (has_ring && message_->height == 1) {
-    std::vector<double> keys;
-    for (const char* const name : {"time", "t", "timestamp", "time_stamp"}) {
-      LiscoField time;
-      bool has_time = false;
-      if (!findField(name, caller, time, has_time)) return (false);
-      if (!has_time) continue;
-      if (time.count != 1) {
-        PCL_ERROR("[%s] Field '%s' has %zu elements.\n", caller, name, time.count);
-        return (false);
-      }
-      keys.resize(points_);
-      for (std::size_t point = 0; point < points_; ++point)
-        keys[point] = readNumber(pointAt(point) + time.offset, time.datatype);
-      if (arrangeByRings(ring, keys)) return (true);
-    }
-    keys.clear();
-    if (arrangeByRings(ring, keys)) return (true);
+  return (std::nullopt);
+}
+
+/// The same for a field that must have one element.
+std::optional<pcl::PCLPointField> pcl::detail::LiscoMessageReader::findNumber(const std::string& name) const {
+  auto field = findField(name);
+  if (field && field->count != 1) reject("Field '", name, "' has ", field->count, " elements.");
+  return (field);
+}
+
+void pcl::detail::LiscoMessageReader::arrange() {
+  auto ring = findNumber("ring");
+  if (!ring) ring = findNumber("channel");
+  if (ring && message_->height == 1) {
+    for (const char* const name : {"time", "t", "timestamp", "time_stamp"})
+      if (const auto time = findNumber(name); time && arrangeByRings(*ring, &*time)) return;
+    if (arrangeByRings(*ring, nullptr)) return;
   }
 
   // As it is.
   cells_.resize(points_);
   width_ = message_->width;
   height_ = message_->height;
-  if (has_ring && height_ > 1 && width_ > 1 && rowsAreFirings(ring)) {
+  if (ring && height_ > 1 && width_ > 1 && rowsAreFirings(*ring)) {
     std::swap(width_, height_);
     for (std::size_t cell = 0; cell < points_; ++cell)
       cells_[cell] = static_cast<index_t>(cell % width_ * height_ + cell / width_);
   } else {
     std::iota(cells_.begin(), cells_.end(), index_t{0});
   }
-  return (true);
 }
 
-/// \param keys of all points: times; empty: azimuths
-/// \return whether these rings and keys made a sensible arrangement
-bool pcl::detail::LiscoMessageReader::arrangeByRings(const LiscoField& ring, std::vector<double>& keys) {
-  constexpr std::size_t kMostRings = 65536;
+/// \param time the field by which points are ordered; nullptr: by their azimuths
+/// \return false if the rings and times give no arrangement: a value is out of range, no time differs from another, or
+/// most cells would be empty
+bool pcl::detail::LiscoMessageReader::arrangeByRings(const PCLPointField& ring, const PCLPointField* time) {
+  constexpr std::size_t kMaxRings = 65536;
   constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  constexpr double kLeastAzimuthStep = 2e-4;  // radians: less than any sensor's, more than rounding of coordinates
-  const bool by_azimuth = keys.empty();
+  constexpr double kMinAzimuthStep = 2e-4;  // radians: less than any sensor's, more than rounding of coordinates
 
   Indices returns;
   std::vector<std::uint32_t> rows;
-  std::vector<double> keys_of_returns;
+  std::vector<double> keys;
   returns.reserve(points_);
   rows.reserve(points_);
-  keys_of_returns.reserve(points_);
-  std::vector<std::uint32_t> row_of_ring(kMostRings, kNone);
+  keys.reserve(points_);
+  std::vector<std::uint32_t> row_of_ring(kMaxRings, kNone);
   for (std::size_t point = 0; point < points_; ++point) {
     const std::uint8_t* const bytes = pointAt(point);
-    const auto x = limited<float>(readNumber(bytes + x_.offset, x_.datatype));
-    const auto y = limited<float>(readNumber(bytes + y_.offset, y_.datatype));
-    const auto z = limited<float>(readNumber(bytes + z_.offset, z_.datatype));
+    const auto x = limited<float>(readNumber(bytes, x_));
+    const auto y = limited<float>(readNumber(bytes, y_));
+    const auto z = limited<float>(readNumber(bytes, z_));
     if (!lisco::isReturn(x, y, z)) continue;
-    const double number = readNumber(bytes + ring.offset, ring.datatype);
-    const double key = by_azimuth ? static_cast<double>(std::atan2(y, x)) : keys[point];
-    if (!(number >= 0 && number < static_cast<double>(kMostRings)) || !std::isfinite(key)) return (false);
+    const double number = readNumber(bytes, ring);
+    const double key = time ? readNumber(bytes, *time) : static_cast<double>(std::atan2(y, x));
+    if (!(number >= 0 && number < static_cast<double>(kMaxRings)) || !std::isfinite(key)) return (false);
     returns.push_back(static_cast<index_t>(point));
     rows.push_back(static_cast<std::uint32_t>(number));
-    keys_of_returns.push_back(key);
+    keys.push_back(key);
     row_of_ring[rows.back()] = 0;
   }
   if (returns.empty()) return (false);
@@ -338,11 +319,11 @@ bool pcl::detail::LiscoMessageReader::arrangeByRings(const LiscoField& ring, std
     if (row != kNone) row = height++;
   for (std::uint32_t& row : rows) row = row_of_ring[row];
 
-  const Firings firings = cutFirings(keys_of_returns, rows, height, by_azimuth ? kLeastAzimuthStep : 0.0);
-  constexpr std::size_t kMostCellsPerPoint = 16;
-  const std::size_t most_cells = std::min(std::max(kMostCellsPerPoint * points_, std::size_t{65536}),
-                                          static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()));
-  if (firings.columns == 0 || firings.columns > most_cells / height) return (false);
+  const Firings firings = cutFirings(keys, rows, height, time ? 0.0 : kMinAzimuthStep);
+  constexpr std::size_t kMaxCellsPerPoint = 16;
+  constexpr std::size_t kMaxCellsOfFewPoints = 65536;
+  const std::size_t max_cells = std::min(std::max(kMaxCellsPerPoint * points_, kMaxCellsOfFewPoints), kMaxPoints);
+  if (firings.columns == 0 || firings.columns > max_cells / height) return (false);
   width_ = firings.columns;
   height_ = height;
   cells_.assign(width_ * height_, UNAVAILABLE);
@@ -350,10 +331,10 @@ bool pcl::detail::LiscoMessageReader::arrangeByRings(const LiscoField& ring, std
   return (true);
 }
 
-/// Whether ring numbers change along the rows and not from row to row.
-bool pcl::detail::LiscoMessageReader::rowsAreFirings(const LiscoField& ring) const {
+/// Whether ring numbers change along the rows rather than from row to row.
+bool pcl::detail::LiscoMessageReader::rowsAreFirings(const PCLPointField& ring) const {
   const std::size_t width = message_->width;
-  const auto ring_at = [&](std::size_t point) { return (readNumber(pointAt(point) + ring.offset, ring.datatype)); };
+  const auto ring_at = [&](std::size_t point) { return (readNumber(pointAt(point), ring)); };
   std::size_t same_along_rows = 0;
   std::size_t same_along_columns = 0;
   for (std::size_t point = 0; point + width < points_; ++point) {
@@ -376,7 +357,7 @@ void pcl::detail::LiscoMessageReader::copyPoint(index_t index, std::uint8_t* poi
     if (copy.is_same_type)
       std::memcpy(point + copy.to.offset, bytes + copy.from.offset, sizeOf(copy.to.datatype) * copy.to.count);
     else
-      writeNumber(readNumber(bytes + copy.from.offset, copy.from.datatype), point + copy.to.offset, copy.to.datatype);
+      writeNumber(readNumber(bytes, copy.from), point, copy.to);
 }
 
 bool pcl::mapLiscoClusters(const Indices& point_of_cell, std::vector<PointIndices>& clusters) {
@@ -403,8 +384,8 @@ bool pcl::mapLiscoClusters(const Indices& point_of_cell, std::vector<PointIndice
   }
   for (std::size_t point = 0; point < cluster_of_point.size(); ++point)
     if (cluster_of_point[point] != kNone)
-      clusters[cluster_of_point[point]].indices.push_back(static_cast<index_t>(point));  // there is room
-  // What extract () does: clusters by their first points, then PCL's own call.
+      clusters[cluster_of_point[point]].indices.push_back(static_cast<index_t>(point));
+  // The order of extract (): clusters by their first points, then PCL's own sort.
   std::sort(clusters.begin(), clusters.end(),
             [](const PointIndices& a, const PointIndices& b) { return (a.indices < b.indices); });
   std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);

@@ -166,8 +166,8 @@ TEST_F(LiscoCluster, RefusesBadFilesInOneLine) {
   expectRefusal("third.csv" + options, {"third.csv", "line 1"});
   expectRefusal("header.csv" + options, {"header.csv", "line 1", "lasers,steps,0"});
   expectRefusal("points.csv" + options, {"points.csv", "line 1", "make it a .pcd"});
-  expectRefusal("short.csv" + options, {"short.csv", "promises 4 cells"});
-  expectRefusal("long.csv" + options, {"long.csv", "goes on"});
+  expectRefusal("short.csv" + options, {"short.csv", "before the 4 cells"});
+  expectRefusal("long.csv" + options, {"long.csv", "more than the 1 cells"});
   expectRefusal("words.csv" + options, {"words.csv", "line 2"});
   expectRefusal("scan.xyz" + options, {"scan.xyz", "unknown ending"});
   expectRefusal("capture.pcap" + options, {"capture.pcap", "lisco_stream"});

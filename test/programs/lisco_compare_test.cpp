@@ -534,9 +534,10 @@ TEST_F(LiscoCompare, RefusesBadOptionsInOneLine) {
   for (const char* size : {"0", "-1", "ten"}) expectRefusal(scan + "--min-size " + size, {"--min-size must be"});
   for (const char* seconds : {"0", "-1", "nan", "x"})
     expectRefusal(scan + "--max-seconds " + seconds, {"--max-seconds must be"});
-  expectRefusal(scan + "--baselines pcl,unknown", {"--baselines knows no 'unknown'", "pcl-octree", "lisco"});
-  expectRefusal(scan + "--baselines ''", {"--baselines knows no ''"});
-  expectRefusal(scan + "--must-agree unknown", {"--must-agree knows no 'unknown'", "paper"});
+  expectRefusal(scan + "--baselines pcl,unknown",
+                {"--baselines: there is no baseline 'unknown'", "pcl-octree", "lisco"});
+  expectRefusal(scan + "--baselines ''", {"--baselines: there is no baseline ''"});
+  expectRefusal(scan + "--must-agree unknown", {"--must-agree: there is no baseline 'unknown'", "paper"});
   expectRefusal(scan + "--baselines pcl,lisco --must-agree grid", {"--must-agree", "grid", "--baselines"});
   for (const char* ground : {"low", "nan", "walls=", "walls=low", "''"})
     expectRefusal(scan + "--ground-z " + ground, {"--ground-z must be a number"});

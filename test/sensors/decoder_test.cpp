@@ -295,9 +295,7 @@ TEST_F(DecoderTest, AppliesTheDelaysOfLasers) {
     for (std::size_t row = 0; row < column.cells.size(); ++row)
       EXPECT_NEAR(azimuthOf(column.cells[row]), 0.4 * c.share * static_cast<double>(decoder.model().lasers[row].number),
                   1e-4);
-    EXPECT_NEAR(decoder.stagger(), 0.4 * c.share * static_cast<double>(encoder.lasers() - 1), 1e-9);
   }
-  EXPECT_NEAR(Decoder(makeSensorModel("vls128")).stagger(), 2 * 6.354, 1e-9);
 }
 
 TEST_F(DecoderTest, FollowsChangesOfSpeed) {
@@ -347,7 +345,7 @@ TEST_F(DecoderTest, RefusesUnknownSensorsAndBadCalibrations) {
   EXPECT_NE(refusal("").find("is no calibration file"), std::string::npos);
   EXPECT_NE(refusal(good.substr(0, good.size() / 2)).find("is no calibration file"), std::string::npos);
   EXPECT_NE(refusal("<boost_serialization/>").find("is no calibration file of an HDL-64E"), std::string::npos);
-  EXPECT_EQ(refusal(calibrationXml(usualCalibration, 63)), "says nothing of laser 63");
+  EXPECT_EQ(refusal(calibrationXml(usualCalibration, 63)), "does not describe laser 63");
   EXPECT_EQ(refusal(calibrationXml(usualCalibration, 65)), "there is no laser 64");
   for (const std::string number : {"nan", "1e999", "", "3 degrees", "0x1"}) {
     std::string bad = good;

@@ -17,12 +17,10 @@
 #include "lisco/export.h"
 #include "lisco/return.h"
 
-namespace pcl {
+namespace pcl::detail {
 
-namespace detail {
-
-/** \brief What LiscoClusterExtraction and extractLiscoClusters () share: reads a PCL cloud into the clustering engine
- * and writes its subclusters as PCL's clusters. Keeps its memory from cloud to cloud.
+/** \brief The part common to LiscoClusterExtraction and extractLiscoClusters (): reads a PCL cloud into the clustering
+ * engine and writes its subclusters as PCL's clusters. Keeps its memory from cloud to cloud.
  */
 class LISCO_EXPORT LiscoCloudClusterer {
  public:
@@ -32,11 +30,10 @@ class LISCO_EXPORT LiscoCloudClusterer {
   LiscoCloudClusterer& operator=(const LiscoCloudClusterer& other);
 
   /** \brief Clusters a cloud.
-   * \param[in] indices which of its points; nullptr: all
+   * \param[in] indices the points to cluster; nullptr: all
    * \param[in] threads how many may share the work; 0: one for each core
    * \param[in] caller named in front of a PCL_ERROR
-   * \return false, after a PCL_ERROR, if an index is not within the cloud or the cloud is too large for
-   * index_t
+   * \return false, after a PCL_ERROR, if an index is not within the cloud or the cloud is too large for index_t
    */
   template <typename PointT>
   bool cluster(const PointCloud<PointT>& cloud, const Indices* indices, float tolerance, unsigned int threads,
@@ -50,8 +47,8 @@ class LISCO_EXPORT LiscoCloudClusterer {
     return (clusterPoints(layout, lisco::CellSource(point_at), indices, tolerance, threads, caller));
   }
 
-  /** \brief Appends the clusters of the last cloud whose size is within [min_size, max_size], in the order in
-   * which their first points appear in the indices; the indices of each ascend.
+  /** \brief Appends the clusters of the last cloud whose size is within [min_size, max_size], in the order in which
+   * their first points appear in the indices; the indices of each ascend.
    */
   void collect(const Indices* indices, const PCLHeader& header, uindex_t min_size, uindex_t max_size,
                std::vector<PointIndices>& clusters);
@@ -73,6 +70,4 @@ class LISCO_EXPORT LiscoCloudClusterer {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace detail
-
-}  // namespace pcl
+}  // namespace pcl::detail

@@ -38,14 +38,13 @@ namespace pcl {
  *
  * extract () gives, byte for byte, the vector that EuclideanClusterExtraction with
  * pcl::search::KdTree<PointT> (false) gives: the same clusters, in the same order, with the same indices and
- * headers. Only where the rounding of PCL's tree misses a pair of neighbours (planted cases, tolerances over 1e19) are
- * PCL's clusters parts of these, the connected components of d2 < r2 in float: doc/contract.md. What it skips, PCL
- * cannot use: points with a NaN or infinite coordinate, and points that are exactly (0, 0, 0), which many drivers write
- * for "no return". They are skipped whatever the cloud's is_dense says, and appear in no cluster.
+ * headers. Clusters are the connected components of d2 < r2 in float; PCL's are parts of them only where the rounding
+ * of its tree misses a pair of neighbours (planted cases, tolerances over 1e19): doc/contract.md. Points with a NaN or
+ * infinite coordinate are skipped, as are those that are exactly (0, 0, 0), which many drivers write for "no return":
+ * they are in no cluster, whether or not the cloud is_dense.
  *
- * Any cloud will do. It is fastest on organized scans (height = lasers, width = steps of the rotation); of an
- * unorganized cloud, the points in the sensor's order are better than shuffled ones. Using one object for
- * many scans saves allocations.
+ * Any cloud is accepted. It is fastest on organized scans (height = lasers, width = steps of the rotation), and faster
+ * on unorganized clouds in the sensor's order than on shuffled ones. Using one object for many scans saves allocations.
  *
  * After H. Najdataei, Y. Nikolakopoulos, V. Gulisano, M. Papatriantafilou: "Lisco: A Continuous Approach in
  * LiDAR Point-cloud Clustering", 2018. \ingroup segmentation
@@ -82,7 +81,7 @@ class LiscoClusterExtraction : public PCLBase<PointT> {
    * labels.
    */
   inline void extract(std::vector<PointIndices>& clusters, Labels& labels) {
-    // Here, not in the library: the image's memory belongs to the caller; see LiscoColumnStore.
+    // In the header, as the image's memory is the caller's: see LiscoColumnStream::allocate ().
     labels = Labels();
     if (input_) {
       const bool organized = static_cast<std::size_t>(input_->width) * input_->height == input_->size();
@@ -97,11 +96,11 @@ class LiscoClusterExtraction : public PCLBase<PointT> {
   }
 
   /** \brief Accepted for compatibility: kept, never searched, and not given the input cloud. The clusters are those of
-   * an exact kd-tree over (x, y, z). A PCL_WARN says so, once per process and kind, if \a tree is a pcl::search::KdTree
-   * with another answer: its epsilon is above 0, or its point representation is not (x, y, z).
+   * an exact kd-tree over (x, y, z). If \a tree is a pcl::search::KdTree with other clusters, since its epsilon is
+   * above 0 or its point representation is not (x, y, z), there is a PCL_WARN, once per process and kind.
    */
   inline void setSearchMethod(const KdTreePtr& tree) {
-    detail::LiscoSearchMethodCheck::check<PointT>(tree.get(), "pcl::LiscoClusterExtraction::setSearchMethod");
+    detail::checkLiscoSearchMethod<PointT>(tree.get(), "pcl::LiscoClusterExtraction::setSearchMethod");
     tree_ = tree;
   }
 
@@ -113,28 +112,24 @@ class LiscoClusterExtraction : public PCLBase<PointT> {
    * point is a cluster of its own.
    */
   inline void setClusterTolerance(double tolerance) { cluster_tolerance_ = tolerance; }
-
   /** \brief Get the cluster tolerance in metres. */
   inline double getClusterTolerance() const { return (cluster_tolerance_); }
 
   /** \brief Set the least number of points of a cluster (default 1). */
   inline void setMinClusterSize(pcl::uindex_t min_cluster_size) { min_pts_per_cluster_ = min_cluster_size; }
-
   /** \brief Get the least number of points of a cluster. */
   inline pcl::uindex_t getMinClusterSize() const { return (min_pts_per_cluster_); }
 
   /** \brief Set the largest number of points of a cluster (default: no limit). */
   inline void setMaxClusterSize(pcl::uindex_t max_cluster_size) { max_pts_per_cluster_ = max_cluster_size; }
-
   /** \brief Get the largest number of points of a cluster. */
   inline pcl::uindex_t getMaxClusterSize() const { return (max_pts_per_cluster_); }
 
-  /** \brief Set how many threads share the work of extract () (default 1). It changes nothing but the time.
+  /** \brief Set how many threads share the work of extract () (default 1). Affects the time only.
    * \param[in] nr_threads 0: one for each core. No more are used than the scan has work for (one for 64 columns), nor
    * more than 256.
    */
   inline void setNumberOfThreads(unsigned int nr_threads = 0) { threads_ = nr_threads; }
-
   /** \brief Get the number of threads, as it was set. */
   inline unsigned int getNumberOfThreads() const { return (threads_); }
 
@@ -145,23 +140,16 @@ class LiscoClusterExtraction : public PCLBase<PointT> {
   using BasePCLBase::initCompute;
   using BasePCLBase::input_;
 
-  /** \brief The search method given to setSearchMethod (), not used. */
-  KdTreePtr tree_;
-
-  /** \brief The cluster tolerance in metres. */
-  double cluster_tolerance_ = 0;
-
-  /** \brief The least number of points of a cluster. */
-  pcl::uindex_t min_pts_per_cluster_ = 1;
-
-  /** \brief The largest number of points of a cluster. */
-  pcl::uindex_t max_pts_per_cluster_ = std::numeric_limits<pcl::uindex_t>::max();
+  KdTreePtr tree_;                         ///< given to setSearchMethod (), not used
+  double cluster_tolerance_ = 0;           ///< metres
+  pcl::uindex_t min_pts_per_cluster_ = 1;  ///< least number of points of a cluster
+  pcl::uindex_t max_pts_per_cluster_ = std::numeric_limits<pcl::uindex_t>::max();  ///< largest number of points
 
   /** \brief Class getName method. */
   virtual std::string getClassName() const { return ("LiscoClusterExtraction"); }
 
  private:
-  /** \brief Appends the clusters, not yet sorted by size, or clears the vector as extract () says.
+  /** \brief Appends the clusters, not yet sorted by size, or clears the vector as extract () does.
    * \return how many were there before
    */
   std::size_t appendClusters(std::vector<PointIndices>& clusters);
@@ -176,7 +164,8 @@ class LiscoClusterExtraction : public PCLBase<PointT> {
 };
 
 /** \brief Extract Euclidean clusters as LiscoClusterExtraction does, from a whole cloud. The counterpart of
- * pcl::extractEuclideanClusters (cloud, tree, tolerance, clusters, min, max): clusters are appended, not sorted by size.
+ * pcl::extractEuclideanClusters (cloud, tree, tolerance, clusters, min, max): clusters are appended, not sorted by
+ * size.
  * \param[in] cloud the scan
  * \param[in] tolerance metres
  * \param[in,out] clusters receives the clusters after those it already holds, in the order of their first points
@@ -205,7 +194,7 @@ inline void extractLiscoClusters(const PointCloud<PointT>& cloud, const typename
                                  float tolerance, std::vector<PointIndices>& clusters,
                                  unsigned int min_pts_per_cluster = 1,
                                  unsigned int max_pts_per_cluster = (std::numeric_limits<int>::max)()) {
-  detail::LiscoSearchMethodCheck::check<PointT>(tree.get(), "pcl::extractLiscoClusters");
+  detail::checkLiscoSearchMethod<PointT>(tree.get(), "pcl::extractLiscoClusters");
   extractLiscoClusters(cloud, tolerance, clusters, min_pts_per_cluster, max_pts_per_cluster);
 }
 
@@ -217,7 +206,7 @@ inline void extractLiscoClusters(const PointCloud<PointT>& cloud, const Indices&
                                  const typename search::Search<PointT>::Ptr& tree, float tolerance,
                                  std::vector<PointIndices>& clusters, unsigned int min_pts_per_cluster = 1,
                                  unsigned int max_pts_per_cluster = (std::numeric_limits<int>::max)()) {
-  detail::LiscoSearchMethodCheck::check<PointT>(tree.get(), "pcl::extractLiscoClusters");
+  detail::checkLiscoSearchMethod<PointT>(tree.get(), "pcl::extractLiscoClusters");
   extractLiscoClusters(cloud, indices, tolerance, clusters, min_pts_per_cluster, max_pts_per_cluster);
 }
 

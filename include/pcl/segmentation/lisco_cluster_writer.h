@@ -11,17 +11,15 @@
 #include <pcl/PointIndices.h>
 #include <pcl/segmentation/lisco_pcl_version.h>
 
-namespace pcl {
+namespace pcl::detail {
 
-namespace detail {
-
-/** \brief Writes subclusters as PCL's clusters: those of the sizes asked for, in the order in which they are named for the
- * first time. Keeps its memory.
+/** \brief Writes subclusters of accepted sizes as PCL's clusters, in the order of their first indicesOf (). Keeps its
+ * memory.
  */
 class LiscoClusterWriter {
  public:
-  /** \brief Clusters will be appended to a vector.
-   * \param[in] subclusters how many there are, whatever their sizes
+  /** \brief Starts appending clusters to a vector.
+   * \param[in] subclusters their number, including those of sizes not accepted
    */
   void start(std::size_t subclusters, const PCLHeader& header, uindex_t min_size, uindex_t max_size,
              std::vector<PointIndices>& clusters) {
@@ -33,9 +31,9 @@ class LiscoClusterWriter {
     first_cluster_ = clusters.size();
   }
 
-  /** \brief Where the indices of a subcluster go, with room for all of them; nullptr if it is not of a size asked for.
-   * Valid until the next call.
-   * \param[in] size its number of points
+  /** \brief The cluster's indices, with capacity for all of them; nullptr if the size is not accepted. Valid until the
+   * next call.
+   * \param[in] size the subcluster's number of points
    */
   Indices* indicesOf(std::uint32_t subcluster, std::uint32_t size) {
     std::uint32_t& cluster = cluster_of_subcluster_[subcluster];
@@ -62,6 +60,4 @@ class LiscoClusterWriter {
   std::size_t first_cluster_ = 0;
 };
 
-}  // namespace detail
-
-}  // namespace pcl
+}  // namespace pcl::detail

@@ -12,11 +12,9 @@
 #include <pcl/point_cloud.h>
 #include <pcl/segmentation/lisco_pcl_version.h>
 
-namespace pcl {
+namespace pcl::detail {
 
-namespace detail {
-
-/** \brief What the classes that are given one column after the other have in common. Errors are reported by PCL_ERROR
+/** \brief The part common to the classes that receive one column after the other. Errors are reported by PCL_ERROR
  * and have no other effect. An exception (memory was refused, or a callback threw) ends the rotation or stream, unless
  * it comes from writing clusters out: no column is taken and nothing is delivered until the next one begins.
  */
@@ -31,19 +29,16 @@ class LiscoColumnStream {
    * cluster of its own.
    */
   inline void setClusterTolerance(double tolerance) { cluster_tolerance_ = tolerance; }
-
   /** \brief Get the cluster tolerance in metres. */
   inline double getClusterTolerance() const { return (cluster_tolerance_); }
 
   /** \brief Set the least number of points of a cluster (default 1). */
   inline void setMinClusterSize(pcl::uindex_t min_cluster_size) { min_pts_per_cluster_ = min_cluster_size; }
-
   /** \brief Get the least number of points of a cluster. */
   inline pcl::uindex_t getMinClusterSize() const { return (min_pts_per_cluster_); }
 
   /** \brief Set the largest number of points of a cluster (default: no limit). */
   inline void setMaxClusterSize(pcl::uindex_t max_cluster_size) { max_pts_per_cluster_ = max_cluster_size; }
-
   /** \brief Get the largest number of points of a cluster. */
   inline pcl::uindex_t getMaxClusterSize() const { return (max_pts_per_cluster_); }
 
@@ -51,22 +46,20 @@ class LiscoColumnStream {
    * always have fewer.
    */
   inline void setNumberOfLasers(std::size_t lasers) { lasers_ = lasers; }
-
   /** \brief Get the number of lasers, as it was set. */
   inline std::size_t getNumberOfLasers() const { return (lasers_); }
 
   /** \brief Set the header that clusters and clouds are given from now on. */
   inline void setHeader(const PCLHeader& header) { header_ = header; }
-
   /** \brief Get the header of clusters and clouds. */
   inline const PCLHeader& getHeader() const { return (header_); }
 
  protected:
-  /** \brief Makes room for an organized cloud.
+  /** \brief Allocates an organized cloud.
    *
-   * Eigen's allocator works differently where the code is compiled for AVX, so what one side has allocated by it (every
-   * PointCloud), the other side must not free. The clouds of users are therefore allocated here, by their compiler, and
-   * the library fills them.
+   * Eigen's allocator, which every PointCloud uses, works differently in code compiled for AVX: the library must not
+   * free what its user has allocated, nor the reverse. Users' clouds are therefore allocated here, by their compiler,
+   * and filled by the library.
    */
   static inline void allocate(std::size_t width, std::size_t height, PointCloud& cloud) {
     cloud.points.resize(width * height);
@@ -82,6 +75,4 @@ class LiscoColumnStream {
   PCLHeader header_;
 };
 
-}  // namespace detail
-
-}  // namespace pcl
+}  // namespace pcl::detail

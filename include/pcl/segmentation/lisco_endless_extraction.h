@@ -38,9 +38,9 @@ struct LiscoEndlessCluster;
  * \endcode
  *
  * Returns are compared only within less than half a turn of each other, so the next rotation's view of the same wall is
- * a new cluster; a cluster that lasts a whole turn is delivered in pieces. lisco::EndlessClusterer says precisely which
+ * a new cluster; a cluster that lasts a whole turn is delivered in parts. lisco::EndlessClusterer defines which
  * returns are neighbours. The azimuth of a return must be near that of its column, as setStartAzimuth () and
- * setClockwise () tell it: see setStagger (). Columns are as for LiscoStreamExtraction. \ingroup segmentation
+ * setClockwise () define it: see setStagger (). Columns are as for LiscoStreamExtraction. \ingroup segmentation
  */
 template <typename PointT>
 class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
@@ -48,19 +48,21 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
 
  public:
   using PointCloud = typename Base::PointCloud;                 ///< of its points
-  using Cluster = LiscoEndlessCluster<PointT>;                  ///< what is delivered
+  using Cluster = LiscoEndlessCluster<PointT>;                  ///< delivered by the callback
   using ClusterCallback = std::function<void(const Cluster&)>;  ///< receives it
 
-  /** \brief Add the next column; delivers what it cannot reach.
-   * \param[in] points what the lasers measured; copied
+  /** \brief Add the next column; delivers the clusters that it cannot reach.
+   * \param[in] points one of each laser; copied
    * \param[in] count number of rows, may be 0
    * \param[in] position turns of the sensor since any moment, never less than that of the column before
    * \return false, after a PCL_ERROR and without effect: before beginStream (); if there are more rows than lasers
    * declared; if the position is less than the one before, not finite, or beyond 1e12 turns
    */
-  bool addColumn(const PointT* points, std::size_t count, double position);
+  inline bool addColumn(const PointT* points, std::size_t count, double position) {
+    return (addColumnAt(points, count, &position));
+  }
 
-  /** \brief Begin a stream. Of the last one nothing more is delivered.
+  /** \brief Begin a stream. Discards clusters of the last one not yet delivered.
    * \return false, after a PCL_ERROR and without effect, if the stagger is not within 0..pi/8, the sensor origin is not
    * finite, or the start azimuth is not within -1e6..1e6 radians
    */
@@ -69,17 +71,19 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
   /** \brief Add a column, 1 / getColumnsPerTurn () turns after the column before, at 0 for the first one. False, after
    * a PCL_ERROR and without effect, if the number of columns of a turn is not known.
    */
-  bool addColumn(const PointT* points, std::size_t count);
+  inline bool addColumn(const PointT* points, std::size_t count) { return (addColumnAt(points, count, nullptr)); }
 
   /** \brief The same; the points of the cloud are the rows. */
-  bool addColumn(const PointCloud& column, double position);
+  inline bool addColumn(const PointCloud& column, double position) {
+    return (addColumn(column.points.data(), column.size(), position));
+  }
   /** \brief The same without a position. */
-  bool addColumn(const PointCloud& column);
+  inline bool addColumn(const PointCloud& column) { return (addColumn(column.points.data(), column.size())); }
 
-  /** \brief Deliver what can be delivered with the columns so far, without waiting for a block of them. */
+  /** \brief Deliver the clusters that the columns so far complete, without waiting for a block of them. */
   void update();
 
-  /** \brief The stream has ended: deliver all. More columns may follow; they have nothing to do with those before. */
+  /** \brief End the stream: deliver all clusters. More columns may follow; they are a new stream. */
   void finish();
 
   LiscoEndlessExtraction();
@@ -87,12 +91,12 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
   LiscoEndlessExtraction(const LiscoEndlessExtraction&) = delete;
   LiscoEndlessExtraction& operator=(const LiscoEndlessExtraction&) = delete;
 
-  /** \brief Set the receiver of the clusters. A cluster is valid during the call: copy what is to last. The receiver
-   * must neither throw nor call this object. Takes effect at once.
+  /** \brief Set the receiver of the clusters. A cluster is valid during the call only. The receiver must neither throw
+   * nor call this object. Takes effect at once.
    */
   inline void setClusterCallback(ClusterCallback callback) {
     Receiver receiver;
-    // The cluster is made here, not in the library: see LiscoColumnStream::allocate ().
+    // Made in the header, not in the library: see LiscoColumnStream::allocate ().
     if (callback)
       receiver = [this, callback = std::move(callback), cluster = Cluster()](
                      const lisco::EndlessCluster& delivered, const PointT* points,
@@ -112,38 +116,35 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
     setReceiver(std::move(receiver));
   }
 
-  /** \brief Number of returns since beginStream () of the columns that have been worked on. */
+  /** \brief Number of returns since beginStream (), of the columns clustered so far. */
   std::uint64_t getNumberOfReturns() const;
 
-  /** \brief How many of these are outliers: their azimuth differs from that of their column by more than the stagger.
-   * Many of them are the sign of a wrong start azimuth, sense of rotation, position or stagger.
+  /** \brief Number of outliers among them: returns whose azimuth differs from that of their column by more than the
+   * stagger. Many outliers indicate a wrong start azimuth, sense of rotation, position or stagger.
    */
   std::uint64_t getNumberOfOutliers() const;
 
-  /** \brief Number of columns in memory, of about a turn and a half at the most. */
+  /** \brief Number of columns in memory, about a turn and a half at most. */
   std::size_t getNumberOfColumnsHeld() const;
 
   // All of these take effect when the next stream begins, sizes as well.
 
-  /** \brief Position of the sensor, metres, in the coordinates of the points (default: the origin), from which azimuths
-   * are seen.
+  /** \brief Position of the sensor, metres, in the coordinates of the points (default: the origin): the centre of the
+   * azimuths.
    */
   inline void setSensorOrigin(const Eigen::Vector4f& origin) { parameters_.origin = {origin[0], origin[1], origin[2]}; }
-
-  /** \brief Get where the sensor stands. */
+  /** \brief Get the position of the sensor. */
   inline Eigen::Vector4f getSensorOrigin() const {
     return (Eigen::Vector4f(parameters_.origin[0], parameters_.origin[1], parameters_.origin[2], 0.0F));
   }
 
   /** \brief Set whether the sensor turns clockwise, seen from above (default false). */
   inline void setClockwise(bool clockwise) { parameters_.clockwise = clockwise; }
-
   /** \brief Get whether the sensor turns clockwise. */
   inline bool getClockwise() const { return (parameters_.clockwise); }
 
   /** \brief Set the azimuth of position 0, radians, counter-clockwise from the x axis (default 0). */
   inline void setStartAzimuth(double azimuth) { parameters_.start_azimuth = azimuth; }
-
   /** \brief Get the azimuth of position 0. */
   inline double getStartAzimuth() const { return (parameters_.start_azimuth); }
 
@@ -151,23 +152,20 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
    * Clusters are delivered the later, the larger it is. A return that differs by more is a cluster of its own.
    */
   inline void setStagger(double stagger) { parameters_.stagger = stagger; }
-
   /** \brief Get by how much a return's azimuth may differ from that of its column. */
   inline double getStagger() const { return (parameters_.stagger); }
 
   /** \brief Set the number of columns of a turn (default 0: unknown), so that columns can be added without a position.
    */
   inline void setColumnsPerTurn(double columns) { parameters_.columns_per_turn = columns; }
-
   /** \brief Get the number of columns of a turn. */
   inline double getColumnsPerTurn() const { return (parameters_.columns_per_turn); }
 
-  /** \brief Set how many columns are worked on together, 1..64 (default 16). The fewer, the sooner clusters are
+  /** \brief Set how many columns are clustered together, 1..64 (default 16). The fewer, the sooner clusters are
    * delivered.
    */
   inline void setBlockColumns(std::size_t columns) { parameters_.block_columns = columns; }
-
-  /** \brief Get how many columns are worked on together. */
+  /** \brief Get how many columns are clustered together. */
   inline std::size_t getBlockColumns() const { return (parameters_.block_columns); }
 
  private:
@@ -177,7 +175,7 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
   using Base::max_pts_per_cluster_;
   using Base::min_pts_per_cluster_;
 
-  /** \brief Makes a user's cluster of the engine's, its points and their cells. */
+  /** \brief Converts a cluster of the engine, its points and their cells to the user's. */
   using Receiver =
       std::function<void(const lisco::EndlessCluster&, const PointT* points, const typename Cluster::Cell* cells)>;
 
@@ -206,8 +204,8 @@ struct LiscoEndlessCluster {
   std::vector<Cell> cells;        ///< of each of them
   double first_position;          ///< of its first column, turns
   double last_position;           ///< of its last column, less than a turn after the first
-  bool is_cut;                    ///< it was delivered for having lasted a whole turn, perhaps before its end
-  bool is_continued;              ///< it goes on from a cut one
+  bool is_cut;                    ///< delivered after a whole turn, possibly before its end
+  bool is_continued;              ///< the continuation of a cut cluster
 };
 
 }  // namespace pcl

@@ -17,8 +17,8 @@
 
 namespace pcl {
 
-/** \brief Euclidean clusters of a rotating LiDAR's scan, while the sensor turns: the work is done as the columns
- * arrive, the subclusters so far can be had at any moment, and the clusters are there right after the last column.
+/** \brief Euclidean clusters of a rotating LiDAR's scan, while the sensor turns: columns are clustered as they arrive,
+ * the subclusters so far are available at any time, and the clusters right after the last column.
  *
  * \code
  * pcl::LiscoStreamExtraction<pcl::PointXYZI> stream;
@@ -26,7 +26,7 @@ namespace pcl {
  * stream.setMinClusterSize (10);
  * stream.beginRotation ();
  * while (...)
- *   stream.addColumn (points, 64);                         // what the lasers measured in this step
+ *   stream.addColumn (points, 64);                         // the points that the lasers measured in this step
  * std::vector<pcl::PointIndices> clusters;
  * pcl::PointCloud<pcl::PointXYZI> cloud;                   // organized: a row for each laser, a column for each step
  * stream.endRotation (clusters, cloud);
@@ -49,11 +49,11 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
  public:
   using PointCloud = typename Base::PointCloud;  ///< of its points
 
-  /** \brief Begin a rotation. One that has not been ended is forgotten. */
+  /** \brief Begin a rotation. Discards one that has not been ended. */
   void beginRotation();
 
   /** \brief Add the next column of the rotation.
-   * \param[in] points what the lasers measured; copied
+   * \param[in] points one of each laser; copied
    * \param[in] count number of rows, may be 0
    * \return false, after a PCL_ERROR and without effect: outside a rotation; if there are more rows than lasers
    * declared; if the organized cloud would have more points than pcl::index_t can number
@@ -61,17 +61,17 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
   bool addColumn(const PointT* points, std::size_t count);
 
   /** \brief The same; the points of the cloud are the rows. */
-  bool addColumn(const PointCloud& column);
+  inline bool addColumn(const PointCloud& column) { return (addColumn(column.points.data(), column.size())); }
 
   /** \brief End the rotation.
    * \param[in,out] clusters receives the clusters after those it already holds; then all are sorted by size, largest
-   * first, as LiscoClusterExtraction::extract () does it. Cleared if there was not one cell.
+   * first, as LiscoClusterExtraction::extract () does it. Cleared if the rotation has no cells.
    * \return false, after a PCL_ERROR and with \a clusters cleared, if no rotation has begun
    */
   bool endRotation(std::vector<PointIndices>& clusters);
 
   /** \brief The same, and the organized cloud.
-   * \param[out] cloud the one the indices are of; empty if no rotation has begun
+   * \param[out] cloud the one that the indices refer to; empty if no rotation has begun
    */
   inline bool endRotation(std::vector<PointIndices>& clusters, PointCloud& cloud) {
     const bool ended = endRotation(clusters);
@@ -84,7 +84,7 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
 
   LiscoStreamExtraction();
   ~LiscoStreamExtraction();
-  /** \brief A copy goes on from the same column. */
+  /** \brief A copy continues from the same column. */
   LiscoStreamExtraction(const LiscoStreamExtraction& other);
   /** \brief The same. */
   LiscoStreamExtraction& operator=(const LiscoStreamExtraction& other);
@@ -92,7 +92,7 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
   /** \brief Number of columns added, which is the width of the cloud so far. */
   std::size_t getNumberOfColumns() const;
 
-  // The looks: at the columns so far of this rotation, or at the last rotation until the next one begins.
+  // These describe the columns so far of this rotation, or the last rotation until the next one begins.
 
   /** \brief Number of subclusters, of any size. */
   std::size_t getNumberOfSubclusters();
@@ -107,9 +107,9 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
    */
   pcl::index_t getSubcluster(std::size_t row, std::size_t column);
 
-  /** \brief The subclusters of at least the least and at most the largest size: the clusters, if the rotation were
-   * over. The width of the cloud is the number of columns so far, and changes the points' indices with every column.
-   * \param[out] clusters as of endRotation (); what it held is forgotten
+  /** \brief The subclusters of accepted sizes: the clusters if the rotation ended here. The width of the cloud is the
+   * number of columns so far, and changes the points' indices with every column.
+   * \param[out] clusters as of endRotation (); replaces former content
    */
   void getSubclusters(std::vector<PointIndices>& clusters);
 
@@ -126,18 +126,17 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
    * only, and is the sensor_origin_ of the cloud.
    */
   inline void setSensorOrigin(const Eigen::Vector4f& origin) { sensor_origin_ = {origin[0], origin[1], origin[2]}; }
-
-  /** \brief Get where the sensor stands. */
+  /** \brief Get the position of the sensor. */
   inline Eigen::Vector4f getSensorOrigin() const {
     return (Eigen::Vector4f(sensor_origin_[0], sensor_origin_[1], sensor_origin_[2], 0.0F));
   }
 
-  /** \brief Set how many columns are worked on together, 1..64 (default 64, which is the least work). The fewer, the
-   * less is left to do for a look or at the end. Takes effect when the next rotation begins; it changes no result.
+  /** \brief Set how many columns are clustered together, 1..64 (default 64, which is the least work). The fewer, the
+   * less work is left for subclusters in between and for the end. Takes effect when the next rotation begins; it
+   * changes no result.
    */
   inline void setBlockColumns(std::size_t columns) { block_columns_ = columns; }
-
-  /** \brief Get how many columns are worked on together. */
+  /** \brief Get how many columns are clustered together. */
   inline std::size_t getBlockColumns() const { return (block_columns_); }
 
  private:
@@ -146,7 +145,6 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
   using Base::lasers_;
 
   void update();
-  void learn();
   std::size_t numberOfRows() const;
   /** \brief Fills the points of getCloud (). */
   void copyColumns(PointT* points) const;

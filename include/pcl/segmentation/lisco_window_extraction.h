@@ -41,32 +41,32 @@ class LiscoWindowExtraction : public detail::LiscoColumnStream<PointT> {
  public:
   using PointCloud = typename Base::PointCloud;  ///< of its points
 
-  /** \brief Begin a stream. The last one is forgotten.
+  /** \brief Begin a stream. Discards the last one.
    * \return false, after a PCL_ERROR and without effect, if the window is no multiple, 1 or more, of the hop
    */
   bool beginStream();
 
   /** \brief Add the next column.
-   * \param[in] points what the lasers measured; copied
+   * \param[in] points one of each laser; copied
    * \param[in] count number of rows, may be 0
    * \return whether a window ends with this column. The first windows are shorter: all columns so far. Also false,
-   * after a PCL_ERROR and without effect: before beginStream (); if there are more rows than lasers declared; if the window
-   * would have more points than pcl::index_t can number
+   * after a PCL_ERROR and without effect: before beginStream (); if there are more rows than lasers declared; if the
+   * window would have more points than pcl::index_t can number
    */
   bool addColumn(const PointT* points, std::size_t count);
 
   /** \brief The same; the points of the cloud are the rows. */
-  bool addColumn(const PointCloud& column);
+  inline bool addColumn(const PointCloud& column) { return (addColumn(column.points.data(), column.size())); }
 
   /** \brief Extract the clusters of the last window that ended, until the next one ends.
    * \param[in,out] clusters receives the clusters after those it already holds; then all are sorted by size, largest
-   * first, as LiscoClusterExtraction::extract () does it. Cleared if the window has not one cell.
+   * first, as LiscoClusterExtraction::extract () does it. Cleared if the window has no cells.
    * \return false, after a PCL_ERROR and with \a clusters cleared, if no window has ended
    */
   bool extract(std::vector<PointIndices>& clusters);
 
-  /** \brief The organized cloud of the last window that ended, until the next one ends: what the indices are of. Empty
-   * if no window has ended.
+  /** \brief The organized cloud that the indices refer to, of the last window that ended, until the next one ends.
+   * Empty if no window has ended.
    */
   inline void getWindow(PointCloud& cloud) const {
     Base::allocate(getNumberOfColumns(), numberOfRows(), cloud);
@@ -76,7 +76,7 @@ class LiscoWindowExtraction : public detail::LiscoColumnStream<PointT> {
 
   LiscoWindowExtraction();
   ~LiscoWindowExtraction();
-  /** \brief A copy goes on from the same column. */
+  /** \brief A copy continues from the same column. */
   LiscoWindowExtraction(const LiscoWindowExtraction& other);
   /** \brief The same. */
   LiscoWindowExtraction& operator=(const LiscoWindowExtraction& other);
@@ -87,13 +87,11 @@ class LiscoWindowExtraction : public detail::LiscoColumnStream<PointT> {
   /** \brief Set W, the number of columns of a window: a multiple of the hop. Takes effect when the next stream begins.
    */
   inline void setWindowSize(std::size_t columns) { window_size_ = columns; }
-
   /** \brief Get the number of columns of a window. */
   inline std::size_t getWindowSize() const { return (window_size_); }
 
   /** \brief Set H, after how many columns the next window ends. Takes effect when the next stream begins. */
   inline void setHop(std::size_t columns) { hop_ = columns; }
-
   /** \brief Get after how many columns the next window ends. */
   inline std::size_t getHop() const { return (hop_); }
 

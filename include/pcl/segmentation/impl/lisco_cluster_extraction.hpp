@@ -39,8 +39,8 @@ template <typename PointT>
 void pcl::LiscoClusterExtraction<PointT>::extractWithLabels(std::vector<PointIndices>& clusters, Label* labels) {
   const std::size_t first = appendClusters(clusters);
 
-  // The same sort on the sizes alone moves them as it moves the clusters, which tells where each came from:
-  // the vector may hold clusters of other clouds, from calls before this one.
+  // The same sort on the sizes alone permutes them as it permutes the clusters, which identifies the new ones: the
+  // vector may hold clusters of other clouds, from earlier calls.
   struct Origin {
     std::size_t size, place;
   };

@@ -4,7 +4,6 @@
 
 #include "lisco/cxx17.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -61,7 +60,7 @@ bool pcl::LiscoEndlessExtraction<PointT>::beginStream() {
   parameters.min_size = min_pts_per_cluster_;
   parameters.max_size = max_pts_per_cluster_;
   const bool begun = state_->begun;
-  state_->begun = false;  // unless nothing is thrown, here and below
+  state_->begun = false;  // stays so after an exception, here and below
   try {
     state_->clusterer.begin(
         parameters, [state = state_.get()](const lisco::EndlessCluster& delivered) { state->deliver(delivered); });
@@ -71,8 +70,7 @@ bool pcl::LiscoEndlessExtraction<PointT>::beginStream() {
     return (false);
   }
   state_->columns_per_turn = parameters.columns_per_turn;
-  state_->store.clear();
-  state_->most_rows = 0;
+  state_->clear();
   state_->begun = true;
   return (true);
 }
@@ -82,6 +80,10 @@ bool pcl::LiscoEndlessExtraction<PointT>::addColumnAt(const PointT* points, std:
                                                       const double* given_position) {
   const char* const caller = "pcl::LiscoEndlessExtraction::addColumn";
   if (!state_->accepts(points, count, state_->store.size() + 1, lasers_, caller)) return (false);
+  if (!given_position && !(state_->columns_per_turn > 0)) {
+    PCL_ERROR("[%s] A column without a position, and the number of columns of a turn is not known.\n", caller);
+    return (false);
+  }
   const double position = given_position ? *given_position : state_->clusterer.nextPosition();
   if (!(std::fabs(position) <= lisco::EndlessParameters::kMaxPosition)) {
     PCL_ERROR("[%s] A position of %g turns.\n", caller, position);
@@ -92,44 +94,15 @@ bool pcl::LiscoEndlessExtraction<PointT>::addColumnAt(const PointT* points, std:
               state_->store.positionOf(state_->store.endColumn() - 1));
     return (false);
   }
-  state_->begun = false;
-  state_->most_rows = std::max(state_->most_rows, count);
-  const std::uint32_t first = state_->store.add(points, count, position);
-  const lisco::Return* const cells = state_->namedColumn(points, count, first);
+  const lisco::Return* const cells = state_->add(points, count, position);
   if (given_position)
     state_->clusterer.addColumn(cells, count, position);
   else
     state_->clusterer.addColumn(cells, count);
   state_->begun = true;
-  constexpr double kKept = 1.5;  // turns, within which the engine names a cell again
+  constexpr double kKept = 1.5;  // turns, within which the engine delivers a cell
   while (state_->store.positionOf(state_->store.firstColumn()) < position - kKept) state_->store.dropFirst();
   return (true);
-}
-
-template <typename PointT>
-bool pcl::LiscoEndlessExtraction<PointT>::addColumn(const PointT* points, std::size_t count, double position) {
-  return (addColumnAt(points, count, &position));
-}
-
-template <typename PointT>
-bool pcl::LiscoEndlessExtraction<PointT>::addColumn(const PointT* points, std::size_t count) {
-  if (state_->begun && !(state_->columns_per_turn > 0)) {
-    PCL_ERROR(
-        "[pcl::LiscoEndlessExtraction::addColumn] A column without a position, and the number of columns of a turn is "
-        "not known.\n");
-    return (false);
-  }
-  return (addColumnAt(points, count, nullptr));
-}
-
-template <typename PointT>
-bool pcl::LiscoEndlessExtraction<PointT>::addColumn(const PointCloud& column, double position) {
-  return (addColumn(column.points.data(), column.size(), position));
-}
-
-template <typename PointT>
-bool pcl::LiscoEndlessExtraction<PointT>::addColumn(const PointCloud& column) {
-  return (addColumn(column.points.data(), column.size()));
 }
 
 template <typename PointT>

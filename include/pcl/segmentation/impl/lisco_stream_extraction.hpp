@@ -4,7 +4,7 @@
 
 #include "lisco/cxx17.h"
 
-#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -22,8 +22,18 @@
 template <typename PointT>
 class pcl::LiscoStreamExtraction<PointT>::State : public detail::LiscoReceivedColumns<PointT> {
  public:
+  /** \brief Estimates the sensor from the rotation in the store. */
+  void estimateSensor(const std::array<float, 3>& origin) {
+    const auto cell_at = [&store = this->store](std::size_t laser, std::size_t column) {
+      if (laser >= store.rowsOf(column)) return (lisco::kNoReturn);
+      const PointT& point = store.at(laser, column);
+      return (lisco::Return{point.x, point.y, point.z, 0});
+    };
+    hints = lisco::estimateSensor(this->store.size(), this->maxRows(), origin, lisco::CellSource(cell_at));
+  }
+
   lisco::ColumnClusterer clusterer;
-  lisco::SensorHints hints;  ///< from the last rotation that was ended
+  lisco::SensorHints hints;  ///< of the last rotation that was ended
   bool has_ended = false;    ///< the rotation in the store
   bool is_up_to_date = false;
 };
@@ -51,27 +61,15 @@ pcl::LiscoStreamExtraction<PointT>& pcl::LiscoStreamExtraction<PointT>::operator
 }
 
 template <typename PointT>
-void pcl::LiscoStreamExtraction<PointT>::learn() {
-  const std::size_t columns = state_->store.size();
-  const auto cell_at = [&store = state_->store](std::size_t laser, std::size_t column) {
-    if (laser >= store.rowsOf(column)) return (lisco::kNoReturn);
-    const PointT& point = store.at(laser, column);
-    return (lisco::Return{point.x, point.y, point.z, 0});
-  };
-  state_->hints = lisco::estimateSensor(columns, state_->most_rows, sensor_origin_, lisco::CellSource(cell_at));
-}
-
-template <typename PointT>
 void pcl::LiscoStreamExtraction<PointT>::beginRotation() {
-  state_->begun = false;  // unless nothing is thrown, here and below
-  if (state_->has_ended) learn();
+  state_->begun = false;  // stays so after an exception, here and below
+  if (state_->has_ended) state_->estimateSensor(sensor_origin_);
   lisco::Parameters parameters;
   parameters.tolerance = static_cast<float>(cluster_tolerance_);
   parameters.sensor = state_->hints;
   parameters.block_columns = block_columns_;
   state_->clusterer.begin(parameters);
-  state_->store.clear();
-  state_->most_rows = 0;
+  state_->clear();
   state_->begun = true;
   state_->has_ended = false;
   state_->is_up_to_date = false;
@@ -81,20 +79,10 @@ template <typename PointT>
 bool pcl::LiscoStreamExtraction<PointT>::addColumn(const PointT* points, std::size_t count) {
   if (!state_->accepts(points, count, state_->store.size() + 1, lasers_, "pcl::LiscoStreamExtraction::addColumn"))
     return (false);
-  state_->begun = false;
-  state_->most_rows = std::max(state_->most_rows, count);
-  const std::uint32_t first = state_->store.add(points, count);
-  state_->clusterer.addColumns(1, count, [&](std::size_t row, std::size_t) {
-    return (lisco::Return{points[row].x, points[row].y, points[row].z, first + static_cast<std::uint32_t>(row)});
-  });
+  state_->clusterer.addColumn(state_->add(points, count), count);
   state_->is_up_to_date = false;
   state_->begun = true;
   return (true);
-}
-
-template <typename PointT>
-bool pcl::LiscoStreamExtraction<PointT>::addColumn(const PointCloud& column) {
-  return (addColumn(column.points.data(), column.size()));
 }
 
 template <typename PointT>

@@ -4,7 +4,6 @@
 
 #include "lisco/cxx17.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -48,7 +47,7 @@ pcl::LiscoWindowExtraction<PointT>& pcl::LiscoWindowExtraction<PointT>::operator
 template <typename PointT>
 bool pcl::LiscoWindowExtraction<PointT>::beginStream() {
   const bool begun = state_->begun;
-  state_->begun = false;  // unless nothing is thrown, here and below
+  state_->begun = false;  // stays so after an exception, here and below
   try {
     state_->clusterer.begin({static_cast<float>(cluster_tolerance_), window_size_, hop_, 0});
   } catch (const std::invalid_argument&) {
@@ -57,8 +56,7 @@ bool pcl::LiscoWindowExtraction<PointT>::beginStream() {
     state_->begun = begun;
     return (false);
   }
-  state_->store.clear();
-  state_->most_rows = 0;
+  state_->clear();
   state_->window_first = state_->window_end = 0;
   state_->columns_kept = window_size_ + hop_;
   state_->begun = true;
@@ -69,21 +67,13 @@ template <typename PointT>
 bool pcl::LiscoWindowExtraction<PointT>::addColumn(const PointT* points, std::size_t count) {
   if (!state_->accepts(points, count, state_->columns_kept, lasers_, "pcl::LiscoWindowExtraction::addColumn"))
     return (false);
-  state_->begun = false;
-  state_->most_rows = std::max(state_->most_rows, count);
-  const std::uint32_t first = state_->store.add(points, count);
-  const bool window_ends = state_->clusterer.addColumn(state_->namedColumn(points, count, first), count);
+  const bool window_ends = state_->clusterer.addColumn(state_->add(points, count), count);
   state_->begun = true;
   if (!window_ends) return (false);
   state_->window_end = state_->store.endColumn();
   state_->window_first = state_->window_end - state_->clusterer.columnCount();
   while (state_->store.firstColumn() < state_->window_first) state_->store.dropFirst();
   return (true);
-}
-
-template <typename PointT>
-bool pcl::LiscoWindowExtraction<PointT>::addColumn(const PointCloud& column) {
-  return (addColumn(column.points.data(), column.size()));
 }
 
 template <typename PointT>
