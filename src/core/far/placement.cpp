@@ -18,7 +18,7 @@ HWY_BEFORE_NAMESPACE();
 namespace lisco {
 namespace HWY_NAMESPACE {
 
-/// Lanes whose azimuth is that of their bin, within kDeviation.
+/// Lanes whose azimuth is that of their bin, within the image's deviation.
 /// \param bin of the first lane
 HWY_INLINE FloatMask areInBins(const RangeImage& image, std::int64_t bin, FloatVector u, FloatVector v,
                                FloatVector rho) {
@@ -27,7 +27,7 @@ HWY_INLINE FloatMask areInBins(const RangeImage& image, std::int64_t bin, FloatV
   const FloatVector sine = hn::LoadU(kFloats, &image.sine[index]);
   const FloatVector across = hn::Abs(hn::Sub(hn::Mul(u, sine), hn::Mul(v, cosine)));
   const FloatVector along = hn::Add(hn::Mul(u, cosine), hn::Mul(v, sine));
-  const FloatVector deviation = hn::Set(kFloats, std::sin(kDeviation * image.radians_per_bin));
+  const FloatVector deviation = hn::Set(kFloats, std::sin(image.deviation * image.radians_per_bin));
   return hn::And(hn::Le(across, hn::Mul(rho, deviation)), hn::Gt(along, hn::Zero(kFloats)));
 }
 
