@@ -409,7 +409,7 @@ TEST(SegmentLinker, BeforeTheFirstReturn) {
   }
 }
 
-// More than fits: what has no place is loose, and found all the same.
+// Several turns: they lie in one layer each, but for a few returns, and are found all the same.
 TEST(SegmentLinker, BeyondTheLastPlace) {
   Probe probe(kTolerance, kHints);
   std::vector<bool> loose;
@@ -418,8 +418,8 @@ TEST(SegmentLinker, BeyondTheLastPlace) {
   const std::size_t placed =
       static_cast<std::size_t>(std::find(loose.begin(), loose.end(), true) - loose.begin()) + kFirstPlace;
   EXPECT_EQ(placed, 1024U + 256U);
-  EXPECT_EQ(static_cast<std::size_t>(std::count(loose.begin(), loose.end(), true)),
-            loose.size() + kFirstPlace - placed);
+  EXPECT_LT(std::count(loose.begin(), loose.end(), true), 200);
+  EXPECT_EQ(probe.strip().image.layers, 3U);
   probe.linkAll();
   for (std::uint32_t i = 0; i < probe.size(); ++i) ASSERT_TRUE(probe.joined(0, i)) << i;
 }
@@ -782,7 +782,7 @@ struct Rotation {
 /// \param crowding columns that share an azimuth
 Rotation randomRotation(Random& random, double kept, std::size_t crowding = 1) {
   const std::array<int, 6> steps_choices{512, 600, 720, 900, 1024, 1200};
-  const std::array<double, 6> turns{1.0, 1.0, 0.4, 1.05, 1.3, 2.3};
+  const std::array<double, 7> turns{1.0, 1.0, 0.4, 1.05, 1.3, 2.3, 3.4};
   const std::array<double, 5> jitters{0.0, 0.02, 0.2, 0.7, 2.0};
   const int steps = random.oneOf(steps_choices);
   const std::size_t lasers = random.chance(0.1) ? 1 : 2 + random.below(31);

@@ -38,6 +38,8 @@ inline constexpr std::size_t kPlacedPerUnplaced = 32;
 /// Unplaced returns, for each layer of the image, from which on another layer is worth its memory.
 inline constexpr std::size_t kFewTaken = 32;
 inline constexpr std::size_t kPlacedPerTaken = 1024;
+/// Late returns, from which on it takes less to link their sectors again than to search each alone.
+inline constexpr std::size_t kFewLate = 2048;
 /// Added to a laser's elevation bounds when they grow, relative: they settle after a few columns.
 inline constexpr float kWidening = 1e-3F;
 

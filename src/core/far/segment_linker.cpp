@@ -174,6 +174,13 @@ void SegmentLinker::forgetSectors() {
 void SegmentLinker::schedule(RangeImage& image) {
   if (!image.started) return;
   fit(image);
+  if (image.late.size() > kFewLate) {
+    // The next turn of a long scan: linking starts again.
+    image.linked = image.scheduled = 0;
+    image.late.clear();
+    linked_parts_ = 0;
+    forgetSectors();
+  }
   image.updateElevations();
   image.scheduled = std::max(image.scheduled, image.passed());
 }
