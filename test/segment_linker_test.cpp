@@ -215,6 +215,11 @@ TEST(SegmentLinker, IsOfUseOnlyWhereItsHintsAre) {
     EXPECT_FALSE(inUse(1.0F, hints)) << slope;
   }
   hints.tilt = {};
+  for (const float jitter : {kNan, -1.0F, 1e30F, std::numeric_limits<float>::infinity()}) {
+    hints.jitter = jitter;
+    EXPECT_EQ(inUse(1.0F, hints), !(jitter > 1.0F)) << jitter << ": farther away";
+  }
+  hints.jitter = 0.0F;
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (const float coordinate : {kNan, 1e30F, -std::numeric_limits<float>::infinity()}) {
       hints.origin = {1.0F, 2.0F, 3.0F};
@@ -404,7 +409,7 @@ TEST(SegmentLinker, BeforeTheFirstReturn) {
   }
 }
 
-// More than fits: what has no place is loose, and found all the same.
+// Several turns: they lie in one layer each, but for a few returns, and are found all the same.
 TEST(SegmentLinker, BeyondTheLastPlace) {
   Probe probe(kTolerance, kHints);
   std::vector<bool> loose;
@@ -413,8 +418,8 @@ TEST(SegmentLinker, BeyondTheLastPlace) {
   const std::size_t placed =
       static_cast<std::size_t>(std::find(loose.begin(), loose.end(), true) - loose.begin()) + kFirstPlace;
   EXPECT_EQ(placed, 1024U + 256U);
-  EXPECT_EQ(static_cast<std::size_t>(std::count(loose.begin(), loose.end(), true)),
-            loose.size() + kFirstPlace - placed);
+  EXPECT_LT(std::count(loose.begin(), loose.end(), true), 200);
+  EXPECT_EQ(probe.strip().image.layers, 3U);
   probe.linkAll();
   for (std::uint32_t i = 0; i < probe.size(); ++i) ASSERT_TRUE(probe.joined(0, i)) << i;
 }
@@ -646,6 +651,7 @@ CriticalPair criticalPair(Random& random) {
   const int steps = random.oneOf(steps_choices);
   const double step = 2.0 * kPi / steps;
   pair.hints = hintsFor(steps, 0.1F, random.chance(0.5));
+  if (random.chance(0.3)) pair.hints.jitter = static_cast<float>(random.between(0.0, 3.0));
   pair.hints.elevation_step = elevationStepFor(pair.hints, random.magnitude(1.0, 4e4));
   const double spacing = 1.0 / minRangeOf(pair.hints);  // infinitely far: no use, tried all the same
   const double near_end = random.chance(0.3) ? random.magnitude(1e-17, 1e11) : random.magnitude(1.0, 100.0);
@@ -743,6 +749,7 @@ TEST(SegmentLinker, CriticalPairs) {
       // Its laser is where the next place is up to three quarters of one off.
       double place = std::round(pair.place[i]);
       if (random.chance(0.5)) place += pair.place[i] > place ? 1.0 : -1.0;
+      if (pair.hints.jitter > 0.0F) place += static_cast<double>(random.below(5)) - 2.0;
       const auto column = static_cast<std::uint32_t>(place);
       if (random.chance(0.8)) probe.put(i + 1, place - 1.0, behind, pair.slope[i]);
       const bool full = random.chance(0.2);
@@ -775,7 +782,7 @@ struct Rotation {
 /// \param crowding columns that share an azimuth
 Rotation randomRotation(Random& random, double kept, std::size_t crowding = 1) {
   const std::array<int, 6> steps_choices{512, 600, 720, 900, 1024, 1200};
-  const std::array<double, 6> turns{1.0, 1.0, 0.4, 1.05, 1.3, 2.3};
+  const std::array<double, 7> turns{1.0, 1.0, 0.4, 1.05, 1.3, 2.3, 3.4};
   const std::array<double, 5> jitters{0.0, 0.02, 0.2, 0.7, 2.0};
   const int steps = random.oneOf(steps_choices);
   const std::size_t lasers = random.chance(0.1) ? 1 : 2 + random.below(31);
@@ -808,6 +815,8 @@ Rotation randomRotation(Random& random, double kept, std::size_t crowding = 1) {
   const double scale = random.oneOf(scales);
   if (random.chance(0.3))
     for (float& axis : hints.origin) axis = static_cast<float>(scale * random.between(-20.0, 20.0));
+
+  if (random.chance(0.3)) hints.jitter = static_cast<float>(random.between(0.0, 3.0));
 
   // Things of any width stand around, at any distance, on a floor.
   std::vector<double> distance(64);

@@ -158,6 +158,20 @@ TEST(SensorEstimator, ASensorThatIsNoNumberIsNotUsed) {
     EXPECT_NEAR(estimate(rotation({10000.0F, 0.0F, 0.0F}), sensor).origin[0], 10000.0F, 0.1F);
 }
 
+TEST(SensorEstimator, MeasuresTheJitterOfAzimuths) {
+  EXPECT_LT(estimate(rotation()).jitter, 0.01F);
+  // Two returns of each firing, column by column.
+  Scan twice(2 * kColumns, kLasers);
+  const Scan once = rotation();
+  for (std::size_t laser = 0; laser < kLasers; ++laser)
+    for (std::size_t column = 0; column < twice.columns; ++column) {
+      const lisco::Return& cell = once.at(laser, column / 2);
+      twice.set(laser, column, {cell.x, cell.y, cell.z});
+    }
+  EXPECT_NEAR(estimate(twice).jitter, 1.0F, 0.01F);
+  EXPECT_EQ(estimate(twice).steps_per_turn, static_cast<int>(2 * kColumns));
+}
+
 // As a sensor leaves them that measures at every other step: no return has another right beside it.
 TEST(SensorEstimator, EveryOtherColumnIsEmpty) {
   const Scan full = rotation();

@@ -11,8 +11,11 @@ namespace lisco {
 
 // --- Bounds: exactness depends on them (doc/algorithm.md) -----------------------------------------------------------
 
-/// Bins between that of a return and that of its azimuth, at most; half a bin is the least possible.
-inline constexpr float kDeviation = 0.75F;
+/// Bins between that of a return and that of its azimuth, at most; half a bin is the least possible. More where
+/// azimuths jitter, so that most returns of adjacent columns have adjacent bins, though masks grow.
+inline constexpr float kMinDeviation = 0.75F;
+inline constexpr float kMaxDeviation = 2.25F;
+inline constexpr float kWorthDeviation = 0.5F;  ///< jitter that is worth more than kMinDeviation
 /// Radians, added to elevation bounds; more than 100 times their rounding.
 inline constexpr float kAngleRounding = 1e-4F;
 /// Metres; beyond, returns go to the voxels: their squares may overflow.
@@ -35,6 +38,8 @@ inline constexpr std::size_t kPlacedPerUnplaced = 32;
 /// Unplaced returns, for each layer of the image, from which on another layer is worth its memory.
 inline constexpr std::size_t kFewTaken = 32;
 inline constexpr std::size_t kPlacedPerTaken = 1024;
+/// Late returns, from which on it takes less to link their sectors again than to search each alone.
+inline constexpr std::size_t kFewLate = 2048;
 /// Added to a laser's elevation bounds when they grow, relative: they settle after a few columns.
 inline constexpr float kWidening = 1e-3F;
 

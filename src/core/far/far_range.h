@@ -19,6 +19,12 @@ inline float paddedReach(const Tolerance& tolerance) {
   return static_cast<float>(tolerance.reach()) * 1.00001F;
 }
 
+/// RangeImage::deviation for a sensor.
+inline float deviationFor(const SensorHints& hints) {
+  constexpr float kRounding = 0.6F;  // of an azimuth to the nearest bin, and some more
+  return hints.jitter > kWorthDeviation ? std::min(hints.jitter + kRounding, kMaxDeviation) : kMinDeviation;
+}
+
 /// Which returns are far: those that see the tolerance under few bins and lasers. None (min_range infinite) if the
 /// hints are of no help.
 inline FarRange farRangeFor(const Tolerance& tolerance, const SensorHints& hints) {
@@ -34,8 +40,9 @@ inline FarRange farRangeFor(const Tolerance& tolerance, const SensorHints& hints
   const double spacing = std::sqrt((is_rough ? kRoughReturnsPerSquare : kReturnsPerSquare) * step *
                                    static_cast<double>(hints.elevation_step));
   // As near as that, unless a mask would reach over more than kMaxReach bins.
+  const double max_bins = static_cast<double>(kMaxReach) - 2 * static_cast<double>(deviationFor(hints)) - 1.5;
   const double min_range =
-      tolerance.reach() * std::max({1 / spacing, kMinRangeInTolerances, 1 / std::sin((kMaxReach - 3) * step)});
+      tolerance.reach() * std::max({1 / spacing, kMinRangeInTolerances, 1 / std::sin(max_bins * step)});
   const bool is_origin_valid = std::all_of(hints.origin.begin(), hints.origin.end(),
                                            [](float coordinate) { return std::fabs(coordinate) <= kMaxRange; });
   const bool is_tilt_valid =

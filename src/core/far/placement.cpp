@@ -18,7 +18,7 @@ HWY_BEFORE_NAMESPACE();
 namespace lisco {
 namespace HWY_NAMESPACE {
 
-/// Lanes whose azimuth is that of their bin, within kDeviation.
+/// Lanes whose azimuth is that of their bin, within the image's deviation.
 /// \param bin of the first lane
 HWY_INLINE FloatMask areInBins(const RangeImage& image, std::int64_t bin, FloatVector u, FloatVector v,
                                FloatVector rho) {
@@ -27,7 +27,7 @@ HWY_INLINE FloatMask areInBins(const RangeImage& image, std::int64_t bin, FloatV
   const FloatVector sine = hn::LoadU(kFloats, &image.sine[index]);
   const FloatVector across = hn::Abs(hn::Sub(hn::Mul(u, sine), hn::Mul(v, cosine)));
   const FloatVector along = hn::Add(hn::Mul(u, cosine), hn::Mul(v, sine));
-  const FloatVector deviation = hn::Set(kFloats, std::sin(kDeviation * image.radians_per_bin));
+  const FloatVector deviation = hn::Set(kFloats, std::sin(image.deviation * image.radians_per_bin));
   return hn::And(hn::Le(across, hn::Mul(rho, deviation)), hn::Gt(along, hn::Zero(kFloats)));
 }
 
@@ -93,6 +93,22 @@ class Placement {
     // Bins in the margins hold no returns, but have a cosine and a sine.
     constexpr auto kInMargin = static_cast<std::int64_t>(RangeImage::kMargin) - 1;
     if (first_bin_ < -kInMargin || first_bin_ > bins() - 1 + kInMargin) return left & -left;
+    const ColumnBits outside = left & ~insideOf();
+    const ColumnBits off = firstOffAzimuth(outside != 0 ? left & before(outside & -outside) : left);
+    return off != 0 ? off : outside & -outside;
+  }
+
+  /// The columns of the block whose expected bins are within the image.
+  ColumnBits insideOf() const {
+    ColumnBits inside = ~ColumnBits{0};
+    if (first_bin_ < 0) inside &= bitsFrom(static_cast<std::size_t>(-first_bin_));
+    if (first_bin_ + static_cast<std::int64_t>(RingBlock::kColumns) > bins())
+      inside &= ~bitsFrom(static_cast<std::size_t>(std::max<std::int64_t>(0, bins() - first_bin_)));
+    return inside;
+  }
+
+  ColumnBits firstOffAzimuth(ColumnBits left) const {
+    if (left == 0) return 0;
     const auto next = static_cast<std::size_t>(__builtin_ctzll(left));
     for (std::size_t k = next / kLanes * kLanes; k < RingBlock::kColumns; k += kLanes) {
       const std::uint64_t here = bitsAt(left, k);
@@ -105,22 +121,16 @@ class Placement {
     return 0;
   }
 
-  /// Stores returns in their expected bins, where these are within the image and free in a row of the laser.
+  /// Stores returns in their expected bins, which are within the image, where these are free in a row of the laser.
   void placeTogether(ColumnBits together) {
-    ColumnBits inside = together;
-    if (first_bin_ < 0) inside &= bitsFrom(static_cast<std::size_t>(-first_bin_));
-    if (first_bin_ + static_cast<std::int64_t>(RingBlock::kColumns) > bins())
-      inside &= ~bitsFrom(static_cast<std::size_t>(std::max<std::int64_t>(0, bins() - first_bin_)));
-    const ColumnBits placed = inside != 0 ? store(inside) : 0;
+    const ColumnBits placed = store(together);
     unplaced_ |= together & ~placed;
-    if (inside != 0) {
-      const auto last = static_cast<std::int64_t>(63 - __builtin_clzll(inside));
-      image_.placed += static_cast<std::size_t>(__builtin_popcountll(placed));
-      image_.begin = std::min(image_.begin, static_cast<std::size_t>(first_bin_ + __builtin_ctzll(inside)));
-      image_.end = std::max(image_.end, static_cast<std::size_t>(first_bin_ + last + 1));
-      noteLate(placed);
-    }
-    expectAfter(static_cast<std::size_t>(63 - __builtin_clzll(together)));
+    const auto last = static_cast<std::size_t>(63 - __builtin_clzll(together));
+    image_.placed += static_cast<std::size_t>(__builtin_popcountll(placed));
+    image_.begin = std::min(image_.begin, static_cast<std::size_t>(first_bin_ + __builtin_ctzll(together)));
+    image_.end = std::max(image_.end, static_cast<std::size_t>(first_bin_ + static_cast<std::int64_t>(last) + 1));
+    noteLate(placed);
+    expectAfter(last);
   }
 
   /// \return the returns that are stored; the bins of the others are taken in all rows
@@ -176,8 +186,10 @@ class Placement {
     const std::int64_t measured = image_.binOf({u_[i], v_[i]});
     const std::int64_t expected = first_bin_ + static_cast<std::int64_t>(i);
     const auto turn = static_cast<std::int64_t>(image_.steps);
-    const std::int64_t bin =
+    std::int64_t bin =
         measured + turn * std::llround(static_cast<double>(expected - measured) / static_cast<double>(turn));
+    // A scan of more than a turn goes on at the beginning of the image.
+    if (bin >= bins()) bin -= turn * ((bin - bins()) / turn + 1);
     first_bin_ = bin - static_cast<std::int64_t>(i);
     if (bin >= 0 && bin < bins()) return true;
     unplaced_ |= ColumnBits{1} << i;

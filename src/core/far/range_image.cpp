@@ -34,6 +34,7 @@ void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hint
     return;
   }
   const auto new_steps = static_cast<std::size_t>(hints.steps_per_turn);
+  deviation = deviationFor(hints);
   reach = paddedReach(tolerance);
   // Measuring heights from a tilted plane is a shear, by whose norm distances may grow.
   const float tilt = std::hypot(range.tilt[0], range.tilt[1]);

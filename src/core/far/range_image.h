@@ -23,7 +23,8 @@ namespace lisco {
 /// *unplaced*: its neighbours are searched one by one, and it must be kept in the voxels as well. Rows are reached by
 /// the elevations measured on their laser.
 ///
-/// Bins are counted from the first return's, less kMargin, in the sense of rotation; they do not wrap.
+/// Bins are counted from the first return's, less kMargin, in the sense of rotation. There are some more than a turn
+/// has; what comes behind the last one goes into the bins a turn before.
 struct RangeImage {
   static constexpr std::size_t kSector = 16;  ///< bins of a sector, the unit of linking
   static constexpr std::size_t kMargin = 64;  ///< bins before the first return's, for staggered lasers
@@ -122,6 +123,7 @@ struct RangeImage {
 
   Tolerance tolerance;
   FarRange range;
+  float deviation = 0;  ///< bins between that of a return and that of its azimuth, at most
   float reach = 0;
   float slope_reach = 0;   ///< the same where heights are measured from the tilted horizon
   std::size_t steps = 0;   ///< bins of a turn

@@ -95,7 +95,7 @@ void searchOne(const RangeImage& image, const RangeImage::Unplaced& point, Disjo
   const std::int64_t bin = image.binOf(image.fromStart(east, north)) % turn;
   const std::int64_t middle = bin < 0 ? bin + turn : bin;
   const float angle = asinBound(image.reach / rho);
-  const auto before = static_cast<std::int64_t>(angle / image.radians_per_bin + (kDeviation + 1.0F));
+  const auto before = static_cast<std::int64_t>(angle / image.radians_per_bin + (image.deviation + 1.0F));
   const float slope = std::atan(image.heightOf(east, north, point.z - image.range.origin[2]) / rho);
   const float elevation = image.upside_down ? -slope : slope;
   const float around = asinBound(image.slope_reach / rho) + kAngleRounding;
@@ -174,6 +174,13 @@ void SegmentLinker::forgetSectors() {
 void SegmentLinker::schedule(RangeImage& image) {
   if (!image.started) return;
   fit(image);
+  if (image.late.size() > kFewLate) {
+    // The next turn of a long scan: linking starts again.
+    image.linked = image.scheduled = 0;
+    image.late.clear();
+    linked_parts_ = 0;
+    forgetSectors();
+  }
   image.updateElevations();
   image.scheduled = std::max(image.scheduled, image.passed());
 }

@@ -215,7 +215,7 @@ class SegmentSearch {
   }
 
   int binsWithin(float angle) const {
-    return std::min(kMaxReach, static_cast<int>(angle * bins_per_radian_ + (2 * kDeviation + 0.02F)));
+    return std::min(kMaxReach, static_cast<int>(angle * bins_per_radian_ + (2 * image_.deviation + 0.02F)));
   }
 
   /// Narrows the mask of a segment that is further away than the nearest of its row, for which the mask was made.
