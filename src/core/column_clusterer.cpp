@@ -36,11 +36,13 @@ class ColumnClusterer::Rotation {
 
  private:
   void divide(std::size_t columns, std::size_t lasers, const CellSource& cells);
-  void receiveInParallel(std::size_t lasers, const CellSource& cells);
+  void receiveAtOnce(std::size_t columns, std::size_t lasers, const CellSource& cells);
+  std::size_t tryFar(std::size_t columns, std::size_t lasers, const CellSource& cells);
+  void preparePart(std::size_t i);
+  void readPart(std::size_t i, std::size_t begin, std::size_t end, std::size_t lasers, const CellSource& cells);
   void receiveInSequence(std::size_t columns, std::size_t lasers, const CellSource& cells);
   void linkPartitions();
   void linkCollected();
-  void startCollecting();
   void stopCollecting();
   void numberSubclusters();
   void sortRuns();
@@ -79,6 +81,8 @@ namespace {
 /// Columns that come first and at once, from which on near returns are collected and sorted; fewer are put into voxels,
 /// as are columns that follow.
 constexpr std::size_t kWorthSorting = 256;
+/// Columns of these that tell whether far returns are worth a range image.
+constexpr std::size_t kTriedColumns = 128;
 
 }  // namespace
 
@@ -105,16 +109,13 @@ void ColumnClusterer::Rotation::receive(std::size_t columns, std::size_t lasers,
     throw std::invalid_argument("lisco::ColumnClusterer: a column of more cells than lasers were declared");
   if (columns == 0) return;
   usable_ = false;
-  const bool is_first = partition_count_ == 0;
-  if (is_first) divide(columns, lasers, cells);
-  if (scheduler_.columnsRead() == 0 && columns >= kWorthSorting)
-    startCollecting();
-  else
+  if (partition_count_ == 0) divide(columns, lasers, cells);
+  if (scheduler_.columnsRead() == 0 && (columns >= kWorthSorting || partition_count_ > 1)) {
+    receiveAtOnce(columns, lasers, cells);
+  } else {
     stopCollecting();
-  if (is_first && partition_count_ > 1)
-    receiveInParallel(lasers, cells);
-  else
     receiveInSequence(columns, lasers, cells);
+  }
   usable_ = true;
 }
 
@@ -146,24 +147,53 @@ void ColumnClusterer::Rotation::divide(std::size_t columns, std::size_t lasers, 
     partitions_[i].first_element = static_cast<std::uint32_t>(lasers * parts_[i].first);  // at most a run for each cell
 }
 
-/// Each thread reads its part of the columns, and links it as far as it goes without the others.
-void ColumnClusterer::Rotation::receiveInParallel(std::size_t lasers, const CellSource& cells) {
-  constexpr std::size_t kWorkOfCell = 2;  // in the segment linker's units
-  constexpr std::size_t kBlock = RingBlock::kColumns;
-  const std::size_t columns = parts_.back().end;
-  subclusters_.reset(lasers * columns + kBlock);
+/// Each thread reads its part of the columns, and links its far returns as far as it goes without the others. Near
+/// returns are collected.
+void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t lasers, const CellSource& cells) {
+  if (partition_count_ > 1) subclusters_.reset(lasers * columns + RingBlock::kColumns);
+  near_ = Near::kCollected;
+  const std::size_t tried = tryFar(columns, lasers, cells);
   inParallel(partition_count_, [&](std::size_t i) {
-    Partition& partition = partitions_[i];
-    partition.prepare(tolerance_, parameters_.sensor, parts_[i].end - parts_[i].first);
-    partition.addLasers(lasers);
-    for (std::size_t first = parts_[i].first; first < parts_[i].end; first += kBlock) {
-      const std::size_t count = std::min(parts_[i].end - first, kBlock);
-      const std::size_t before = partition.workDone();
-      partition.readColumns(cells, first, count, lasers, static_cast<std::uint32_t>(first), subclusters_);
-      balancer_.record(first, count, count * lasers * kWorkOfCell + partition.workDone() - before);
-    }
+    if (i > 0) preparePart(i);
+    readPart(i, i == 0 ? tried : parts_[i].first, parts_[i].end, lasers, cells);
   });
   scheduler_.skipColumns(columns);
+}
+
+/// Reads the first columns. If linking far returns takes longer than sorting, all returns of the rotation are near.
+/// \return the columns read
+std::size_t ColumnClusterer::Rotation::tryFar(std::size_t columns, std::size_t lasers, const CellSource& cells) {
+  if (partition_count_ == 1) parts_.assign(1, {0, columns});
+  if (partition_count_ > 1)
+    preparePart(0);
+  else
+    partitions_[0].collectNear();  // prepared by begin ()
+  const std::size_t tried = std::min(kTriedColumns, parts_[0].end);
+  if (!partitions_[0].hasFar()) return 0;
+  readPart(0, 0, tried, lasers, cells);
+  if (partitions_[0].isFarWorthwhile()) return tried;
+  parameters_.sensor.steps_per_turn = 0;
+  preparePart(0);
+  return 0;
+}
+
+void ColumnClusterer::Rotation::preparePart(std::size_t i) {
+  partitions_[i].prepare(tolerance_, parameters_.sensor, parts_[i].end - parts_[i].first);
+  partitions_[i].collectNear();
+}
+
+void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t begin, std::size_t end, std::size_t lasers,
+                                         const CellSource& cells) {
+  constexpr std::size_t kWorkOfCell = 2;  // in the segment linker's units
+  Partition& partition = partitions_[i];
+  partition.addLasers(lasers);
+  for (std::size_t first = begin; first < end; first += RingBlock::kColumns) {
+    const std::size_t count = std::min(end - first, RingBlock::kColumns);
+    const std::size_t before = partition.workDone();
+    partition.readColumns(cells, first, count, lasers, static_cast<std::uint32_t>(first), subclusters_);
+    if (partition_count_ > 1)
+      balancer_.record(first, count, count * lasers * kWorkOfCell + partition.workDone() - before);
+  }
 }
 
 /// Whole blocks of columns are read at once; single columns are gathered into blocks, whose work is spread.
@@ -202,11 +232,6 @@ void ColumnClusterer::Rotation::linkPartitions() {
     partitions_[i].markLinked();
     if (is_any_full) partitions_[i].stopPlacing();
   }
-}
-
-void ColumnClusterer::Rotation::startCollecting() {
-  near_ = Near::kCollected;
-  for (std::size_t i = 0; i < partition_count_; ++i) partitions_[i].collectNear();
 }
 
 /// Links collected near returns, of all partitions at once; in voxels, if they cannot be sorted.

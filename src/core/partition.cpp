@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/far/constants.h"
+
 namespace lisco {
 
 namespace {
@@ -78,6 +80,18 @@ void Partition::linkTo(Partition& earlier, DisjointSets& subclusters) {
   Merger merger(subclusters);
   segments_.linkTo(image_, earlier.image_, subclusters);
   VoxelLinker::linkTo(voxels_, earlier.voxels_, VoxelLinker::Part::kNew, merger);
+}
+
+bool Partition::isFarWorthwhile() const {
+  const std::size_t returns = image_.placed + image_.unplaced.size();
+  const std::size_t begin = std::min(image_.begin, image_.end);
+  const std::size_t bins = image_.end - begin;
+  const std::size_t linked = std::max(image_.linked, begin) - begin;
+  // Some bins are not linked yet.
+  const double linking =
+      static_cast<double>(segments_.workDone() * bins) / static_cast<double>(std::max<std::size_t>(1, linked));
+  const std::size_t placing = kWorkOfRealigning * image_.realigned + kWorkOfUnplaced * image_.unplaced.size();
+  return linking + static_cast<double>(placing) <= kMaxWorkOfFar * static_cast<double>(returns);
 }
 
 std::size_t Partition::workDone() const {

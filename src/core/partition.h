@@ -72,6 +72,11 @@ class Partition {
   std::size_t farPartsLeft() const { return segments_.partsLeft(image_); }
   std::size_t linkFarPart(DisjointSets& subclusters) { return segments_.linkPart(image_, subclusters); }
 
+  /// False if all returns are near.
+  bool hasFar() const { return image_.inUse(); }
+  /// Whether linking far returns, as measured so far, takes less than sorting them would.
+  bool isFarWorthwhile() const;
+
   /// Whether bins save no work: see RangeImage::isFull.
   bool isImageFull() const { return image_.isFull(); }
   void stopPlacing() { image_.stopPlacing(); }

@@ -61,6 +61,12 @@ inline constexpr std::uint32_t kWorkOfCutting = 20;   ///< of a laser
 inline constexpr std::uint32_t kWorkOfBins = 2;       ///< of comparing a register of bins
 inline constexpr std::uint32_t kWorkOfSegment = 10;
 inline constexpr std::uint32_t kWorkOfPair = 6;  ///< of segments that are compared
+/// Of placing, as far as it tells whether far returns are worth a range image; and the most work that is, of a far
+/// return: about what sorting takes. Least regret over the scans at rest, moved, deskewed and with dual returns
+/// (benchmarks/suite.sh recordings).
+inline constexpr std::uint32_t kWorkOfRealigning = 8;
+inline constexpr std::uint32_t kWorkOfUnplaced = 200;
+inline constexpr double kMaxWorkOfFar = 12;
 /// Segments that exceed their laser's nearest one by this factor get a mask of their own.
 inline constexpr float kWorthNarrowing = 1.25F;
 /// Returns of a segment from which on its bounds are computed in vectors.

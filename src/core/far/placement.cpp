@@ -183,6 +183,7 @@ class Placement {
 
   /// Sets the expected bins from the azimuth of a return. \return false if that return is outside the image: unplaced
   bool realignTo(std::size_t i) {
+    ++image_.realigned;
     const std::int64_t measured = image_.binOf({u_[i], v_[i]});
     const std::int64_t expected = first_bin_ + static_cast<std::int64_t>(i);
     const auto turn = static_cast<std::int64_t>(image_.steps);

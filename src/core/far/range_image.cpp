@@ -25,7 +25,7 @@ void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hint
   linked = scheduled = 0;
   unplaced.clear();
   late.clear();
-  placed = end = 0;
+  placed = realigned = end = 0;
   full = elevations_changed = false;
 
   range = farRangeFor(tolerance, hints);

@@ -153,6 +153,7 @@ struct RangeImage {
   std::vector<Unplaced> unplaced;
   std::vector<Unplaced> late;  ///< placed in bins before `scheduled`
   std::size_t placed = 0;
+  std::size_t realigned = 0;       ///< returns off the bin that follows the last one's
   std::size_t begin = 0, end = 0;  ///< the first bin taken, and after the last
   bool full = false;
 };

@@ -141,6 +141,7 @@ HWY_EXPORT(searchOne);
 
 void SegmentLinker::prepare(const RangeImage& image) {
   linked_parts_ = 0;
+  work = 0;
   masks.clear();
   fit(image);
 }
