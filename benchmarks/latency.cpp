@@ -192,8 +192,9 @@ Clusters collect(Clusterer& clusterer, const Problem& problem, IndexOf&& index_o
   pcl::detail::LiscoClusterWriter writer;
   writer.start(clusterer.subclusterCount(), problem.cloud->header, problem.min_size, problem.max_size, clusters);
   clusterer.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-    pcl::Indices* const indices = writer.indicesOf(subcluster, clusterer.sizeOf(subcluster));
-    for (std::size_t i = 0; indices != nullptr && i < count; ++i) indices->push_back(index_of(cells[i]));
+    writer.append(
+        subcluster, [&](std::uint32_t one) { return clusterer.sizeOf(one); }, count,
+        [&](std::size_t i) { return index_of(cells[i]); });
   });
   std::sort(clusters.rbegin(), clusters.rend(), pcl::comparePointClusters);
   return clusters;

@@ -97,8 +97,9 @@ class StagedExtraction {
   void collect(const Problem& problem, Clusters& clusters) {
     writer_.start(clusterer_.subclusterCount(), problem.cloud->header, problem.min_size, problem.max_size, clusters);
     clusterer_.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-      pcl::Indices* const members = writer_.indicesOf(subcluster, clusterer_.sizeOf(subcluster));
-      if (members != nullptr) members->insert(members->end(), cells, cells + count);
+      writer_.append(
+          subcluster, [this](std::uint32_t one) { return clusterer_.sizeOf(one); }, count,
+          [cells](std::size_t i) { return static_cast<pcl::index_t>(cells[i]); });
     });
   }
 

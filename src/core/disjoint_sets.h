@@ -58,6 +58,13 @@ class DisjointSets {
     return a;
   }
 
+  /// The same as merge () of a root and another element, which is usually a set of its own.
+  std::uint32_t add(std::uint32_t root, std::uint32_t element) {
+    if (is_shared_ || root >= element || parentOf(element) != element || log_ != nullptr) return merge(root, element);
+    parents_[element] = root;
+    return root;
+  }
+
   /// Whether several threads may call find () and merge () at once. A root changes by compare and swap then (Anderson
   /// and Woll 1991); an element with a parent has no other thread's update to lose.
   void share(bool is_shared) { is_shared_ = is_shared; }

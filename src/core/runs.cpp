@@ -25,6 +25,16 @@ void Runs::add(const RingBlock& block, RingBlockInfo& info, std::size_t laser, s
   source_index.insert(source_index.end(), block.source_index, block.source_index + columns);
   returns += static_cast<std::size_t>(__builtin_popcountll(info.returns));
   std::uint32_t number = first_run;
+  if (info.starts == info.returns) {  // runs of one return, as in unordered clouds
+    forEachBit(info.returns, [&](std::size_t i) {
+      const std::uint32_t element = first_element + number;
+      subclusters.create(element);
+      info.run[i] = element;
+      runs[number++] = {first_cell + static_cast<std::uint32_t>(i), 1, 0};
+    });
+    blocks.push_back({static_cast<std::uint32_t>(laser), first_column, first_cell, first_run, number - first_run});
+    return;
+  }
   forEachChain(info.starts, info.returns, [&](std::size_t begin, std::size_t end) {
     const std::uint32_t element = first_element + number;
     subclusters.create(element);

@@ -103,6 +103,7 @@ void LiscoCloudClusterer::collect(const Indices* indices, const PCLHeader& heade
   lisco::ColumnClusterer& clusterer = state_->clusterer;
   LiscoClusterWriter& writer = state_->writer;
   std::vector<std::uint32_t>& subcluster_of_point = state_->subcluster_of_point;
+  const auto size_of = [&](std::uint32_t subcluster) { return clusterer.sizeOf(subcluster); };
   writer.start(clusterer.subclusterCount(), header, min_size, max_size, clusters);
 
   // Clusters are in the order of their first points in the indices; within each, indices ascend.
@@ -116,12 +117,11 @@ void LiscoCloudClusterer::collect(const Indices* indices, const PCLHeader& heade
     });
     for (const auto& index : *indices) {
       const std::uint32_t subcluster = subcluster_of_point[static_cast<std::size_t>(index)];
-      if (subcluster != kNone) writer.indicesOf(subcluster, clusterer.sizeOf(subcluster));
+      if (subcluster != kNone) writer.place(subcluster, size_of);
     }
   }
   clusterer.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-    Indices* const members = writer.indicesOf(subcluster, clusterer.sizeOf(subcluster));
-    if (members) members->insert(members->end(), cells, cells + count);
+    writer.append(subcluster, size_of, count, [cells](std::size_t i) { return static_cast<index_t>(cells[i]); });
   });
 }
 

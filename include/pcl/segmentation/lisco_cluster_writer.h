@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include <pcl/PointIndices.h>
@@ -13,7 +14,7 @@
 
 namespace pcl::detail {
 
-/** \brief Writes subclusters of accepted sizes as PCL's clusters, in the order of their first indicesOf (). Keeps its
+/** \brief Writes subclusters of accepted sizes as PCL's clusters, in the order of their first place (). Keeps its
  * memory.
  */
 class LiscoClusterWriter {
@@ -23,41 +24,50 @@ class LiscoClusterWriter {
    */
   void start(std::size_t subclusters, const PCLHeader& header, uindex_t min_size, uindex_t max_size,
              std::vector<PointIndices>& clusters) {
-    cluster_of_subcluster_.assign(subclusters, kUndecided);
+    next_index_.assign(subclusters, nullptr);
     header_ = &header;
     min_size_ = min_size;
     max_size_ = max_size;
     clusters_ = &clusters;
-    first_cluster_ = clusters.size();
   }
 
-  /** \brief The cluster's indices, with capacity for all of them; nullptr if the size is not accepted. Valid until the
-   * next call.
-   * \param[in] size the subcluster's number of points
+  /** \brief Gives the cluster of a subcluster the next place, unless it has one or its size is not accepted.
+   * \param[in] size_of callable as std::uint32_t (std::uint32_t subcluster): its number of points
+   * \return whether the size is accepted
    */
-  Indices* indicesOf(std::uint32_t subcluster, std::uint32_t size) {
-    std::uint32_t& cluster = cluster_of_subcluster_[subcluster];
-    if (cluster == kUndecided) {
-      const bool wanted = size >= min_size_ && size <= max_size_;
-      cluster = wanted ? static_cast<std::uint32_t>(clusters_->size() - first_cluster_) : kNoCluster;
-      if (wanted) {
-        clusters_->emplace_back();
-        clusters_->back().header = *header_;
-        clusters_->back().indices.reserve(size);
-      }
-    }
-    return (cluster == kNoCluster ? nullptr : &(*clusters_)[first_cluster_ + cluster].indices);
+  template <typename SizeOf>
+  bool place(std::uint32_t subcluster, SizeOf&& size_of) {
+    index_t*& next = next_index_[subcluster];
+    if (next == nullptr) next = begin(size_of(subcluster));
+    return (next != &ignored_);
+  }
+
+  /** \brief Appends points to the cluster of a subcluster, if its size is accepted. In all, as many points are appended
+   * as its size says.
+   * \param[in] point_at callable as index_t (std::size_t i), i below \a count
+   */
+  template <typename SizeOf, typename PointAt>
+  void append(std::uint32_t subcluster, SizeOf&& size_of, std::size_t count, PointAt&& point_at) {
+    if (!place(subcluster, size_of)) return;
+    index_t*& next = next_index_[subcluster];
+    for (std::size_t i = 0; i < count; ++i) *next++ = point_at(i);
   }
 
  private:
-  static constexpr std::uint32_t kUndecided = ~std::uint32_t{0};
-  static constexpr std::uint32_t kNoCluster = kUndecided - 1;
+  index_t* begin(std::uint32_t size) {
+    static_assert(std::is_nothrow_move_constructible<PointIndices>::value, "clusters that move keep their indices");
+    if (size < min_size_ || size > max_size_) return (&ignored_);
+    clusters_->emplace_back();
+    clusters_->back().header = *header_;
+    clusters_->back().indices.resize(size);
+    return (clusters_->back().indices.data());
+  }
 
-  std::vector<std::uint32_t> cluster_of_subcluster_;  ///< number among those appended
+  std::vector<index_t*> next_index_;  ///< of each subcluster: where it goes; nullptr: undecided
+  index_t ignored_ = 0;               ///< where those of sizes not accepted would go
   const PCLHeader* header_ = nullptr;
   uindex_t min_size_ = 1, max_size_ = 1;
   std::vector<PointIndices>* clusters_ = nullptr;
-  std::size_t first_cluster_ = 0;
 };
 
 }  // namespace pcl::detail

@@ -39,10 +39,14 @@ inline FarRange farRangeFor(const Tolerance& tolerance, const SensorHints& hints
   const bool is_rough = static_cast<double>(hints.roughness) > tolerance.reach();
   const double spacing = std::sqrt((is_rough ? kRoughReturnsPerSquare : kReturnsPerSquare) * step *
                                    static_cast<double>(hints.elevation_step));
+  // In map coordinates, azimuths are as coarse as the coordinates.
+  const float from_zero = std::max(std::fabs(hints.origin[0]), std::fabs(hints.origin[1]));
+  const double coarseness = static_cast<double>(from_zero) * static_cast<double>(std::numeric_limits<float>::epsilon());
   // As near as that, unless a mask would reach over more than kMaxReach bins.
   const double max_bins = static_cast<double>(kMaxReach) - 2 * static_cast<double>(deviationFor(hints)) - 1.5;
   const double min_range =
-      tolerance.reach() * std::max({1 / spacing, kMinRangeInTolerances, 1 / std::sin(max_bins * step)});
+      std::max(tolerance.reach() * std::max({1 / spacing, kMinRangeInTolerances, 1 / std::sin(max_bins * step)}),
+               kMinBinInCoarseness * coarseness / step);
   const bool is_origin_valid = std::all_of(hints.origin.begin(), hints.origin.end(),
                                            [](float coordinate) { return std::fabs(coordinate) <= kMaxRange; });
   const bool is_tilt_valid =

@@ -190,9 +190,12 @@ void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
   const std::uint64_t number_mask = (std::uint64_t{1} << layout.number_bits) - 1;
   const std::uint64_t brick_mask = (std::uint64_t{1} << layout.brick_bits) - 1;
   const auto numberOf = [&](std::uint64_t item) { return static_cast<std::size_t>(item & number_mask); };
+  const bool is_one_part = fragments.parts.size() == 1;
+  const NearReturn* const first_part = fragments.parts.front().near->returns.data();
   const auto returnOf = [&](std::uint64_t item) {
+    if (is_one_part) return first_part + numberOf(item);
     const FragmentList::Part& part = fragments.partOf(numberOf(item));
-    return &part.near->returns[numberOf(item) - part.first];
+    return part.near->returns.data() + (numberOf(item) - part.first);
   };
   plane.reserveVoxels(count);
   VoxelPlane::Brick* brick = plane.bricks.data() - 1;
@@ -211,7 +214,7 @@ void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
       if (left > kPrefetch) __builtin_prefetch(returnOf(items[i + kPrefetch]));
       if (left > kPrefetch / 2) subclusters.prefetch(returnOf(items[i + kPrefetch / 2])->element);
       near = returnOf(items[i]);
-      root = subclusters.merge(root, near->element);
+      root = subclusters.add(root, near->element);
       const std::size_t size = fragments.endOf(numberOf(items[i])) - numberOf(items[i]);
       plane.reservePoints(points + size);
       for (std::size_t k = 0; k < size; ++k, ++near, ++points) {

@@ -207,11 +207,11 @@ class LiscoReceivedColumns {
     writer_.start(clusterer.subclusterCount(), settings.getHeader(), settings.getMinClusterSize(),
                   settings.getMaxClusterSize(), clusters);
     clusterer.forEachRun([&](const std::uint32_t* names, std::size_t count, std::uint32_t subcluster) {
-      Indices* const members = writer_.indicesOf(subcluster, clusterer.sizeOf(subcluster));
-      if (!members) return;
       const auto cell = store.cellOf(names[0]);  // the others follow it in its row
-      auto index = static_cast<index_t>(cell.row * width + (cell.column - first_column));
-      for (std::size_t i = 0; i < count; ++i) members->push_back(index++);
+      const auto first = static_cast<index_t>(cell.row * width + (cell.column - first_column));
+      writer_.append(
+          subcluster, [&](std::uint32_t one) { return clusterer.sizeOf(one); }, count,
+          [first](std::size_t i) { return static_cast<index_t>(first + static_cast<index_t>(i)); });
     });
     // Not a stable sort: only PCL's own call on PCL's own sequence gives PCL's order among clusters of one size.
     std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);
