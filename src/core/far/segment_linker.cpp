@@ -217,28 +217,30 @@ void SegmentLinker::linkRest(RangeImage& image, DisjointSets& subclusters) {
 
 void SegmentLinker::linkTo(RangeImage& image, RangeImage& other, DisjointSets& subclusters) {
   if (!image.started || !other.started) return;
-  if (&other != &image) {
+  const bool is_seam = &other == &image;
+  const auto turn = static_cast<double>(image.steps);
+  const double ahead =
+      image.direction * (other.start_azimuth - image.start_azimuth) / static_cast<double>(image.radians_per_bin);
+  const double least = is_seam ? 1.0 : -static_cast<double>(other.end) - kMaxReach;
+  const double most = static_cast<double>(image.end) + kMaxReach;
+  const auto first = static_cast<int>(std::ceil((least - ahead) / turn));
+  const auto last = static_cast<int>(std::floor((most - ahead) / turn));
+  const bool have_bins_in_reach = image.placed > 0 && other.placed > 0 && first <= last;
+  // Most parts of a rotation are out of each other's reach.
+  if (!have_bins_in_reach && image.unplaced.empty() && other.unplaced.empty()) return;
+  if (!is_seam) {
     image.shareRows(other);
     other.shareRows(image);
     other.updateElevations();
   }
   fit(image);
   image.updateElevations();
-  const auto turn = static_cast<double>(image.steps);
-  const double ahead =
-      image.direction * (other.start_azimuth - image.start_azimuth) / static_cast<double>(image.radians_per_bin);
-  const double least = &other == &image ? 1.0 : -static_cast<double>(other.end) - kMaxReach;
-  const double most = static_cast<double>(image.end) + kMaxReach;
-  if (image.placed > 0 && other.placed > 0) {
-    const auto first = static_cast<int>(std::ceil((least - ahead) / turn));
-    const auto last = static_cast<int>(std::floor((most - ahead) / turn));
-    for (int turns = first; turns <= last; ++turns)
-      HWY_DYNAMIC_DISPATCH(linkAcross)(image, *this, other, ahead + turn * turns, subclusters);
-  }
+  for (int turns = first; have_bins_in_reach && turns <= last; ++turns)
+    HWY_DYNAMIC_DISPATCH(linkAcross)(image, *this, other, ahead + turn * turns, subclusters);
   forgetSectors();
   for (const RangeImage::Unplaced& unplaced : other.unplaced)
     HWY_DYNAMIC_DISPATCH(searchOne)(image, unplaced, subclusters);
-  if (&other == &image) return;
+  if (is_seam) return;
   for (const RangeImage::Unplaced& unplaced : image.unplaced)
     HWY_DYNAMIC_DISPATCH(searchOne)(other, unplaced, subclusters);
 }
