@@ -113,7 +113,7 @@ Clusters extracted(const Baseline& baseline, const Problem& problem) {
   return clusters;
 }
 
-/// The pair that the details name.
+/// The pair given in the details.
 struct NamedPair {
   std::size_t a, b;
   float d2, r2;
@@ -235,7 +235,7 @@ TEST(Difference, NoticesJoinedClusters) {
   EXPECT_NEAR(pairNamedIn(difference.details)->d2, 10.24F, 1e-5F);
 }
 
-TEST(Difference, NamesTheNearestOfWhatIsJoined) {
+TEST(Difference, NamesTheNearestPairOfJoinedClusters) {
   const Problem problem = twoClusters();
   auto mirrored = std::make_shared<ComparedCloud>(*problem.cloud);
   for (std::size_t row = 0; row < 12; row += 6)
@@ -249,7 +249,7 @@ TEST(Difference, NamesTheNearestOfWhatIsJoined) {
   EXPECT_NEAR(pairNamedIn(difference.details)->d2, 10.24F, 1e-5F);
 }
 
-// The method is right, and PCL's tree is not: doc/contract.md.
+// The tree of PCL misses the pair: doc/contract.md.
 TEST(Difference, NamesThePairThatPclsTreeMisses) {
   auto cloud = std::make_shared<ComparedCloud>();
   pcl::copyPointCloud(*cloudWithAMissedPair(), *cloud);
@@ -290,8 +290,8 @@ TEST(Difference, NoticesADroppedCluster) {
   expectPairDecides(problem, baseline, difference.details);
 }
 
-// Points in no cluster of any size are not joined with each other.
-TEST(Difference, TellsDroppedClustersFromJoinedOnes) {
+// Points that are in no cluster of any size are not joined.
+TEST(Difference, DistinguishesDroppedClustersFromJoinedOnes) {
   const Problem problem = twoClusters();
   const Baseline baseline = spoilt([](Clusters& clusters) { clusters.clear(); });
   const Difference difference = differenceFrom(problem, baseline);
@@ -816,7 +816,7 @@ TEST(Baselines, AcceptAnyScale) {
       (*cloud)[i].y = static_cast<float>(scale * (i < 6 ? 1 : 2));
       (*cloud)[i].z = static_cast<float>(scale);
     }
-    if (scale > 0) (*cloud)[11].x = (*cloud)[11].y = 50.0F;  // and something else
+    if (scale > 0) (*cloud)[11].x = (*cloud)[11].y = 50.0F;  // an object of its own
     ComparedScan scan;
     scan.cloud = cloud;
     scan.returns = std::make_shared<pcl::Indices>(*problemOf(cloud, 1, 1).returns);

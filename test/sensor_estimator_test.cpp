@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Whether a cloud gets a view, and from where it is seen.
+// When a cloud gets hints, and of which sensor.
 #include "lisco/sensor_hints.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ bool isUnknown(const lisco::SensorHints& hints) {
   return hints.steps_per_turn == 0;
 }
 
-TEST(SensorEstimator, ARotationIsSeenFromItsSensor) {
+TEST(SensorEstimator, FindsTheSensorOfARotation) {
   const lisco::SensorHints hints = estimate(rotation());
   EXPECT_EQ(hints.origin, kHere);
   EXPECT_EQ(hints.steps_per_turn, static_cast<int>(kColumns));
@@ -52,7 +52,7 @@ TEST(SensorEstimator, ARotationIsSeenFromItsSensor) {
   EXPECT_NEAR(hints.elevation_step, 0.03F, 0.01F);
 }
 
-TEST(SensorEstimator, AnUnorganizedCloudIsNoView) {
+TEST(SensorEstimator, GivesNoHintsForUnorganizedClouds) {
   Scan scan = rotation();
   scan.columns *= scan.lasers;
   scan.lasers = 1;
@@ -62,28 +62,28 @@ TEST(SensorEstimator, AnUnorganizedCloudIsNoView) {
   EXPECT_TRUE(isUnknown(estimate(scan)));
 }
 
-TEST(SensorEstimator, FromFarAwayThereIsNoView) {
+TEST(SensorEstimator, GivesNoHintsForDistantClouds) {
   EXPECT_TRUE(isUnknown(estimate(rotation({10000.0F, 0.0F, 0.0F}))));
 }
 
-TEST(SensorEstimator, ADisplacedSensorIsUsedIfTheCloudTells) {
+TEST(SensorEstimator, UsesTheOriginGivenByTheCloud) {
   const Origin sensor{10000.0F, -500.0F, 30.0F};
   const lisco::SensorHints hints = estimate(rotation(sensor), sensor);
   EXPECT_EQ(hints.steps_per_turn, static_cast<int>(kColumns));
   EXPECT_EQ(hints.origin, sensor);
 }
 
-TEST(SensorEstimator, ASensorThatIsNoNumberIsNotUsed) {
+TEST(SensorEstimator, IgnoresANonFiniteOrigin) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   for (const Origin& sensor : {Origin{nan, nan, nan}, Origin{10000.0F, nan, 0.0F}, Origin{infinity, 0.0F, 0.0F}})
     EXPECT_TRUE(isUnknown(estimate(rotation({10000.0F, 0.0F, 0.0F}), sensor)));
 }
 
-// As a sensor leaves them that measures at every other step: no return has another right beside it.
-TEST(SensorEstimator, EveryOtherColumnIsEmpty) {
+// As from a sensor that measures at every other step: no two returns are adjacent.
+TEST(SensorEstimator, AcceptsEmptyEveryOtherColumn) {
   const Scan full = rotation();
-  Scan scan(1024, kLasers);  // all columns that are looked at are even ones
+  Scan scan(1024, kLasers);  // all columns that are sampled are even ones
   for (std::size_t laser = 0; laser < kLasers; ++laser)
     for (std::size_t column = 0; column < kColumns; column += 2) {
       const lisco::Return& cell = full.at(laser, column);
@@ -94,8 +94,8 @@ TEST(SensorEstimator, EveryOtherColumnIsEmpty) {
   EXPECT_GT(hints.far_distance, 0.0F);
 }
 
-// Runs are as short where most returns have none beside them as where ranges jump.
-TEST(SensorEstimator, ThinThingsAreRough) {
+// Runs are as short where most returns are isolated as where ranges jump.
+TEST(SensorEstimator, TakesThinObjectsForRough) {
   Scan scan = rotation();
   EXPECT_LT(estimate(scan).roughness, 0.1F);
   for (std::size_t laser = 0; laser < kLasers; ++laser)
@@ -107,13 +107,13 @@ TEST(SensorEstimator, ThinThingsAreRough) {
   EXPECT_GT(estimate(scan).roughness, 1e6F);
 }
 
-TEST(SensorEstimator, NothingToLookAt) {
+TEST(SensorEstimator, GivesNoHintsWithoutReturns) {
   EXPECT_TRUE(isUnknown(estimate(Scan(0, 4))));
   EXPECT_TRUE(isUnknown(estimate(Scan(1, 1))));
   EXPECT_TRUE(isUnknown(estimate(Scan(300, 16))));  // no returns
 }
 
-TEST(SensorEstimator, WithoutLasers) {
+TEST(SensorEstimator, GivesNoHintsWithoutLasers) {
   EXPECT_TRUE(isUnknown(estimate(Scan(0, 0))));
   EXPECT_TRUE(isUnknown(estimate(Scan(4, 0))));
 }
