@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Tables of the documents, from one or more files that `lisco_compare --csv` and literal_mask write. Which one: -v table=NAME.
-# Names of scans must hold no commas.
+# Tables of the documents, made of files by `lisco_compare --csv` and literal_mask; -v table=NAME chooses one.
+# Names of scans contain no commas.
 BEGIN { FS = "," }
 FNR == 1 { for (i = 1; i <= NF; ++i) column[$i] = i; next }
 { gsub(/"/, "", $1) }
@@ -14,7 +14,7 @@ table != "mask" {
   if (!((scan, tolerance) in clusters)) { ++cases; case_scan[cases] = scan; case_tolerance[cases] = tolerance }
   if (!(tolerance in seen)) { seen[tolerance] = 1; tolerances[++tolerance_count] = tolerance }
   clusters[scan, tolerance] = field("reference_clusters")
-  # Of a case that was measured more than once, the quietest time counts: what disturbs a machine only makes it slower.
+  # Of a case that was measured more than once, the least time counts: disturbances only add time.
   if (!(key(baseline) in least) || field("min_ms") < least[key(baseline)]) least[key(baseline)] = field("min_ms")
   if ((key(baseline) in median) && median[key(baseline)] <= field("median_ms")) next
   mean[key(baseline)] = field("mean_ms"); error[key(baseline)] = field("confidence99_ms")
@@ -26,7 +26,7 @@ table != "mask" {
   split_[scan, tolerance] = field("split"); merged[scan, tolerance] = field("merged"); missed[scan, tolerance] = field("missed")
 }
 
-# Three digits that matter.
+# Three significant digits.
 function short(value) { return value >= 100 ? sprintf("%.0f", value) : value >= 10 ? sprintf("%.1f", value) : sprintf("%.2f", value) }
 function ratio(values, scan, tolerance, slow, fast) { return values[scan, tolerance, slow] / values[scan, tolerance, fast] }
 
@@ -54,8 +54,8 @@ function benchmarks(   i, s, t) {
   printf "grid / Lisco in %d cases: %s\n", cases, summary("grid", "lisco")
 }
 
-# Lisco's time over the number of cells. Scans of a series are called SERIES_NUMBER, smallest first. "doubling" says by how much
-# the fastest run takes longer where the cells double: on a shared machine long runs are disturbed more often than short ones.
+# Lisco's time over the number of cells. Scans of a series are called SERIES_NUMBER, smallest first. "doubling" is the
+# ratio of the fastest runs per doubling of the cells: on a shared machine long runs are disturbed more often.
 function growth(   i, s, t, series, before, factor, doublings, sum, count, highest) {
   printf "%-22s %9s %9s %5s %8s %9s %4s %9s %8s  %s\n", "scan", "cells", "returns", "eps", "clusters", "Lisco ms", "+-", "fastest", "doubling", "identical"
   for (i = 1; i <= cases; ++i) {
@@ -94,7 +94,7 @@ function readme(   i, j, s, t) {
 }
 function wanted(tolerance) { return tolerance == 0.1 || tolerance == 0.4 || tolerance == 1 }
 
-# Mean time of each baseline with its confidence, and how many times as fast as PCL with KdTree (false) it is, by means.
+# Mean time of each baseline with its confidence, and the ratio of PCL's mean, with KdTree (false), to it.
 function times(   i, s, t) {
   print "| scan | returns | ε | clusters | PCL | PCL, octree | paper's Lisco | grid | Lisco | PCL / octree | PCL / paper's | PCL / grid | PCL / Lisco |"
   print "|---|---|---|---|---|---|---|---|---|---|---|---|---|"
