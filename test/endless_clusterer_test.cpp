@@ -38,7 +38,7 @@ TEST(EndlessClusterer, DeliversEachClusterOnceAndInTime) {
       across_the_seam += std::floor(delivery.first_position) < std::floor(delivery.last_position) ? 1 : 0;
     }
   }
-  EXPECT_GT(cut, 100U);  // the streams cover what they are made for
+  EXPECT_GT(cut, 100U);  // the streams cover these cases
   EXPECT_GT(continued, 100U);
   EXPECT_GT(outliers, 100U);
   EXPECT_GT(across_the_seam, 1000U);

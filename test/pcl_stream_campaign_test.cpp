@@ -315,7 +315,7 @@ TEST(PclStreamCampaign, EndlessStreamsEqualTheDefinition) {
     continued += endless->continued;
     unfinished += endless->unfinished;
   }
-  EXPECT_GT(cut, 10U);  // the streams cover what they are made for
+  EXPECT_GT(cut, 10U);  // the streams cover these cases
   EXPECT_GT(continued, 10U);
   EXPECT_GT(unfinished, 10U);
 }

@@ -552,7 +552,7 @@ TEST(SegmentLinker, BeginForgetsTheLastRotation) {
   }
 }
 
-// Once placing has ended, returns are unplaced whatever their bin, and are still linked with the placed ones.
+// Once placing has ended, all returns are unplaced, and are still linked with the placed ones.
 TEST(SegmentLinker, TooManyUnplacedReturnsEndThePlacing) {
   Probe probe(kTolerance, kHints);
   EXPECT_FALSE(probe.put(0, kFirstBin, 60.0, 0.0));

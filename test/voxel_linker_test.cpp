@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Near returns in their voxels, alone: all neighbours are joined, whatever their order, and nothing else.
+// Near returns in their voxels, alone: neighbours are joined in any order, other returns are not.
 #include "core/near/voxel_linker.h"
 
 #include <gtest/gtest.h>
