@@ -182,7 +182,7 @@ void expectSaid(const Difference& difference, const std::vector<std::string>& li
     EXPECT_NE(difference.details.find(line), std::string::npos) << "missing: " << line << "\n" << difference.details;
 }
 
-TEST(Difference, OfTheReferenceIsNone) {
+TEST(Difference, IsEmptyForTheReference) {
   const Problem problem = twoClusters();
   ASSERT_EQ(extracted(referenceBaseline(), problem).size(), 2U);
   ASSERT_EQ(extracted(referenceBaseline(), problem)[0].indices, pcl::Indices({0, 1, 2, 6, 8}));
@@ -477,7 +477,7 @@ Times timesOf(const std::vector<double>& runs) {
   return times;
 }
 
-TEST(Timing, MeanMedianMinMax) {
+TEST(Timing, GivesMeanMedianMinMax) {
   EXPECT_DOUBLE_EQ(timesOf({1, 2, 6}).mean(), 3);
   EXPECT_DOUBLE_EQ(median({6, 1, 2}), 2);
   EXPECT_DOUBLE_EQ(median({6, 1, 2, 4}), 3);
@@ -502,7 +502,7 @@ TEST(Timing, ConfidenceIsStudents) {
   EXPECT_TRUE(std::isnan(timesOf({1}).confidence99()));
 }
 
-TEST(Timing, GeometricMeanOfRatios) {
+TEST(Timing, AveragesRatiosGeometrically) {
   EXPECT_NEAR(geometricMean({2, 0.5}), 1, 1e-12);
   EXPECT_NEAR(geometricMean({1, 10, 100}), 10, 1e-12);
   EXPECT_NEAR(geometricMean({7}), 7, 1e-12);

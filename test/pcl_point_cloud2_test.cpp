@@ -239,7 +239,7 @@ std::string errorOf(const PCLPointCloud2& message) {
   return error;
 }
 
-TEST(PointCloud2, OfVelodyne) {
+TEST(PointCloud2, ClustersVelodynesMessages) {
   const Scan scan = scanOfBoxes();
   for (const auto& [fields, step] : {std::pair(kVelodyne, 22), std::pair(kVelodynePadded, 32)})
     for (const double start : {0.0, -0.1}) {
@@ -275,7 +275,7 @@ TEST(PointCloud2, GivesTheColumnsThatWereFired) {
     }
 }
 
-TEST(PointCloud2, OfVelodyneWithoutTime) {
+TEST(PointCloud2, ClustersVelodynesMessagesWithoutTime) {
   const auto cloud = expectSameAsPcl(messageOf(onlyReturns(shotsOf(scanOfBoxes())), kVelodyneWithoutTime, 18));
   EXPECT_EQ(cloud.height, 16U);
   EXPECT_LE(cloud.width, 500U);
@@ -294,7 +294,7 @@ PCLPointCloud2 inRows(PCLPointCloud2 message, std::size_t height, std::size_t sp
   return message;
 }
 
-TEST(PointCloud2, OfOusterIsTakenAsItIs) {
+TEST(PointCloud2, KeepsTheOrganizationOfOuster) {
   const Scan scan = scanOfBoxes();
   std::vector<Shot> shots = shotsOf(scan, 0);
   std::stable_sort(shots.begin(), shots.end(), [](const Shot& a, const Shot& b) { return a.ring < b.ring; });
@@ -308,7 +308,7 @@ TEST(PointCloud2, OfOusterIsTakenAsItIs) {
     }
 }
 
-TEST(PointCloud2, WhoseRowsAreFiringsIsTurned) {
+TEST(PointCloud2, TransposesRowsOfFirings) {
   const Scan scan = scanOfBoxes();
   for (const std::size_t spare : {0U, 3U}) {
     const auto cloud = expectSameAsPcl(inRows(messageOf(shotsOf(scan), kVelodyne, 22), 360, spare));
@@ -317,13 +317,13 @@ TEST(PointCloud2, WhoseRowsAreFiringsIsTurned) {
   }
 }
 
-TEST(PointCloud2, OfOusterInOneRow) {
+TEST(PointCloud2, ClustersOustersMessagesInOneRow) {
   const auto cloud = expectSameAsPcl(messageOf(onlyReturns(shotsOf(scanOfBoxes(), 0)), kOuster, 48));
   EXPECT_EQ(cloud.height, 16U);
   EXPECT_LE(cloud.width, 360U);
 }
 
-TEST(PointCloud2, OfHesai) {
+TEST(PointCloud2, ClustersHesaisMessages) {
   const std::vector<Shot> shots = onlyReturns(shotsOf(scanOfBoxes()));
   for (const auto& [fields, step] : {std::pair(kHesai, 48), std::pair(kHesaiPacked, 26)}) {
     const auto cloud = expectSameAsPcl(messageOf(shots, fields, static_cast<std::size_t>(step), 1790000000.123));
@@ -332,7 +332,7 @@ TEST(PointCloud2, OfHesai) {
   }
 }
 
-TEST(PointCloud2, OfAutoware) {
+TEST(PointCloud2, ClustersAutowaresMessages) {
   const auto cloud = expectSameAsPcl(messageOf(onlyReturns(shotsOf(scanOfBoxes())), kAutoware, 32));
   EXPECT_EQ(cloud.height, 16U);
   EXPECT_LE(cloud.width, 360U);
@@ -341,7 +341,7 @@ TEST(PointCloud2, OfAutoware) {
   EXPECT_EQ(most, 199.0F);  // from an integer
 }
 
-TEST(PointCloud2, OfTwoReturnsPerShot) {
+TEST(PointCloud2, KeepsTwoReturnsPerShot) {
   std::vector<Shot> shots;
   for (Shot shot : shotsOf(scanOfBoxes())) {
     shots.push_back(shot);
@@ -357,7 +357,7 @@ TEST(PointCloud2, OfTwoReturnsPerShot) {
 }
 
 // All times of a packet equal, constant times, times that are NaN.
-TEST(PointCloud2, WithPoorTimes) {
+TEST(PointCloud2, AcceptsPoorTimes) {
   std::vector<Shot> shots = onlyReturns(shotsOf(scanOfBoxes()));
   for (Shot& shot : shots) shot.time = kPeriod * static_cast<double>(shot.firing / 12 * 12);
   EXPECT_EQ(expectSameAsPcl(messageOf(shots, kVelodyne, 22)).height, 16U);
@@ -370,7 +370,7 @@ TEST(PointCloud2, WithPoorTimes) {
   expectSameAsPcl(messageOf(shots, kVelodyne, 22));
 }
 
-TEST(PointCloud2, WithoutRingIsTakenAsItIs) {
+TEST(PointCloud2, KeepsTheOrganizationWithoutRing) {
   std::vector<Field> fields = kVelodyne;
   fields.erase(fields.begin() + 4);
   const auto cloud = expectSameAsPcl(messageOf(shotsOf(scanOfBoxes()), fields, 22));
@@ -379,7 +379,7 @@ TEST(PointCloud2, WithoutRingIsTakenAsItIs) {
 }
 
 // A row and a column for every point would take the memory of their product.
-TEST(PointCloud2, WithARingForEachPointIsTakenAsItIs) {
+TEST(PointCloud2, KeepsTheOrganizationWithARingForEachPoint) {
   std::vector<Shot> shots = shotsOf(scanOfBoxes());
   for (std::size_t i = 0; i < shots.size(); ++i) shots[i].ring = i / 2;
   EXPECT_EQ(expectSameAsPcl(messageOf(shots, kVelodyne, 22)).height, 1U);
@@ -389,7 +389,7 @@ TEST(PointCloud2, WithARingForEachPointIsTakenAsItIs) {
   EXPECT_EQ(expectSameAsPcl(messageOf(shots, fields, 32)).height, 1U);
 }
 
-TEST(PointCloud2, WithFieldsInAnyOrderAndOfAnyType) {
+TEST(PointCloud2, AcceptsFieldsInAnyOrderAndOfAnyType) {
   const std::vector<Shot> all = shotsOf(scanOfBoxes());
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -459,7 +459,7 @@ TEST(PointCloud2, CopiesColor) {
     }
 }
 
-TEST(PointCloud2, WithoutPointsGivesAnEmptyCloud) {
+TEST(PointCloud2, GivesAnEmptyCloudWithoutPoints) {
   PCLPointCloud2 message = messageOf({}, kVelodyne, 22);
   EXPECT_EQ(errorOf(message), "");
   pcl::PointCloud<PointXYZI> cloud(3, 2);
@@ -469,7 +469,7 @@ TEST(PointCloud2, WithoutPointsGivesAnEmptyCloud) {
   EXPECT_TRUE(point_of_cell.empty());
 }
 
-TEST(PointCloud2, OnlyNoReturns) {
+TEST(PointCloud2, AcceptsOnlyNoReturns) {
   std::vector<Shot> shots = shotsOf(Scan(10, 4));
   pcl::PointCloud<PointXYZI> cloud;
   pcl::Indices point_of_cell;
@@ -525,7 +525,7 @@ TEST(PointCloud2, RejectsMalformedMessages) {
 }
 
 // Any bytes give an error or a cloud that fits the message; the sanitizers check that no read is beyond the data.
-TEST(PointCloud2, OfAnyBytes) {
+TEST(PointCloud2, AcceptsAnyBytes) {
   const std::vector<Shot> shots = [] {
     Random random(5);
     return shotsOf(boxesAround(random, 12, 4));
@@ -594,7 +594,7 @@ TEST(PointCloud2, OfAnyBytes) {
   EXPECT_LT(read, 18000U);
 }
 
-TEST(PointCloud2, ClustersOfOtherCellsAreRejected) {
+TEST(PointCloud2, RejectsClustersOfOtherCells) {
   const pcl::Indices point_of_cell{5, pcl::UNAVAILABLE, 3, 4};
   Clusters good(2);
   good[0].indices = {0};

@@ -390,7 +390,7 @@ TEST_P(VoxelClouds, EqualTheOracle) {
 }
 
 // Only some returns of a ring block, as where the others are placed in the range image: none continues a run.
-TEST_P(VoxelClouds, OfSomeReturnsOfEachBlock) {
+TEST_P(VoxelClouds, EqualTheOracleOnSomeReturns) {
   const std::uint64_t seeds = GetParam() * 1'000'000 + 500'000;
   Probe probe(1.0F);
   for (std::uint64_t seed = seeds; seed < seeds + timesEffort(300); ++seed) {
