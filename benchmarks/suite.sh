@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Runs all benchmarks, or the SECTIONs that are named, and rewrites their tables in doc/benchmarks.md (those of real scans in
-# README.md too). A section that fails, as by clusters that are not PCL's, keeps its old table; the others go on, and the
-# suite exits with 1. Takes about 45 minutes on two cores.
+# Runs all benchmarks, or the given SECTIONs, and rewrites their tables in doc/benchmarks.md (those of real scans in
+# README.md too). A section that fails, as by clusters that are not PCL's, keeps its old table; the others continue, and
+# the suite exits with 1. Takes about 45 minutes on two cores.
 #
 #   benchmarks/suite.sh [--runs N] [SECTION...]     --runs: timed runs of each baseline (default 5)
 #
-# Sections: real recordings vehicle worst growth memory threads stages, and latency, whose tables and picture are in doc/streaming.md
+# Sections: real recordings vehicle worst growth memory threads stages, and latency, whose tables and picture are in
+# doc/streaming.md
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/benchmarks/tools.sh"
@@ -40,14 +41,15 @@ trap 'rm -rf "$out"' EXIT
 
 simulate() { "$build/apps/lisco_simulate" "$@" >/dev/null; }
 
-# compare NAME ARGUMENT...: compares; its tables go to $out/NAME.txt and NAME.csv.
+# compare NAME ARGUMENT...: compares, with the tables in $out/NAME.txt and NAME.csv.
 compare() {
   local name=$1
   shift
   report "$out/$name.txt" "$build/apps/lisco_compare" --max-seconds 5 --csv "$out/$name.csv" "$@"
 }
 
-# publish TABLE SECTION NAME...: what `compare NAME` has found, as a table of tables.awk below the head that says on what machine.
+# publish TABLE SECTION NAME...: writes the results of `compare NAME` as a table of tables.awk, below the lines that
+# name the machine.
 publish() {
   local table=$1 section=$2 name=$3
   shift 2
@@ -55,10 +57,11 @@ publish() {
   csvs=("${csvs[@]/%/.csv}")
   {
     head -n 3 "$out/$name.txt" && table "$table" "${csvs[@]}"
-  } >"$out/$name.table" && code_block <"$out/$name.table" | replace_section "$document" "$section" && cat "$out/$name.table"
+  } >"$out/$name.table" && code_block <"$out/$name.table" | replace_section "$document" "$section" &&
+    cat "$out/$name.table"
 }
 
-# Each of these measures one section. They run as a condition, in which bash ignores `set -e`: hence the && all over.
+# Each of these measures one section. They run as a condition, in which bash ignores `set -e`: hence each &&.
 
 baselines=(--baselines "pcl,grid,lisco" --must-agree "grid,lisco")
 
@@ -89,7 +92,7 @@ measure_vehicle() {
     publish benchmarks "vehicle" vehicle
 }
 
-# Where most returns are neighbours of each other, PCL's time grows with their square: there the sensor turns in fewer steps.
+# Where most returns are neighbours of each other, PCL's time grows with their square: these scans have fewer steps.
 simulate_worst() {
   [ ! -d "$out/worst" ] || return 0
   mkdir "$out/worst" || return 1
@@ -100,7 +103,8 @@ simulate_worst() {
   for gap in 0.11 0.41 1.01; do  # just beyond each of the tolerances
     simulate --case sheets --gap "$gap" -o "$out/worst/sheets_$gap.pcd" || return 1
   done
-  simulate --case wall --steps 450 -o "$out/worst/wall.pcd" && simulate --case blocked --steps 225 -o "$out/worst/blocked.pcd"
+  simulate --case wall --steps 450 -o "$out/worst/wall.pcd" &&
+    simulate --case blocked --steps 225 -o "$out/worst/blocked.pcd"
 }
 
 measure_worst() {
@@ -108,26 +112,29 @@ measure_worst() {
     publish benchmarks "worst cases" worst
 }
 
-# Twice the lasers, twice the steps, and twice both. Lisco alone is timed, in many runs and two passes, so that what disturbs the machine
-# for some seconds does not look like growth.
+# Twice the lasers, twice the steps, and twice both. Only Lisco is timed, in many runs and two passes, so that a
+# disturbance of some seconds does not look like growth.
 measure_growth() {
   mkdir "$out/growth" || return 1
   local scene lasers steps size
   for scene in 3 5; do
     for lasers in 016 032 064 128; do
-      simulate --scene "$scene" --lasers "$((10#$lasers))" --steps 2048 -o "$out/growth/scene${scene}_lasers_$lasers.pcd" || return 1
+      simulate --scene "$scene" --lasers "$((10#$lasers))" --steps 2048 \
+        -o "$out/growth/scene${scene}_lasers_$lasers.pcd" || return 1
     done
     for steps in 0512 1024 2048 4096; do
-      simulate --scene "$scene" --lasers 64 --steps "$((10#$steps))" -o "$out/growth/scene${scene}_steps_$steps.pcd" || return 1
+      simulate --scene "$scene" --lasers 64 --steps "$((10#$steps))" \
+        -o "$out/growth/scene${scene}_steps_$steps.pcd" || return 1
     done
     for size in 1 2 4; do
-      simulate --scene "$scene" --lasers $((32 * size)) --steps $((1024 * size)) -o "$out/growth/scene${scene}_both_$size.pcd" ||
-        return 1
+      simulate --scene "$scene" --lasers $((32 * size)) --steps $((1024 * size)) \
+        -o "$out/growth/scene${scene}_both_$size.pcd" || return 1
     done
   done
   local pass
   for pass in 1 2; do
-    compare "growth$pass" --baselines lisco --runs $((20 * runs)) --tolerance 0.4 --ground-z -1.6 "$out/growth" || return 1
+    compare "growth$pass" --baselines lisco --runs $((20 * runs)) --tolerance 0.4 --ground-z -1.6 "$out/growth" ||
+      return 1
   done
   publish growth "growth" growth1 growth2
 }
@@ -141,20 +148,22 @@ measure_memory() {
     code_block <"$out/memory.table" | replace_section "$document" "memory" && cat "$out/memory.table"
 }
 
-# measure_engine TABLE: that table of engine_stages, whose runs are short, and thus many.
+# measure_engine TABLE: a table of engine_stages, with four times the runs, which are short.
 measure_engine() {
   local table=$1
-  report "$out/$table.txt" "$build/benchmarks/engine_stages" --table "$table" --runs $((4 * runs)) --tolerance 0.1,0.4,1 \
-    "${ground[@]}" "${rotating[@]}" &&
+  report "$out/$table.txt" "$build/benchmarks/engine_stages" --table "$table" --runs $((4 * runs)) \
+    --tolerance 0.1,0.4,1 "${ground[@]}" "${rotating[@]}" &&
     code_block <"$out/$table.txt" | replace_section "$document" "$table" && cat "$out/$table.txt"
 }
 
-# The captures, and scans of the sensors of which there is none, column by column.
+# The captures, and column by column the scans of sensors without a capture.
 measure_latency() {
-  local streams=("$data"/captures/*.pcap "$data"/scans/{hdl64e_city_0,vls128_street_0,os1_128_outdoor_0,os1_64_sparse_0}.pcd)
-  local heights=("${ground[@]}" --ground-z hdl32e_outdoor=-2.10 --ground-z vlp16_close=-0.57 --ground-z vlp16_street=-1.99
-    --ground-z vls128_street=-1.74)
-  local sensors=(--sensor hdl32e=hdl32e --sensor hdl64e=hdl64e --sensor vlp16=vlp16 --sensor vls128=vls128 --sensor os1=os1)
+  local scans=("$data"/scans/{hdl64e_city_0,vls128_street_0,os1_128_outdoor_0,os1_64_sparse_0}.pcd)
+  local streams=("$data"/captures/*.pcap "${scans[@]}")
+  local heights=("${ground[@]}" --ground-z hdl32e_outdoor=-2.10 --ground-z vlp16_close=-0.57
+    --ground-z vlp16_street=-1.99 --ground-z vls128_street=-1.74)
+  local sensors=(--sensor hdl32e=hdl32e --sensor hdl64e=hdl64e --sensor vlp16=vlp16 --sensor vls128=vls128
+    --sensor os1=os1)
   local latency=("$build/benchmarks/stream_latency" --runs "$runs" "${sensors[@]}" "${heights[@]}")
   local streaming=$root/doc/streaming.md
   report "$out/latency.txt" "${latency[@]}" --tolerance 0.1,0.4,1 "${streams[@]}" &&
@@ -168,14 +177,14 @@ measure_latency() {
 measure_threads() { measure_engine threads; }
 measure_stages() { measure_engine stages; }
 
-# More sections: a function measure_NAME here, NAME in `all_sections` and in the head of this file, and in doc/benchmarks.md a place
-# for the table.
+# Another section takes a function measure_NAME here, NAME in `all_sections` and in the head of this file, and a section
+# for the table in doc/benchmarks.md.
 
 failed=()
 for section in "${sections[@]}"; do
   "measure_$section" || failed+=("$section")
 done
 if [ ${#failed[@]} -gt 0 ]; then
-  echo "failed, and left as they were: ${failed[*]}" >&2
+  echo "failed, tables unchanged: ${failed[*]}" >&2
   exit 1
 fi

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Tables of the documents, from one or more files that `lisco_compare --csv` and literal_mask write. Which one: -v table=NAME.
-# Names of scans must hold no commas.
+# Tables of the documents, made of files by `lisco_compare --csv` and literal_mask; -v table=NAME chooses one.
+# Names of scans contain no commas.
 BEGIN { FS = "," }
 FNR == 1 { for (i = 1; i <= NF; ++i) column[$i] = i; next }
 { gsub(/"/, "", $1) }
@@ -14,7 +14,7 @@ table != "mask" {
   if (!((scan, tolerance) in clusters)) { ++cases; case_scan[cases] = scan; case_tolerance[cases] = tolerance }
   if (!(tolerance in seen)) { seen[tolerance] = 1; tolerances[++tolerance_count] = tolerance }
   clusters[scan, tolerance] = field("reference_clusters")
-  # Of a case that was measured more than once, the quietest time counts: what disturbs a machine only makes it slower.
+  # Of a case that was measured more than once, the least time counts: disturbances only add time.
   if (!(key(baseline) in least) || field("min_ms") < least[key(baseline)]) least[key(baseline)] = field("min_ms")
   if ((key(baseline) in median) && median[key(baseline)] <= field("median_ms")) next
   mean[key(baseline)] = field("mean_ms"); error[key(baseline)] = field("confidence99_ms")
@@ -23,12 +23,17 @@ table != "mask" {
   cells[scan] = field("rows") * field("columns")
   identical[key(baseline)] = field("identical")
   objects[scan, tolerance] = field("objects"); whole[scan, tolerance] = field("whole")
-  split_[scan, tolerance] = field("split"); merged[scan, tolerance] = field("merged"); missed[scan, tolerance] = field("missed")
+  split_[scan, tolerance] = field("split"); merged[scan, tolerance] = field("merged")
+  missed[scan, tolerance] = field("missed")
 }
 
-# Three digits that matter.
-function short(value) { return value >= 100 ? sprintf("%.0f", value) : value >= 10 ? sprintf("%.1f", value) : sprintf("%.2f", value) }
-function ratio(values, scan, tolerance, slow, fast) { return values[scan, tolerance, slow] / values[scan, tolerance, fast] }
+# Three significant digits.
+function short(value) {
+  return value >= 100 ? sprintf("%.0f", value) : value >= 10 ? sprintf("%.1f", value) : sprintf("%.2f", value)
+}
+function ratio(values, scan, tolerance, slow, fast) {
+  return values[scan, tolerance, slow] / values[scan, tolerance, fast]
+}
 
 # Geometric mean and lowest of slow's time over fast's, for the line below a table.
 function summary(slow, fast,   i, sum, cold_sum, r, lowest) {
@@ -38,26 +43,34 @@ function summary(slow, fast,   i, sum, cold_sum, r, lowest) {
     sum += log(r); if (r < lowest) lowest = r
     cold_sum += log(ratio(cold, case_scan[i], case_tolerance[i], slow, fast))
   }
-  return sprintf("geometric mean %s, lowest %s; of first runs, with cold memory, %s", short(exp(sum / cases)), short(lowest), short(exp(cold_sum / cases)))
+  return sprintf("geometric mean %s, lowest %s; of first runs, with cold memory, %s", short(exp(sum / cases)),
+                 short(lowest), short(exp(cold_sum / cases)))
 }
 
 # Half the distance between the quartiles, in percent of the median.
-function spread(s, t, baseline) { return sprintf("%.0f%%", 50 * (upper[s, t, baseline] - lower[s, t, baseline]) / median[s, t, baseline]) }
+function spread(s, t, baseline) {
+  return sprintf("%.0f%%", 50 * (upper[s, t, baseline] - lower[s, t, baseline]) / median[s, t, baseline])
+}
 
 function benchmarks(   i, s, t) {
-  printf "%-20s %8s %5s %8s %9s %4s %9s %4s %9s %4s %10s %10s  %s\n", "scan", "returns", "eps", "clusters", "PCL ms", "+-", "grid ms", "+-", "Lisco ms", "+-", "PCL/Lisco", "grid/Lisco", "identical"
+  printf "%-18s %8s %5s %8s %9s %4s %9s %4s %9s %4s %10s %10s  %s\n", "scan", "returns", "eps", "clusters",
+         "PCL ms", "+-", "grid ms", "+-", "Lisco ms", "+-", "PCL/Lisco", "grid/Lisco", "identical"
   for (i = 1; i <= cases; ++i) {
     s = case_scan[i]; t = case_tolerance[i]
-    printf "%-20s %8d %5.2f %8d %9.2f %4s %9.3f %4s %9.3f %4s %10.1f %10.2f  %s\n", s, returns[s], t, clusters[s, t], median[s, t, "pcl"], spread(s, t, "pcl"), median[s, t, "grid"], spread(s, t, "grid"), median[s, t, "lisco"], spread(s, t, "lisco"), ratio(median, s, t, "pcl", "lisco"), ratio(median, s, t, "grid", "lisco"), identical[s, t, "lisco"]
+    printf "%-18s %8d %5.2f %8d %9.2f %4s %9.3f %4s %9.3f %4s %10.1f %10.2f  %s\n", s, returns[s], t, clusters[s, t],
+           median[s, t, "pcl"], spread(s, t, "pcl"), median[s, t, "grid"], spread(s, t, "grid"),
+           median[s, t, "lisco"], spread(s, t, "lisco"), ratio(median, s, t, "pcl", "lisco"),
+           ratio(median, s, t, "grid", "lisco"), identical[s, t, "lisco"]
   }
   printf "PCL / Lisco in %d cases: %s\n", cases, summary("pcl", "lisco")
   printf "grid / Lisco in %d cases: %s\n", cases, summary("grid", "lisco")
 }
 
-# Lisco's time over the number of cells. Scans of a series are called SERIES_NUMBER, smallest first. "doubling" says by how much
-# the fastest run takes longer where the cells double: on a shared machine long runs are disturbed more often than short ones.
+# Lisco's time over the number of cells. Scans of a series are called SERIES_NUMBER, smallest first. "doubling" is the
+# ratio of the fastest runs per doubling of the cells: on a shared machine long runs are disturbed more often.
 function growth(   i, s, t, series, before, factor, doublings, sum, count, highest) {
-  printf "%-22s %9s %9s %5s %8s %9s %4s %9s %8s  %s\n", "scan", "cells", "returns", "eps", "clusters", "Lisco ms", "+-", "fastest", "doubling", "identical"
+  printf "%-22s %9s %9s %5s %8s %9s %4s %9s %8s  %s\n", "scan", "cells", "returns", "eps", "clusters", "Lisco ms",
+         "+-", "fastest", "doubling", "identical"
   for (i = 1; i <= cases; ++i) {
     s = case_scan[i]; t = case_tolerance[i]
     factor = "-"
@@ -69,9 +82,11 @@ function growth(   i, s, t, series, before, factor, doublings, sum, count, highe
       factor = sprintf("%.2f", factor)
     }
     series = s; sub(/[0-9]+$/, "", series); before = s
-    printf "%-22s %9d %9d %5.2f %8d %9.3f %4s %9.3f %8s  %s\n", s, cells[s], returns[s], t, clusters[s, t], median[s, t, "lisco"], spread(s, t, "lisco"), least[s, t, "lisco"], factor, identical[s, t, "lisco"]
+    printf "%-22s %9d %9d %5.2f %8d %9.3f %4s %9.3f %8s  %s\n", s, cells[s], returns[s], t, clusters[s, t],
+           median[s, t, "lisco"], spread(s, t, "lisco"), least[s, t, "lisco"], factor, identical[s, t, "lisco"]
   }
-  printf "time per doubling of the cells: geometric mean %.2f, highest %.2f; at most 2.3 is wanted\n", exp(sum / count), highest
+  printf "time per doubling of the cells: geometric mean %.2f, highest %.2f; at most 2.3 is wanted\n",
+         exp(sum / count), highest
 }
 
 # One row per scan, one column per tolerance: PCL's time, Lisco's time, and their ratio.
@@ -86,7 +101,9 @@ function readme(   i, j, s, t) {
     printf "| %s | %d |", s, returns[s]
     for (j = 1; j <= tolerance_count; ++j) {
       t = tolerances[j]
-      if (wanted(t)) printf " %s → %s (%s×) |", short(median[s, t, "pcl"]), short(median[s, t, "lisco"]), short(ratio(median, s, t, "pcl", "lisco"))
+      if (!wanted(t)) continue
+      printf " %s → %s (%s×) |", short(median[s, t, "pcl"]), short(median[s, t, "lisco"]),
+             short(ratio(median, s, t, "pcl", "lisco"))
     }
     print ""
   }
@@ -94,15 +111,24 @@ function readme(   i, j, s, t) {
 }
 function wanted(tolerance) { return tolerance == 0.1 || tolerance == 0.4 || tolerance == 1 }
 
-# Mean time of each baseline with its confidence, and how many times as fast as PCL with KdTree (false) it is, by means.
+# Mean time of each baseline with its confidence, and the ratio of PCL's mean, with KdTree (false), to it.
 function times(   i, s, t) {
-  print "| scan | returns | ε | clusters | PCL | PCL, octree | paper's Lisco | grid | Lisco | PCL / octree | PCL / paper's | PCL / grid | PCL / Lisco |"
+  printf "| scan | returns | ε | clusters | PCL | PCL, octree | paper's Lisco | grid | Lisco |"
+  print " PCL / octree | PCL / paper's | PCL / grid | PCL / Lisco |"
   print "|---|---|---|---|---|---|---|---|---|---|---|---|---|"
   for (i = 1; i <= cases; ++i) {
     s = case_scan[i]; t = case_tolerance[i]
-    printf "| %s | %d | %g | %d | %s | %s | %s%s | %s | %s | %s | %s | %s | %s |\n", s, returns[s], t, clusters[s, t], timed(s, t, "pcl"), timed(s, t, "pcl-octree"), timed(s, t, "paper"), identical[s, t, "paper"] == "yes" ? "" : " *", timed(s, t, "grid"), timed(s, t, "lisco"), short(ratio(mean, s, t, "pcl", "pcl-octree")), short(ratio(mean, s, t, "pcl", "paper")), short(ratio(mean, s, t, "pcl", "grid")), short(ratio(mean, s, t, "pcl", "lisco"))
+    printf "| %s | %d | %g | %d | %s | %s | %s%s | %s | %s |", s, returns[s], t, clusters[s, t], timed(s, t, "pcl"),
+           timed(s, t, "pcl-octree"), timed(s, t, "paper"), identical[s, t, "paper"] == "yes" ? "" : " *",
+           timed(s, t, "grid"), timed(s, t, "lisco")
+    printf " %s | %s | %s | %s |\n", short(ratio(mean, s, t, "pcl", "pcl-octree")),
+           short(ratio(mean, s, t, "pcl", "paper")), short(ratio(mean, s, t, "pcl", "grid")),
+           short(ratio(mean, s, t, "pcl", "lisco"))
   }
-  printf "\nGeometric means of the ratios to PCL: octree %s, paper's Lisco %s, grid %s, Lisco %s; lowest: %s, %s, %s, %s.\n", overall("pcl-octree"), overall("paper"), overall("grid"), overall("lisco"), lowest_of("pcl-octree"), lowest_of("paper"), lowest_of("grid"), lowest_of("lisco")
+  printf "\nGeometric means of the ratios to PCL: octree %s, paper's Lisco %s, grid %s, Lisco %s;",
+         overall("pcl-octree"), overall("paper"), overall("grid"), overall("lisco")
+  printf " lowest: %s, %s, %s, %s.\n",
+         lowest_of("pcl-octree"), lowest_of("paper"), lowest_of("grid"), lowest_of("lisco")
 }
 function overall(baseline,   i, sum) {
   for (i = 1; i <= cases; ++i) sum += log(ratio(mean, case_scan[i], case_tolerance[i], "pcl", baseline))
@@ -110,7 +136,10 @@ function overall(baseline,   i, sum) {
 }
 function lowest_of(baseline,   i, r, lowest) {
   lowest = 1e30
-  for (i = 1; i <= cases; ++i) { r = ratio(mean, case_scan[i], case_tolerance[i], "pcl", baseline); if (r < lowest) lowest = r }
+  for (i = 1; i <= cases; ++i) {
+    r = ratio(mean, case_scan[i], case_tolerance[i], "pcl", baseline)
+    if (r < lowest) lowest = r
+  }
   return short(lowest)
 }
 function timed(s, t, baseline) { return short(mean[s, t, baseline]) " ± " short(error[s, t, baseline]) }
@@ -149,7 +178,8 @@ table == "mask" {
   if (!(scan in returns)) { returns[scan] = field("returns"); scans[++scan_count] = scan }
   if (!(t in seen)) { seen[t] = 1; tolerances[++tolerance_count] = t }
   mislabelled[scan, t] = field("mislabelled"); destaggered[scan, t] = field("mislabelled_destaggered")
-  pairs[scan, t] = field("pairs"); horizon[scan, t] = field("missed_horizon"); columns[scan, t] = field("missed_columns"); lasers[scan, t] = field("missed_lasers")
+  pairs[scan, t] = field("pairs"); horizon[scan, t] = field("missed_horizon")
+  columns[scan, t] = field("missed_columns"); lasers[scan, t] = field("missed_lasers")
 }
 function mask(   i, j, s, t, at) {
   at = 0.3
@@ -161,7 +191,10 @@ function mask(   i, j, s, t, at) {
   for (i = 1; i <= scan_count; ++i) {
     s = scans[i]
     printf "| %s | %d |", s, returns[s]
-    for (j = 1; j <= tolerance_count; ++j) { t = tolerances[j]; printf " %d (%d) |", mislabelled[s, t], destaggered[s, t] }
+    for (j = 1; j <= tolerance_count; ++j) {
+      t = tolerances[j]
+      printf " %d (%d) |", mislabelled[s, t], destaggered[s, t]
+    }
     printf " %.2f %% |", 100 * (lasers[s, at] + horizon[s, at] + columns[s, at]) / pairs[s, at]
     printf " %d | %d | %d |\n", columns[s, at], horizon[s, at], lasers[s, at]
   }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Draws when work is done while the sensor turns: gnuplot -e "data='timeline.txt'; image='timeline.png'" timeline.gp
-# data: what `stream_latency --table timeline` prints.
+# Draws the work over time during a rotation: gnuplot -e "data='timeline.txt'; image='timeline.png'" timeline.gp
+# data: the output of `stream_latency --table timeline`.
 set terminal pngcairo size 1100,420 font "DejaVu Sans,11"
 set output image
 set xlabel "milliseconds since the first turn began (10 turns a second)"
@@ -16,6 +16,6 @@ set arrow from 200,graph 0 to 200,graph 1 nohead dashtype 2 linecolor "#808080"
 set label "first turn complete" at 101,3.0 textcolor "#606060"
 set label "second" at 201,3.0 textcolor "#606060"
 lane(name) = name eq "pcl" ? 0 : name eq "grid" ? 1 : 2
-# Boxes as high as the share of the time at work, from a lane's floor.
+# Boxes as high as the share of working time, on the base line of each lane.
 plot data using (($2 + $3) / 2):(lane(strcol(1)) + 0.4 * $4):2:3:(lane(strcol(1))):(lane(strcol(1)) + 0.8 * $4) \
        with boxxyerror linecolor "#2060c0" notitle

@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# What the scripts here share; sourced by them after `root` is set.
+# Shared by the scripts here, which source it after setting `root`.
 . "$root/cmake/script_tools.sh"
 
 data=${LISCO_TEST_DATA:-$root/../shared/data}
 build=$root/build/benchmarks
 
-# Installs what is missing and builds the programs.
+# Installs missing packages and builds the programs.
 build_benchmarks() {
   "$root/cmake/install_dependencies.sh"
   build_quietly "$root" "$build" -DCMAKE_BUILD_TYPE=Release -DLISCO_BUILD_BENCHMARKS=ON -DLISCO_BUILD_TESTS=OFF
 }
 
-# The rotating scans, and the heights below which the ground lies in each; recording_sets.cpp has the same heights.
+# Sets `rotating` to the rotating scans, and `ground` to the options with the height of the ground in each, which are
+# also those of recording_sets.cpp.
 find_real_scans() {
   rotating=()
   for scan in "$data"/scans/*.pcd; do
@@ -22,14 +23,14 @@ find_real_scans() {
     return 1
   fi
   ground=()
-  for height in hdl32e_outdoor_0=-2.10 hdl32e_outdoor_1=-2.10 hdl64e_city_0=-1.60 hdl64e_city_1=-1.60 vlp16_close_0=-0.57 \
-                vlp16_street_0=-1.99 vls128_street_0=-1.74 os1_128_outdoor_0=-1.81 os1_64_sparse_0=-0.48 \
-                hdl64e_kitti_0=-1.30 vls128_deskewed_0=0.30; do
+  for height in hdl32e_outdoor_0=-2.10 hdl32e_outdoor_1=-2.10 hdl64e_city_0=-1.60 hdl64e_city_1=-1.60 \
+                vlp16_close_0=-0.57 vlp16_street_0=-1.99 vls128_street_0=-1.74 os1_128_outdoor_0=-1.81 \
+                os1_64_sparse_0=-0.48 hdl64e_kitti_0=-1.30 vls128_deskewed_0=0.30; do
     ground+=(--ground-z "$height")
   done
 }
 
-# report LOG COMMAND...: runs a comparison with its tables going to LOG, and shows them if it fails.
+# report LOG COMMAND...: runs a comparison with its tables in LOG, and shows them if it fails.
 report() {
   local log=$1
   shift
@@ -46,14 +47,16 @@ table() {
   awk -v table="$name" -f "$root/benchmarks/tables.awk" "$@"
 }
 
-# replace_section FILE NAME: replaces what stands in FILE between the lines `<!-- NAME -->` and `<!-- end -->` by stdin.
+# replace_section FILE NAME: replaces the lines of FILE between `<!-- NAME -->` and `<!-- end -->` by stdin.
 replace_section() {
   local file=$1 name=$2 new
   new=$(mktemp)
   cat >"$new"
-  if ! awk -v begin="<!-- $name -->" '$0 == begin { begun = 1 } begun && $0 == "<!-- end -->" { ended = 1 } END { exit !ended }' \
-       "$file"; then
-    echo "$file has no section '$name' that ends" >&2
+  if ! awk -v begin="<!-- $name -->" '
+       $0 == begin { begun = 1 }
+       begun && $0 == "<!-- end -->" { ended = 1 }
+       END { exit !ended }' "$file"; then
+    echo "$file has no complete section '$name'" >&2
     return 1
   fi
   awk -v begin="<!-- $name -->" -v new="$new" '

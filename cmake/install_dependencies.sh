@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs what building, running and testing needs from Debian's (or Ubuntu's) packages. Does nothing, and needs no network,
-# if all of it is there.
+# Installs Debian's (or Ubuntu's) packages for building, running and testing. Does nothing, and needs no network, if all
+# are installed.
 set -euo pipefail
 
-packages=(g++ cmake ninja-build pkg-config libpcl-dev libhwy-dev libboost-program-options-dev nlohmann-json3-dev libcairo2-dev libpcap-dev
-          fonts-dejavu-core gnuplot-nox libgtest-dev liblz4-dev doxygen dpkg-dev file help2man binutils)
+packages=(g++ cmake ninja-build pkg-config libpcl-dev libhwy-dev libboost-program-options-dev nlohmann-json3-dev
+          libcairo2-dev libpcap-dev fonts-dejavu-core gnuplot-nox libgtest-dev liblz4-dev doxygen dpkg-dev file help2man
+          binutils)
 
 missing=()
 for package in "${packages[@]}"; do
@@ -17,10 +18,10 @@ as_root=()
 [ "$(id -u)" -eq 0 ] || as_root=(sudo)
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-echo "installing ${missing[*]} (minutes: with what they need, up to 600 MB to download)"
+echo "installing ${missing[*]} (takes minutes: up to 600 MB to download with dependencies)"
 if ! { "${as_root[@]}" apt-get update &&
-       "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"; } \
-     >"$log" 2>&1 </dev/null; then
+       "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+         apt-get install -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1 </dev/null; then
   cat "$log" >&2
   echo "could not install: ${missing[*]}" >&2
   exit 1

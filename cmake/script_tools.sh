@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# What the scripts share; sourced by them.
+# Shared by the scripts, which source it.
 
-# quietly LOG COMMAND...: runs a command and shows what it printed only if it fails.
+# quietly LOG COMMAND...: runs a command and shows its output only if it fails.
 quietly() {
   local log=$1
   shift
@@ -12,8 +12,8 @@ quietly() {
   fi
 }
 
-# build_quietly SOURCE BUILD [--target TARGET --] CMAKE-OPTION...: configures and builds all, or a target. Says so the first time,
-# when it takes long.
+# build_quietly SOURCE BUILD [--target TARGET --] CMAKE-OPTION...: configures and builds all, or a target. Prints a line
+# before the first build, which takes minutes.
 build_quietly() {
   local source=$1 build=$2 target=all
   shift 2

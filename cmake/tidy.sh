@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tidy.sh [FILE...]: runs clang-tidy with the checks of .clang-tidy over files of the library and the programs (default: all of
-# them), and fails if it finds anything. Needs clang-tidy.
+# tidy.sh [FILE...]: runs clang-tidy with the checks of .clang-tidy over files of the library and the programs (default:
+# all), and fails on any finding. Needs clang-tidy.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/cmake/script_tools.sh"
@@ -16,6 +16,6 @@ if [ $# -eq 0 ]; then
 else
   files=("$@")
 fi
-# It counts what it hides in the headers of others; what is left is ours.
+# Its counts of findings hidden in other libraries' headers are removed.
 printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 1 clang-tidy --quiet -p "$build" 2>&1 |
   { grep -vE '^[0-9]+ warnings? generated|^Suppressed |^Use -header-filter' || true; }

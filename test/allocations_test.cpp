@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// A program of its own: refused_allocations.cpp replaces operator new.
+// A program for itself: refused_allocations.cpp replaces operator new.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr std::size_t kSteps = 720;
 constexpr std::size_t kLasers = 16;
 
-/// A street with walls, things and near returns: one turn, column by column.
+/// A street with walls, objects and near returns: one turn, column by column.
 std::vector<std::vector<lisco::Return>> oneTurn() {
   Random random(1);
   std::vector<std::vector<lisco::Return>> columns(kSteps);
@@ -43,7 +43,7 @@ std::vector<std::vector<lisco::Return>> oneTurn() {
   return columns;
 }
 
-/// Allocations while turn () is called the second half of so many times.
+/// Number of allocations in the second half of so many calls of turn ().
 template <typename Turn>
 std::size_t allocationsOf(int turns, Turn&& turn) {
   std::size_t before = 0;
@@ -58,7 +58,7 @@ TEST(Allocations, AreCounted) {
   EXPECT_EQ(allocationsOf(2, [] { ::operator delete(::operator new(1)); }), 1U);
 }
 
-TEST(Allocations, NoneForARotationLikeTheLast) {
+TEST(Allocations, NoneForARotationLikeTheLastOne) {
   const auto columns = oneTurn();
   lisco::ColumnClusterer clusterer;
   lisco::Parameters parameters;
@@ -84,8 +84,8 @@ TEST(Allocations, NoneForARotationLikeTheLast) {
   }
 }
 
-// Shares follow the work of the rotation before, so it takes a third one until they are where they were.
-TEST(Allocations, NoneByThreadsOnceTheirSharesHaveSettled) {
+// Shares follow the work of the last rotation: they are settled in the third one.
+TEST(Allocations, NoneByThreadsWithSettledShares) {
   const auto columns = oneTurn();
   lisco::ColumnClusterer clusterer;
   lisco::Parameters parameters;
@@ -108,7 +108,7 @@ TEST(Allocations, NoneByThreadsOnceTheirSharesHaveSettled) {
   }
 }
 
-TEST(Allocations, NoneForAnEndlessStreamThatGoesOn) {
+TEST(Allocations, NoneForAContinuingEndlessStream) {
   const auto columns = oneTurn();
   lisco::EndlessClusterer clusterer;
   lisco::EndlessParameters parameters;
@@ -128,8 +128,8 @@ TEST(Allocations, NoneForAnEndlessStreamThatGoesOn) {
   EXPECT_LE(most_held, 2 * kSteps * kLasers + kSteps);
 }
 
-// A window of a turn has 17 panes in memory, each of which must have seen all of the 16 parts of the turn.
-TEST(Allocations, NoneForWindowsThatGoOn) {
+// A window of a turn has 17 panes in memory, each of which must have held all 16 parts of the turn.
+TEST(Allocations, NoneForContinuingWindows) {
   const auto columns = oneTurn();
   for (const std::size_t window : {90U, 720U, 1440U}) {
     lisco::WindowClusterer clusterer;
@@ -149,7 +149,7 @@ TEST(Allocations, NoneForWindowsThatGoOn) {
   }
 }
 
-/// Refuses each allocation of work () in its turn, each time with another worker, which must do it afterwards.
+/// Refuses each allocation of work () in turn, each time with another worker, which must succeed afterwards.
 /// \param make callable as std::function<std::size_t ()> (): a new worker
 template <typename Make>
 void refuseEachAllocation(Make&& make) {
@@ -161,7 +161,7 @@ void refuseEachAllocation(Make&& make) {
     try {
       const RefusedAllocation refusal(refused + 1);
       EXPECT_EQ(work(), expected);
-      done = true;  // it needs no more than were granted
+      done = true;  // all allocations were granted
     } catch (const std::bad_alloc&) {
     }
     ASSERT_EQ(work(), expected) << "after allocation " << refused << " had been refused";
@@ -169,7 +169,7 @@ void refuseEachAllocation(Make&& make) {
   EXPECT_GT(refused, 10U);
 }
 
-TEST(Allocations, WhenOneIsRefusedTheClustererStaysUsable) {
+TEST(Allocations, ClustererStaysUsableAfterARefusal) {
   const auto columns = oneTurn();
   for (const std::size_t threads : {1U, 2U})
     for (const int steps_per_turn : {0, static_cast<int>(kSteps)})
@@ -197,7 +197,7 @@ TEST(Allocations, WhenOneIsRefusedTheClustererStaysUsable) {
       });
 }
 
-TEST(Allocations, WhenOneIsRefusedStreamsStayUsable) {
+TEST(Allocations, StreamsStayUsableAfterARefusal) {
   const auto columns = oneTurn();
   refuseEachAllocation([&] {
     const auto clusterer = std::make_shared<lisco::EndlessClusterer>();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// What a box decides about its points, it decides exactly, without a margin.
+// Boxes decide exactly, without a margin.
 #include "core/neighbour.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ struct Group {
   Box box;
 };
 
-/// A few points around a place, all of about one size: from denormals to where squares overflow.
+/// A few points around a position, all of about one size: from denormals to where squares overflow.
 Group randomGroup(Random& random, double scale) {
   Group group;
   const std::array<double, 3> centre{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
@@ -44,7 +44,7 @@ float squaredDistance(const Point& a, const Point& b) {
   return lisco::squaredDistance(a.x - b.x, a.y - b.y, a.z - b.z);
 }
 
-TEST(Box, GapIsNeverMoreAndSpanNeverLessThanAnyDistance) {
+TEST(Box, GapAndSpanBoundEveryDistance) {
   Random random(1);
   const std::array<double, 6> scales{1.0, 1e30, 1.5e38, 1e-20, 1e-38, 1e-43};
   for (int i = 0; i < 30000; ++i) {
@@ -63,7 +63,7 @@ TEST(Box, GapIsNeverMoreAndSpanNeverLessThanAnyDistance) {
   }
 }
 
-TEST(Box, OfSinglePointsIsTheirDistance) {
+TEST(Box, GapAndSpanOfSinglePointsAreTheirDistance) {
   Random random(2);
   for (int i = 0; i < 10000; ++i) {
     const auto coordinate = [&] { return static_cast<float>(random.between(-10.0, 10.0)); };

@@ -56,7 +56,7 @@ std::vector<std::set<std::uint32_t>> objectsOfClusters(const std::vector<Cell>& 
   std::map<std::size_t, std::set<std::uint32_t>> objects;
   for (std::size_t i = 0; i < returns.size(); ++i) objects[root(i)].insert(returns[i].object);
   std::vector<std::set<std::uint32_t>> clusters;
-  for (auto& [head, of] : objects) clusters.push_back(std::move(of));
+  for (auto& [tree, of] : objects) clusters.push_back(std::move(of));
   return clusters;
 }
 
@@ -122,7 +122,7 @@ TEST(Cases, SheetsAreAGapApart) {
       const std::vector<Cell> returns = returnsOf(rotation);
       const double least = leastDistance(returns, true);
       EXPECT_GE(least, gap - 1e-5);
-      EXPECT_LE(least, gap + 0.5) << "near enough for neighbouring boxes";
+      EXPECT_LE(least, gap + 0.5) << "nearest returns lie in neighbouring boxes";
       for (std::size_t laser = 0; laser < rotation.lasers; ++laser)
         for (std::size_t step = 0; step < rotation.steps; ++step) {
           const Cell& cell = rotation.at(laser, step);
@@ -162,7 +162,7 @@ TEST(Cases, BlockedSensorHasReturnsWithin30Centimetres) {
 TEST(Cases, PolesAreSeparateClusters) {
   const Scan rotation = scanOf("poles", 64, 1125);
   std::vector<Cell> returns;
-  for (std::size_t laser = 8; laser < 40; laser += 2)  // two neighbours of one pole are within 0.4 m even so
+  for (std::size_t laser = 8; laser < 40; laser += 2)  // two neighbours on one pole are within 0.4 m even so
     for (std::size_t step = 0; step < 560; ++step)
       if (!std::isnan(rotation.at(laser, step).x)) returns.push_back(rotation.at(laser, step));
   const auto clusters = objectsOfClusters(returns, 0.4);
@@ -172,7 +172,7 @@ TEST(Cases, PolesAreSeparateClusters) {
     EXPECT_EQ(objects.size(), 1U);
     seen.insert(objects.begin(), objects.end());
   }
-  EXPECT_EQ(seen.size(), clusters.size()) << "no pole falls apart";
+  EXPECT_EQ(seen.size(), clusters.size()) << "each pole is one cluster";
   EXPECT_EQ(seen.count(0), 0U);
 }
 

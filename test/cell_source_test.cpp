@@ -22,7 +22,7 @@ Return cellAt(std::size_t laser, std::size_t column) {
           static_cast<std::uint32_t>(1000 * laser + column)};
 }
 
-TEST(CellSource, ReadsCellsAndBlocksAlike) {
+TEST(CellSource, ReadsCellsAndBlocksEqually) {
   std::size_t calls = 0;
   const auto cells = [](std::size_t laser, std::size_t column) { return cellAt(laser, column); };
   auto blocks = [&calls](std::size_t laser, std::size_t first, std::size_t count, const CellSource::Destination& to) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// The engine against the oracle, on thousands of small scans that real sensors and bad luck could deliver.
+// The engine against the oracle, on thousands of small scans with all faults of real sensors.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,8 +19,8 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// Calls check(random, clusterer) for many seeds, with one and the same clusterer: nothing of a scan may leak
-/// into the next. Ends at the first seed that fails.
+/// Calls check(random, clusterer) for many seeds, with one clusterer for all: each scan starts afresh. Ends at the
+/// first seed that fails.
 template <typename Check>
 void forSeeds(std::uint64_t first, std::uint64_t count, Check&& check) {
   lisco::ColumnClusterer clusterer;
@@ -32,7 +32,7 @@ void forSeeds(std::uint64_t first, std::uint64_t count, Check&& check) {
   }
 }
 
-/// In four parts, so that they can run side by side.
+/// In four parts that run side by side.
 class RandomScans : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(RandomScans, EqualTheOracle) {
@@ -43,7 +43,7 @@ TEST_P(RandomScans, EqualTheOracle) {
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomScans, testing::Range<std::uint64_t>(1, 5));
 
-// Large enough for many patches in a tile and many tiles in a mask.
+// Large enough for many sectors, and masks of several lasers.
 TEST(LargerScans, EqualTheOracle) {
   forSeeds(80'000'000, 60, [](Random& random, lisco::ColumnClusterer& clusterer) {
     const Scan scan = randomScan(random, 3000);
@@ -52,18 +52,18 @@ TEST(LargerScans, EqualTheOracle) {
   });
 }
 
-TEST(AdversarialScans, LatticeAtExactlyTheTolerance) {
+TEST(AdversarialScans, SeparateALatticeAtExactlyTheTolerance) {
   forSeeds(100'000'000, 1000, [](Random& random, lisco::ColumnClusterer& clusterer) {
     float spacing = 0.0F;
     const Scan scan = latticeScan(random, spacing);
-    // At the spacing only equal points are neighbours; one ulp above, the whole lattice hangs together.
+    // At the spacing only equal points are neighbours; one ulp above, the whole lattice is connected.
     expectExact(clusterer, scan, spacing);
     expectExact(clusterer, scan, std::nextafter(spacing, kInfinity));
     expectExact(clusterer, scan, std::nextafter(std::sqrt(2.0F) * spacing, random.chance(0.5) ? 0.0F : kInfinity));
   });
 }
 
-TEST(AdversarialScans, WhereFloatsEnd) {
+TEST(AdversarialScans, EqualTheOracleWhereFloatsEnd) {
   forSeeds(200'000'000, 1000, [](Random& random, lisco::ColumnClusterer& clusterer) {
     const Scan scan = extremeScan(random);
     expectExact(clusterer, scan, criticalTolerance(random, scan));
@@ -72,7 +72,7 @@ TEST(AdversarialScans, WhereFloatsEnd) {
   });
 }
 
-TEST(AdversarialScans, AnyTolerance) {
+TEST(AdversarialScans, EqualTheOracleAtAnyTolerance) {
   forSeeds(300'000'000, 60, [](Random& random, lisco::ColumnClusterer& clusterer) {
     const Scan scan = randomScan(random);
     for (const float tolerance : {0.0F, -0.0F, -0.5F, kNan, kInfinity, -kInfinity, 1e-30F, 1e30F, 1e-20F, 3e38F})
@@ -80,12 +80,12 @@ TEST(AdversarialScans, AnyTolerance) {
   });
 }
 
-TEST(AdversarialScans, ManyReturnsNearerThanTheTolerance) {
+TEST(AdversarialScans, MayHaveManyReturnsNearerThanTheTolerance) {
   forSeeds(400'000'000, 200, [](Random& random, lisco::ColumnClusterer& clusterer) {
     Scan scan(1 + random.below(40), 1 + random.below(6));
     const double tolerance = random.between(0.1, 1.0);
     for (lisco::Return& cell : scan.cells) {
-      // Most lie around the sensor; the others at a few tolerances, where the mask must still see through it.
+      // Most lie around the sensor; the others at a few tolerances, where the mask must still cover them.
       const double reach = random.chance(0.7) ? 1.2 * tolerance : 4.0 * tolerance;
       cell.x = static_cast<float>(random.between(-reach, reach));
       cell.y = static_cast<float>(random.between(-reach, reach));
@@ -95,8 +95,8 @@ TEST(AdversarialScans, ManyReturnsNearerThanTheTolerance) {
   });
 }
 
-// Two rings of points above the sensor, around the vertical: azimuths say nothing there.
-TEST(AdversarialScans, AroundTheZenith) {
+// Two rings of points above the sensor, around the vertical: any azimuth lies within the mask.
+TEST(AdversarialScans, MaySurroundTheZenith) {
   forSeeds(500'000'000, 200, [](Random& random, lisco::ColumnClusterer& clusterer) {
     Scan scan(1 + random.below(40), 2);
     const double height = random.magnitude(0.1, 50.0) * (random.chance(0.5) ? 1.0 : -1.0);
@@ -112,8 +112,8 @@ TEST(AdversarialScans, AroundTheZenith) {
   });
 }
 
-// The same return many times: patches of equal boxes, and no distance at all.
-TEST(AdversarialScans, Duplicates) {
+// The same return many times: cliques of equal boxes, and distances of zero.
+TEST(AdversarialScans, MayRepeatReturns) {
   forSeeds(600'000'000, 200, [](Random& random, lisco::ColumnClusterer& clusterer) {
     Scan scan = randomScan(random);
     for (lisco::Return& cell : scan.cells)
@@ -126,8 +126,8 @@ TEST(AdversarialScans, Duplicates) {
   });
 }
 
-// Two long sheets just over the tolerance apart: every comparison of their patches must fail, but for one pair.
-TEST(AdversarialScans, TwoSheetsOneBridge) {
+// Two long sheets just over the tolerance apart: all comparisons of their segments fail but for one pair.
+TEST(AdversarialScans, JoinTwoSheetsByOneBridge) {
   forSeeds(700'000'000, 150, [](Random& random, lisco::ColumnClusterer& clusterer) {
     Scan scan(40, 4);
     const double spacing = 0.1;
@@ -145,7 +145,7 @@ TEST(AdversarialScans, TwoSheetsOneBridge) {
   });
 }
 
-TEST(AdversarialScans, NothingOrNoReturnAtAll) {
+TEST(AdversarialScans, MayHaveNoColumnsOrNoReturns) {
   lisco::ColumnClusterer clusterer;
   expectExact(clusterer, Scan(0, 0), 0.5F);
   expectExact(clusterer, Scan(5, 0), 0.5F);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Positions of columns of which some have none of their own: counted from the last one given.
+/// Positions of columns, of which those without their own are counted from the last one given.
 class PositionsByRate {
  public:
   explicit PositionsByRate(const lisco::EndlessParameters& parameters) : per_turn_(parameters.columns_per_turn) {}
@@ -34,7 +34,7 @@ class PositionsByRate {
  private:
   double per_turn_;
   double given_ = 0;
-  double columns_ = 0;  ///< since the position given
+  double columns_ = 0;  ///< since the last position given
   bool has_begun_ = false;
 };
 
@@ -65,7 +65,7 @@ lisco::Return noReturn(Random& random) {
   return random.oneOf(kinds);
 }
 
-/// Adds what makes a stream hard, in strengths that are chosen once.
+/// Adds returns that make a stream hard, in strengths that are chosen once.
 class Spoiler {
  public:
   Spoiler(Random& random, ColumnStream& stream) : random_(random), stream_(stream) {
@@ -81,13 +81,13 @@ class Spoiler {
       if (random_.chance(emptied_)) cells.clear();
       for (lisco::Return& cell : cells)
         if (random_.chance(lost_)) cell = noReturn(random_);
-      for (int more = 0; more < kMostAdded && random_.chance(added_ / (1 + added_)); ++more)
+      for (int more = 0; more < kMaxAdded && random_.chance(added_ / (1 + added_)); ++more)
         cells.insert(cells.begin() + static_cast<std::ptrdiff_t>(random_.below(cells.size() + 1)), another(column));
     }
   }
 
  private:
-  static constexpr int kMostAdded = 40;
+  static constexpr int kMaxAdded = 40;
 
   lisco::Return another(std::size_t column) {
     double sum = 0;
@@ -98,7 +98,7 @@ class Spoiler {
     const auto eps = static_cast<double>(stream_.parameters.tolerance);
     const std::array<double, 4> closeness{1e-7, 1e-7, 1e-6, 1e-3};
     switch (kind) {
-      case 0:  // once more
+      case 0:  // a repetition
         return earlier(column);
       case 1: {  // a neighbour, or nearly
         lisco::Return cell = earlier(column);
@@ -158,7 +158,7 @@ void turnColumn(const lisco::EndlessParameters& parameters, StreamColumn& column
   }
 }
 
-/// Lets the stream begin at position 0 and, where it says so, go on by the number of columns of a turn.
+/// Starts the stream at position 0 and, if chosen, continues it by the number of columns of a turn.
 void goByRate(Random& random, ColumnStream& stream) {
   lisco::EndlessParameters& parameters = stream.parameters;
   std::vector<StreamColumn>& columns = stream.columns;
@@ -179,10 +179,10 @@ void goByRate(Random& random, ColumnStream& stream) {
   }
 }
 
-/// Empties the cells of which the engine and the definition may say different things, both rightly: the engine takes
-/// the stagger for up to 0.002 radians larger, and the reach end jumps where the distance is that of the tolerance.
+/// Empties the cells where the engine and the definition may rightly differ: the engine takes the stagger for up to
+/// 0.002 radians larger, and the reach end jumps where the distance is the tolerance.
 void emptyUndecidedCells(ColumnStream& stream) {
-  constexpr double kMaxStaggerMore = 0.0025;  // radians
+  constexpr double kMaxExtraStagger = 0.0025;  // radians
   constexpr double kRoundingOfStagger = 1e-6;
   constexpr double kRoundingOfRange = 1e-5;  // relative
   const lisco::EndlessParameters& parameters = stream.parameters;
@@ -193,12 +193,12 @@ void emptyUndecidedCells(ColumnStream& stream) {
       const Polar polar = polarOf(parameters, cell);
       const double off = std::fabs(std::remainder(polar.azimuth - azimuthOf(parameters, column.position), 2 * kPi)) -
                          parameters.stagger;
-      if ((off > -kRoundingOfStagger && off < kMaxStaggerMore) || std::fabs(polar.rho - eps) < kRoundingOfRange * eps)
+      if ((off > -kRoundingOfStagger && off < kMaxExtraStagger) || std::fabs(polar.rho - eps) < kRoundingOfRange * eps)
         cell.x = cell.y = cell.z = std::numeric_limits<float>::quiet_NaN();
     }
 }
 
-/// The first column that is at a position, or beyond it.
+/// The first column at or beyond a position.
 std::size_t columnAt(const EndlessStream& stream, double position) {
   std::size_t column = 0;
   while (column < stream.columns.size() && stream.columns[column].position < position) ++column;
@@ -255,13 +255,13 @@ ColumnStream partOf(const ColumnStream& stream, std::size_t first, std::size_t e
 std::string wrongDeliveries(const EndlessStream& stream, const std::vector<Delivery>& truth,
                             std::vector<Delivery> actual, const std::vector<std::size_t>& updates, bool finished) {
   constexpr double kEarly = 1e-6;  // turns: rounding
-  constexpr double kLate = 1e-3;   // the engine's reach ends may be so much later
+  constexpr double kLate = 1e-3;   // turns: the most by which the engine's reach ends are later
   const std::size_t columns = stream.columns.size();
   std::sort(actual.begin(), actual.end());
   std::ostringstream wrong;
   auto found = actual.begin();
   for (const Delivery& right : truth) {
-    if (found != actual.end() && *found < right) break;  // there is none like it
+    if (found != actual.end() && *found < right) break;  // none is equal
     std::size_t last = columnAt(stream, right.reach_end + kLate) + stream.parameters.block_columns - 1;
     for (const std::size_t update : updates)
       if (stream.columns[update].position >= right.reach_end + kLate) last = std::min(last, update);
@@ -275,7 +275,7 @@ std::string wrongDeliveries(const EndlessStream& stream, const std::vector<Deliv
     }
     std::size_t first = right.cut ? right.column : columnAt(stream, right.reach_end - kEarly);
     first = std::min(first, columns);
-    // Whole by a hair: with its reach end rounded up, it is still open when the eighth begins that cuts it.
+    // With its reach end rounded up, the cluster is still open when the eighth that cuts it begins.
     const bool may_be_cut = right.cut || (right.column < columns && found->column == right.column &&
                                           stream.columns[right.column].position < right.reach_end + kLate);
     if ((found->cut && !may_be_cut) || (right.cut && !found->cut) || found->continued != right.continued ||
@@ -286,7 +286,7 @@ std::string wrongDeliveries(const EndlessStream& stream, const std::vector<Deliv
     }
     ++found;
   }
-  if (found != actual.end()) wrong << "delivered, and no cluster: " << *found;
+  if (found != actual.end()) wrong << "delivered, but not a cluster: " << *found;
   return wrong.str();
 }
 

@@ -28,23 +28,23 @@ struct ColumnStream : EndlessStream {
 
 /// A random endless stream with, in any strength: columns of any number of cells, or none; cells that are NaN, infinite
 /// or (0, 0, 0); returns on or beside the sensor's axis, and as far as squares reach; points that come twice; partners
-/// of earlier points at eps (1 +- 1e-7), or about that; positions up to a billion, or by the number of columns of a
-/// turn. No return lies where rounding decides whether it is an outlier, or what its reach end is.
+/// of earlier points at about eps, or at eps (1 +- 1e-7); positions up to a billion, or by the number of columns of a
+/// turn. Rounding decides neither whether a return is an outlier nor its reach end.
 ColumnStream randomColumnStream(Random& random);
 
-/// The columns first..end-1 as a stream of their own, whose cells keep their numbers. It may begin some turns earlier.
+/// The columns first..end-1 as a stream whose cells keep their numbers, begun some turns earlier.
 ColumnStream partOf(const ColumnStream& stream, std::size_t first, std::size_t end, double turns_earlier = 0);
 
-/// What doc/streaming.md does not allow of a stream's deliveries; empty if nothing.
-/// \param truth the definition's, of the whole stream
-/// \param updates after which columns update () was called, ascending
-/// \param finished whether the stream's end was told; if not, clusters that may still grow are not delivered
+/// Describes the first delivery that doc/streaming.md does not allow; empty if there is none.
+/// \param truth the defined deliveries of the whole stream
+/// \param updates numbers of the columns after which update () was called, ascending
+/// \param finished whether finish () was called; if not, clusters that may still grow are not delivered
 ///
-/// Reach ends of the actual deliveries are not looked at: the PCL face does not give them.
+/// Reach ends of the actual deliveries are ignored: the PCL face does not give them.
 std::string wrongDeliveries(const EndlessStream& stream, const std::vector<Delivery>& truth,
                             std::vector<Delivery> actual, const std::vector<std::size_t>& updates, bool finished);
 
-/// By number of the cell, as the oracle takes them; cells of other columns than first..end-1 are no returns.
+/// Points by number of the cell, as the oracle takes them; cells of other columns than first..end-1 are no returns.
 std::vector<Point> pointsOf(const EndlessStream& stream, std::size_t first, std::size_t end);
 
 }  // namespace lisco_test

@@ -113,7 +113,7 @@ Clusters extracted(const Baseline& baseline, const Problem& problem) {
   return clusters;
 }
 
-/// The pair that the details name.
+/// The pair given in the details.
 struct NamedPair {
   std::size_t a, b;
   float d2, r2;
@@ -182,7 +182,7 @@ void expectSaid(const Difference& difference, const std::vector<std::string>& li
     EXPECT_NE(difference.details.find(line), std::string::npos) << "missing: " << line << "\n" << difference.details;
 }
 
-TEST(Difference, OfTheReferenceIsNone) {
+TEST(Difference, IsEmptyForTheReference) {
   const Problem problem = twoClusters();
   ASSERT_EQ(extracted(referenceBaseline(), problem).size(), 2U);
   ASSERT_EQ(extracted(referenceBaseline(), problem)[0].indices, pcl::Indices({0, 1, 2, 6, 8}));
@@ -235,7 +235,7 @@ TEST(Difference, NoticesJoinedClusters) {
   EXPECT_NEAR(pairNamedIn(difference.details)->d2, 10.24F, 1e-5F);
 }
 
-TEST(Difference, NamesTheNearestOfWhatIsJoined) {
+TEST(Difference, NamesTheNearestPairOfJoinedClusters) {
   const Problem problem = twoClusters();
   auto mirrored = std::make_shared<ComparedCloud>(*problem.cloud);
   for (std::size_t row = 0; row < 12; row += 6)
@@ -249,7 +249,7 @@ TEST(Difference, NamesTheNearestOfWhatIsJoined) {
   EXPECT_NEAR(pairNamedIn(difference.details)->d2, 10.24F, 1e-5F);
 }
 
-// The method is right, and PCL's tree is not: doc/contract.md.
+// The tree of PCL misses the pair: doc/contract.md.
 TEST(Difference, NamesThePairThatPclsTreeMisses) {
   auto cloud = std::make_shared<ComparedCloud>();
   pcl::copyPointCloud(*cloudWithAMissedPair(), *cloud);
@@ -290,8 +290,8 @@ TEST(Difference, NoticesADroppedCluster) {
   expectPairDecides(problem, baseline, difference.details);
 }
 
-// Points in no cluster of any size are not joined with each other.
-TEST(Difference, TellsDroppedClustersFromJoinedOnes) {
+// Points that are in no cluster of any size are not joined.
+TEST(Difference, DistinguishesDroppedClustersFromJoinedOnes) {
   const Problem problem = twoClusters();
   const Baseline baseline = spoilt([](Clusters& clusters) { clusters.clear(); });
   const Difference difference = differenceFrom(problem, baseline);
@@ -477,7 +477,7 @@ Times timesOf(const std::vector<double>& runs) {
   return times;
 }
 
-TEST(Timing, MeanMedianMinMax) {
+TEST(Timing, GivesMeanMedianMinMax) {
   EXPECT_DOUBLE_EQ(timesOf({1, 2, 6}).mean(), 3);
   EXPECT_DOUBLE_EQ(median({6, 1, 2}), 2);
   EXPECT_DOUBLE_EQ(median({6, 1, 2, 4}), 3);
@@ -502,7 +502,7 @@ TEST(Timing, ConfidenceIsStudents) {
   EXPECT_TRUE(std::isnan(timesOf({1}).confidence99()));
 }
 
-TEST(Timing, GeometricMeanOfRatios) {
+TEST(Timing, AveragesRatiosGeometrically) {
   EXPECT_NEAR(geometricMean({2, 0.5}), 1, 1e-12);
   EXPECT_NEAR(geometricMean({1, 10, 100}), 10, 1e-12);
   EXPECT_NEAR(geometricMean({7}), 7, 1e-12);
@@ -516,7 +516,7 @@ std::string turnsOf(const std::vector<std::size_t>& runs, double tried_ms, std::
     contestants.push_back({[&log, i] { log += static_cast<char>('A' + i); }, tried_ms, runs[i]});
   std::size_t expected_round = 0;
   const std::size_t most = runs.empty() ? 0 : *std::max_element(runs.begin(), runs.end());
-  const std::vector<Times> measured = timeInTurn(contestants, [&](std::size_t round, std::size_t rounds) {
+  const std::vector<Times> measured = timeInTurn(contestants, Clock::kWall, [&](std::size_t round, std::size_t rounds) {
     EXPECT_EQ(round, expected_round++);
     EXPECT_EQ(rounds, most);
     log += "|";
@@ -560,13 +560,13 @@ TEST(Timing, CountsTheSecondOfTwoRuns) {
   const auto slow_first = [&calls] {
     if (calls++ % 2 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   };
-  const std::vector<Times> times = timeInTurn({{slow_first, 1, 3}}, [](std::size_t, std::size_t) {});
+  const std::vector<Times> times = timeInTurn({{slow_first, 1, 3}}, Clock::kWall, [](std::size_t, std::size_t) {});
   EXPECT_GE(*std::min_element(times[0].cold.begin(), times[0].cold.end()), 20);
   EXPECT_LT(times[0].min(), 15);
   EXPECT_EQ(calls, 6);
   // The only run of a long one counts as both.
   calls = 0;
-  const std::vector<Times> once = timeInTurn({{slow_first, 1000, 2}}, [](std::size_t, std::size_t) {});
+  const std::vector<Times> once = timeInTurn({{slow_first, 1000, 2}}, Clock::kWall, [](std::size_t, std::size_t) {});
   EXPECT_EQ(once[0].cold, once[0].runs);
 }
 
@@ -816,7 +816,7 @@ TEST(Baselines, AcceptAnyScale) {
       (*cloud)[i].y = static_cast<float>(scale * (i < 6 ? 1 : 2));
       (*cloud)[i].z = static_cast<float>(scale);
     }
-    if (scale > 0) (*cloud)[11].x = (*cloud)[11].y = 50.0F;  // and something else
+    if (scale > 0) (*cloud)[11].x = (*cloud)[11].y = 50.0F;  // an object of its own
     ComparedScan scan;
     scan.cloud = cloud;
     scan.returns = std::make_shared<pcl::Indices>(*problemOf(cloud, 1, 1).returns);

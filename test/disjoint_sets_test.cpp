@@ -39,8 +39,8 @@ TEST(DisjointSets, TheSmallestElementIsTheRoot) {
   for (std::uint32_t element = 1; element < 5; ++element) EXPECT_EQ(sets.find(element), 1U);
 }
 
-// Elements need not be created in the order of their numbers, nor all of them.
-TEST(DisjointSets, ElementsInAnyOrder) {
+// Elements may be created in any order, and only some of them.
+TEST(DisjointSets, AcceptsElementsInAnyOrder) {
   lisco::DisjointSets sets;
   sets.reset(1000);
   sets.create(999);
@@ -81,7 +81,7 @@ TEST(DisjointSets, ResetForgetsEverything) {
 }
 
 // Against a table of every element's set.
-TEST(DisjointSets, AsATableSaysAfterManyMerges) {
+TEST(DisjointSets, EqualATableAfterManyMerges) {
   Random random(1);
   lisco::DisjointSets sets;
   std::vector<std::uint32_t> root_of(400);
@@ -94,10 +94,10 @@ TEST(DisjointSets, AsATableSaysAfterManyMerges) {
     ASSERT_EQ(sets.find(a), root_of[a]);
     ASSERT_EQ(sets.find(b), root_of[b]);
     if (random.chance(0.6)) continue;
-    const std::uint32_t head = std::min(root_of[a], root_of[b]);
+    const std::uint32_t root = std::min(root_of[a], root_of[b]);
     const std::uint32_t other = std::max(root_of[a], root_of[b]);
-    ASSERT_EQ(sets.merge(a, b), head);
-    std::replace(root_of.begin(), root_of.end(), other, head);
+    ASSERT_EQ(sets.merge(a, b), root);
+    std::replace(root_of.begin(), root_of.end(), other, root);
   }
 }
 

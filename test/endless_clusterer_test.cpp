@@ -38,13 +38,13 @@ TEST(EndlessClusterer, DeliversEachClusterOnceAndInTime) {
       across_the_seam += std::floor(delivery.first_position) < std::floor(delivery.last_position) ? 1 : 0;
     }
   }
-  EXPECT_GT(cut, 100U);  // the streams try what they are to try
+  EXPECT_GT(cut, 100U);  // the streams cover these cases
   EXPECT_GT(continued, 100U);
   EXPECT_GT(outliers, 100U);
   EXPECT_GT(across_the_seam, 1000U);
 }
 
-// Positions are taken as they are given: the definition holds after 2000 years of turns as it does after one.
+// The definition holds after 2000 years of turns as after one.
 TEST(EndlessClusterer, KeepsItsDefinitionAtAnyPosition) {
   lisco::EndlessClusterer clusterer;
   std::size_t together = 0;
@@ -94,7 +94,7 @@ TEST(EndlessClusterer, KeepsItsDefinitionForAYearOfTurns) {
   for (int burst = 0; burst < kBursts; ++burst) {
     SCOPED_TRACE("burst " + std::to_string(burst));
     EndlessStream stream = randomEndlessStream(random, kYear * burst / kBursts + random.unit(), &parameters);
-    // A column two turns later delivers all that is left.
+    // A column two turns later delivers all open clusters.
     stream.columns.push_back({stream.columns.empty() ? 0 : stream.columns.back().position + 2, {}});
     deliveries.clear();
     for (column = 0; column < stream.columns.size(); ++column)
@@ -127,7 +127,7 @@ TEST(EndlessClusterer, PositionsByTheNumberOfColumnsDoNotDrift) {
 }
 
 // The reach end is later than the exact one by what the header states, and never earlier.
-TEST(EndlessClusterer, ReachEndsWithinTheRoundingStated) {
+TEST(EndlessClusterer, ReachEndsAreWithinTheRoundingStated) {
   constexpr double kPi = 3.14159265358979323846;
   constexpr double kRounding = 0.006 / (2 * kPi);
   lisco::EndlessClusterer clusterer;
@@ -176,8 +176,8 @@ TEST(EndlessClusterer, KeepsItsDefinitionAtAnyDistance) {
   EXPECT_GT(outliers, 100U);
 }
 
-// begin () in the midst of a stream, and finish () in the midst of a turn.
-TEST(EndlessClusterer, MayBeUsedAgain) {
+// begin () during a stream, and finish () during a turn.
+TEST(EndlessClusterer, StartsAfreshAtAnyTime) {
   lisco::EndlessClusterer clusterer;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     Random random(seed);
@@ -188,7 +188,7 @@ TEST(EndlessClusterer, MayBeUsedAgain) {
     const EndlessStream stream = randomEndlessStream(random);
     expectSame(stream, endlessTruth(stream).deliveries, deliveriesOf(clusterer, stream));
 
-    // What follows finish () has nothing to do with what was before.
+    // Clusters after finish () are independent of those before.
     std::vector<std::size_t> sizes;
     clusterer.begin(stream.parameters, [&](const lisco::EndlessCluster& cluster) { sizes.push_back(cluster.size()); });
     const lisco::Return cell{1, 0, 0, 0};
@@ -201,7 +201,7 @@ TEST(EndlessClusterer, MayBeUsedAgain) {
   }
 }
 
-TEST(EndlessClusterer, DeliversWhatIsLargeEnough) {
+TEST(EndlessClusterer, DeliversClustersOfTheMinimumSize) {
   Random random(3);
   for (int i = 0; i < 50; ++i) {
     EndlessStream stream = randomEndlessStream(random);
@@ -217,7 +217,7 @@ TEST(EndlessClusterer, DeliversWhatIsLargeEnough) {
   }
 }
 
-TEST(EndlessClusterer, ColumnsWithoutPositions) {
+TEST(EndlessClusterer, AcceptsColumnsWithoutPositions) {
   lisco::EndlessClusterer clusterer;
   lisco::EndlessParameters parameters;
   parameters.tolerance = 0.5F;
@@ -234,7 +234,7 @@ TEST(EndlessClusterer, ColumnsWithoutPositions) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(positions[i], static_cast<double>(i), 1e-9);
 }
 
-TEST(EndlessClusterer, SaysWhatIsWrong) {
+TEST(EndlessClusterer, RejectsWrongArguments) {
   lisco::EndlessClusterer clusterer;
   const lisco::Return cells[2] = {{1, 0, 0, 0}, {1, 0, 1, 1}};
   const auto ignore = [](const lisco::EndlessCluster&) {};

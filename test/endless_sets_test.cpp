@@ -27,7 +27,7 @@ Element addRun(lisco::EndlessSets& sets, std::int64_t pane) {
   return element;
 }
 
-TEST(EndlessSets, TheChainOfARootHoldsAllRunsOfItsSet) {
+TEST(EndlessSets, ChainOfARootHoldsAllRunsOfItsSet) {
   lisco::EndlessSets sets;
   for (std::int64_t pane = -2; pane < 2; ++pane) sets.startPane(pane);
   std::vector<Element> runs;
@@ -48,8 +48,8 @@ TEST(EndlessSets, TheChainOfARootHoldsAllRunsOfItsSet) {
   }
 }
 
-// Whichever of the two is given first, and whichever is larger.
-TEST(EndlessSets, AnOpenSetThatMeetsADeliveredOneKeepsItsRunsAndIsContinued) {
+// In either order, whichever is larger.
+TEST(EndlessSets, OpenSetContinuesADeliveredOneWithItsOwnRuns) {
   for (const bool delivered_first : {false, true})
     for (const std::uint32_t open_size : {1U, 10U}) {
       lisco::EndlessSets sets;

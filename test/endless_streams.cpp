@@ -28,7 +28,7 @@ class EndlessOracle {
   explicit EndlessOracle(const lisco::EndlessParameters& parameters) : parameters_(parameters) {}
 
   std::vector<Delivery> operator()(const std::vector<StreamColumn>& columns) {
-    // Large positions are counted from the first turn: exact, and rounding is then that of a stream that begins at 0.
+    // Large positions are counted from the first turn: exactly, with the rounding of a stream that begins at 0.
     constexpr double kLarge = 1e6;
     if (!columns.empty() && std::fabs(columns.front().position) > kLarge)
       first_turn_ = std::floor(columns.front().position);
@@ -37,14 +37,14 @@ class EndlessOracle {
       const auto eighth = static_cast<std::int64_t>(std::floor(8 * position));
       closeUpTo(position, c);
       if (c > 0 && eighth != static_cast<std::int64_t>(std::floor(8 * (columns[c - 1].position - first_turn_))))
-        for (std::size_t head = 0; head < members_.size(); ++head)
-          if (isOpen(head) && firstOf(head).eighth <= eighth - 8) close(head, c, true);
+        for (std::size_t root = 0; root < members_.size(); ++root)
+          if (isOpen(root) && firstOf(root).eighth <= eighth - 8) close(root, c, true);
       for (const lisco::Return& cell : columns[c].cells)
         if (isValid({cell.x, cell.y, cell.z})) add(cell, columns[c].position, position, eighth);
       closeUpTo(position, c);  // outliers have no neighbours
     }
-    for (std::size_t head = 0; head < members_.size(); ++head)
-      if (isOpen(head)) close(head, columns.size(), false);
+    for (std::size_t root = 0; root < members_.size(); ++root)
+      if (isOpen(root)) close(root, columns.size(), false);
     std::sort(deliveries_.begin(), deliveries_.end());
     return deliveries_;
   }
@@ -77,7 +77,7 @@ class EndlessOracle {
     }
     const std::size_t number = all_.size();
     all_.push_back(own);
-    head_.push_back(number);
+    root_of_.push_back(number);
     members_.push_back({number});
     state_.push_back(State::kOpen);
     continued_.push_back(false);
@@ -87,39 +87,39 @@ class EndlessOracle {
       if (!areNeighbours({before.cell.x, before.cell.y, before.cell.z}, {cell.x, cell.y, cell.z},
                          parameters_.tolerance))
         continue;
-      ASSERT_NE(state_[head_[other]], State::kWhole) << "a delivered cluster was reached";
-      if (state_[head_[other]] == State::kCut)
-        continued_[head_[number]] = true;
+      ASSERT_NE(state_[root_of_[other]], State::kWhole) << "a delivered cluster was reached";
+      if (state_[root_of_[other]] == State::kCut)
+        continued_[root_of_[number]] = true;
       else
-        join(head_[number], head_[other]);
+        join(root_of_[number], root_of_[other]);
     }
   }
 
   void join(std::size_t a, std::size_t b) {
     if (a == b) return;
-    for (const std::size_t member : members_[a]) head_[member] = b;
+    for (const std::size_t member : members_[a]) root_of_[member] = b;
     members_[b].insert(members_[b].end(), members_[a].begin(), members_[a].end());
     members_[a].clear();
     continued_[b] = continued_[b] || continued_[a];
   }
 
-  bool isOpen(std::size_t head) const { return !members_[head].empty() && state_[head] == State::kOpen; }
-  const Member& firstOf(std::size_t head) const {
-    return all_[*std::min_element(members_[head].begin(), members_[head].end())];
+  bool isOpen(std::size_t root) const { return !members_[root].empty() && state_[root] == State::kOpen; }
+  const Member& firstOf(std::size_t root) const {
+    return all_[*std::min_element(members_[root].begin(), members_[root].end())];
   }
-  double reachEndOf(std::size_t head) const {
+  double reachEndOf(std::size_t root) const {
     double end = -1e300;
-    for (const std::size_t member : members_[head]) end = std::max(end, all_[member].reach_end);
+    for (const std::size_t member : members_[root]) end = std::max(end, all_[member].reach_end);
     return end;
   }
   void closeUpTo(double position, std::size_t column) {
-    for (std::size_t head = 0; head < members_.size(); ++head)
-      if (isOpen(head) && reachEndOf(head) <= position) close(head, column, false);
+    for (std::size_t root = 0; root < members_.size(); ++root)
+      if (isOpen(root) && reachEndOf(root) <= position) close(root, column, false);
   }
-  void close(std::size_t head, std::size_t column, bool cut) {
-    state_[head] = cut ? State::kCut : State::kWhole;
-    Delivery delivery{{}, cut, continued_[head], firstOf(head).given_position, -1e300, reachEndOf(head), column};
-    for (const std::size_t member : members_[head]) {
+  void close(std::size_t root, std::size_t column, bool cut) {
+    state_[root] = cut ? State::kCut : State::kWhole;
+    Delivery delivery{{}, cut, continued_[root], firstOf(root).given_position, -1e300, reachEndOf(root), column};
+    for (const std::size_t member : members_[root]) {
       delivery.members.push_back(all_[member].cell.source_index);
       delivery.last_position = std::max(delivery.last_position, all_[member].given_position);
     }
@@ -130,7 +130,7 @@ class EndlessOracle {
 
   lisco::EndlessParameters parameters_;
   std::vector<Member> all_;
-  std::vector<std::size_t> head_;
+  std::vector<std::size_t> root_of_;
   std::vector<std::vector<std::size_t>> members_;
   std::vector<State> state_;
   std::vector<bool> continued_;
@@ -230,7 +230,7 @@ EndlessStream latestNeighbours(Random& random, double first_position) {
   for (int pair = 0; pair < 4; ++pair) {
     const double rho = static_cast<double>(parameters.tolerance) * random.magnitude(1.5, 3000.0);
     const double gap = static_cast<double>(parameters.tolerance) * (1 - kInside);
-    const double tangent = std::asin(gap / rho);  // the neighbour furthest in azimuth lies on a tangent
+    const double tangent = std::asin(gap / rho);  // on a tangent lies the neighbour farthest in azimuth
     const double first = azimuthOf(parameters, position) + sense * (parameters.stagger - kInside);
     const double second = first + sense * tangent;
     const double second_rho = rho * std::cos(tangent);
@@ -281,7 +281,7 @@ std::vector<Delivery> deliveriesOf(lisco::EndlessClusterer& clusterer, const End
   clusterer.begin(stream.parameters, [&](const lisco::EndlessCluster& cluster) {
     Delivery delivery = deliveryOf(cluster, column);
     EXPECT_EQ(delivery.members.size(), cluster.size());
-    EXPECT_LE(cluster.lastPosition() - cluster.firstPosition(), 1.0);  // less, but for rounding
+    EXPECT_LE(cluster.lastPosition() - cluster.firstPosition(), 1.0);  // at most, up to rounding
     deliveries.push_back(std::move(delivery));
   });
   for (; column < stream.columns.size(); ++column)
@@ -303,7 +303,7 @@ void expectSame(const EndlessStream& stream, const std::vector<Delivery>& expect
     EXPECT_EQ(expected[i].first_position, actual[i].first_position);
     EXPECT_EQ(expected[i].last_position, actual[i].last_position);
     EXPECT_NEAR(expected[i].reach_end, actual[i].reach_end, 1e-3);
-    // The reach ends differ by rounding, which may be a column. The block may have to be completed, unless an eighth ends.
+    // Rounded reach ends may differ by a column. The block may have to be completed, unless an eighth ends.
     std::size_t in_time = expected[i].column;
     while (!actual[i].cut && in_time > 0 && stream.columns[in_time - 1].position >= actual[i].reach_end &&
            stream.columns[in_time - 1].position > actual[i].last_position)

@@ -24,8 +24,8 @@ struct EndlessStream {
   std::vector<StreamColumn> columns;
 };
 
-/// A sensor among walls, pillars and moving things, some of them nearer than the tolerance, for up to four turns.
-/// \param first_position of the stream; without it, a small one
+/// A sensor among walls, pillars and moving objects, some of them nearer than the tolerance, for up to four turns.
+/// \param first_position of the stream; default: a small one
 /// \param parameters of the stream; nullptr: random ones
 EndlessStream randomEndlessStream(Random& random, std::optional<double> first_position = std::nullopt,
                                   const lisco::EndlessParameters* parameters = nullptr);
@@ -36,31 +36,31 @@ EndlessStream latestNeighbours(Random& random, double first_position);
 /// Multiplies all coordinates.
 void scale(EndlessStream& stream, double factor);
 
-/// What is expected of a delivered cluster, or was delivered.
+/// A delivered cluster, or an expected one.
 struct Delivery {
   std::vector<std::uint32_t> members;  ///< source indices, ascending
   bool cut, continued;
   double first_position, last_position, reach_end;
-  std::size_t column;  ///< that delivered it; the number of columns if the end of the stream did
+  std::size_t column;  ///< that delivered it; the number of columns if finish () did
 
   bool operator<(const Delivery& other) const { return members < other.members; }
 };
 std::ostream& operator<<(std::ostream& out, const Delivery& delivery);
 
-/// What the engine delivers when a column comes.
+/// The delivery of a cluster at a column.
 Delivery deliveryOf(const lisco::EndlessCluster& cluster, std::size_t column);
 
-/// What doc/streaming.md defines, return by return.
+/// The deliveries that doc/streaming.md defines, return by return.
 struct EndlessTruth {
   std::vector<Delivery> deliveries;  ///< ordered by their members
   std::size_t outliers = 0;
 };
 EndlessTruth endlessTruth(const EndlessStream& stream);
 
-/// What the engine delivers, ordered by the members.
+/// The engine's deliveries, ordered by their members.
 std::vector<Delivery> deliveriesOf(lisco::EndlessClusterer& clusterer, const EndlessStream& stream);
 
-/// Fails the test where the engine's deliveries are not the true ones, or came too late.
+/// Fails the test where the engine's deliveries differ from the expected ones, or came too late.
 void expectSame(const EndlessStream& stream, const std::vector<Delivery>& expected,
                 const std::vector<Delivery>& actual);
 

@@ -26,14 +26,14 @@ const std::vector<Setting>& allSettings() {
       all.push_back({name, parameters});
       return &all.back().parameters;
     };
-    add("no view", 64);
-    add("no view, blocks of 16", 16);
-    add("no view, blocks of 3", 3);
-    add("no view, each column at once", 1);
-    add("no view, no room", 64)->expected_returns = 0;
-    add("no view, sensor elsewhere", 16)->sensor.origin = {3.0F, -20.0F, 1.5F};
-    add("no view, two threads", 64, 2);
-    const auto strip = [&add](const std::string& name, int steps, float elevation_step, bool clockwise,
+    add("no hints", 64);
+    add("no hints, blocks of 16", 16);
+    add("no hints, blocks of 3", 3);
+    add("no hints, each column at once", 1);
+    add("no hints, no memory reserved", 64)->expected_returns = 0;
+    add("no hints, displaced sensor", 16)->sensor.origin = {3.0F, -20.0F, 1.5F};
+    add("no hints, two threads", 64, 2);
+    const auto image = [&add](const std::string& name, int steps, float elevation_step, bool clockwise,
                               std::size_t block, std::size_t threads = 1) {
       lisco::Parameters* const parameters = add(name, block, threads);
       parameters->sensor.steps_per_turn = steps;
@@ -41,15 +41,15 @@ const std::vector<Setting>& allSettings() {
       parameters->sensor.clockwise = clockwise;
       return parameters;
     };
-    strip("strip of few places", 512, 0.5F, false, 64);
-    strip("strip of few places, clockwise", 600, 0.1F, true, 16);
-    strip("strip column by column", 512, 0.3F, false, 1);
-    strip("strip in blocks of 3", 512, 0.3F, true, 3);
-    strip("strip of many places", 2000, 0.02F, true, 64);
-    strip("strip of very many places", 16384, 0.01F, false, 5);
-    strip("strip, sensor elsewhere", 720, 0.1F, false, 64)->sensor.origin = {-3.0F, 2.0F, -1.0F};
-    strip("strip, three threads", 512, 0.3F, false, 64, 3);
-    strip("strip, all threads", 512, 0.3F, false, 16, 0);
+    image("few bins", 512, 0.5F, false, 64);
+    image("few bins, clockwise", 600, 0.1F, true, 16);
+    image("few bins, column by column", 512, 0.3F, false, 1);
+    image("few bins, blocks of 3", 512, 0.3F, true, 3);
+    image("many bins", 2000, 0.02F, true, 64);
+    image("very many bins", 16384, 0.01F, false, 5);
+    image("few bins, displaced sensor", 720, 0.1F, false, 64)->sensor.origin = {-3.0F, 2.0F, -1.0F};
+    image("few bins, three threads", 512, 0.3F, false, 64, 3);
+    image("few bins, all threads", 512, 0.3F, false, 16, 0);
     return all;
   }();
   return settings;
@@ -59,7 +59,7 @@ const std::vector<Setting>& settingsForEachLevel() {
   static const std::vector<Setting> settings = [] {
     std::vector<Setting> some;
     for (const Setting& setting : allSettings())
-      if (setting.name == "no view" || setting.name == "strip of few places" || setting.name == "strip in blocks of 3")
+      if (setting.name == "no hints" || setting.name == "few bins" || setting.name == "few bins, blocks of 3")
         some.push_back(setting);
     return some;
   }();
@@ -85,13 +85,13 @@ lisco::SensorHints hintsFor(int steps, float elevation_step, bool clockwise) {
 }
 
 void feed(lisco::ColumnClusterer& clusterer, Random& random, const Scan& scan) {
-  const double looks = random.chance(0.5) ? 0.1 : 0.0;
+  const double queries = random.chance(0.5) ? 0.1 : 0.0;
   const std::array<std::size_t, 4> portions{1, 1 + random.below(200), 1 + random.below(200), scan.columns};
   const std::size_t portion = random.oneOf(portions);
   for (std::size_t first = 0; first < scan.columns; first += portion) {
     clusterer.addColumns(std::min(portion, scan.columns - first), scan.lasers,
                          [&](std::size_t laser, std::size_t column) { return scan.at(laser, first + column); });
-    if (portion > 10 && random.chance(looks)) clusterer.update();
+    if (portion > 10 && random.chance(queries)) clusterer.update();
   }
 }
 
@@ -120,7 +120,7 @@ Clustering visitedBy(Clusterer& clusterer) {
   EXPECT_EQ(returns, clusterer.returnCount());
   for (std::uint32_t i = 0; i < clusters.size(); ++i) {
     EXPECT_FALSE(clusters[i].members.empty()) << "subcluster " << i << " holds no return";
-    clusters[i].claimed_size = clusterer.sizeOf(i);
+    clusters[i].reported_size = clusterer.sizeOf(i);
   }
   return inOrder(std::move(clusters));
 }

@@ -14,31 +14,31 @@
 
 namespace lisco_test {
 
-/// One way of running the engine; none may change the result.
+/// One way of running the engine; all give the same result.
 struct Setting {
   std::string name;
   lisco::Parameters parameters;  ///< without the tolerance
 };
 
-/// Blocks of 1, 3, 16 and 64 columns; no strip, and strips of few and of many places; a sensor elsewhere; some
-/// threads (of which small scans need only one).
+/// Blocks of 1, 3, 16 and 64 columns; without a range image, and with few and many bins; a displaced sensor; threads
+/// (small scans use one).
 const std::vector<Setting>& allSettings();
 
-/// A few of these, which are tried with every level of vector instructions.
+/// A few of these, run at every level of vector instructions.
 const std::vector<Setting>& settingsForEachLevel();
 
-/// So many, or more for a longer hunt: LISCO_TEST_EFFORT=n in the environment tries n times as many.
+/// The count times n, if LISCO_TEST_EFFORT=n is in the environment.
 std::uint64_t timesEffort(std::uint64_t count);
 
 lisco::SensorHints hintsFor(int steps, float elevation_step, bool clockwise = false);
 
-/// Adds the scan's columns in portions, with a look at the subclusters now and then.
+/// Adds the scan's columns in portions, with a query now and then.
 void feed(lisco::ColumnClusterer& clusterer, Random& random, const Scan& scan);
 
 /// The levels of vector instructions.
 const std::vector<std::string>& levels();
 
-/// One of the levels, as long as this lives; then the best again.
+/// Uses one of the levels while it lives, then the best again.
 class SimdLevel {
  public:
   explicit SimdLevel(const std::string& name);
@@ -50,15 +50,15 @@ class SimdLevel {
 /// The clusters of all columns added so far, in order. Calls update().
 Clustering clustersOf(lisco::ColumnClusterer& clusterer);
 
-/// Those of the last window, in order.
+/// The clusters of the last window, in order.
 Clustering clustersOf(lisco::WindowClusterer& clusterer);
 
 /// Clusters the scan with one setting.
 Clustering cluster(lisco::ColumnClusterer& clusterer, const Scan& scan, float tolerance, const Setting& setting);
 
-/// Holds every setting's outcome, and those of some at each level of vector instructions, against the oracle's and
-/// against the verifier.
-/// \return whether all were right; otherwise test failures have been added
+/// Compares the clusters of every setting, and of some settings at each level of vector instructions, with the oracle
+/// and the verifier.
+/// \return whether all are right; otherwise test failures have been added
 bool expectExact(lisco::ColumnClusterer& clusterer, const Scan& scan, float tolerance);
 
 }  // namespace lisco_test

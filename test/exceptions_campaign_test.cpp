@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Exceptions in the midst of every kind of call: memory that is refused, callbacks that throw. Nothing leaks, and after
-// begin () the clusters are the oracle's. A program of its own: refused_allocations.cpp replaces operator new.
+// Exceptions during every kind of call: memory is refused, callbacks throw. Nothing leaks, and after begin () the
+// clusters are the oracle's. A program for itself: refused_allocations.cpp replaces operator new.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,10 +36,10 @@ namespace {
 /// A scan and how it is clustered; shared by the sessions of a seed.
 struct Rotation {
   explicit Rotation(Random& random) {
-    constexpr std::size_t kWorthThreads = 8192;  // cells
+    constexpr std::size_t kMinCellsForThreads = 8192;  // cells
     const bool by_threads = random.chance(0.5);
     PairScan pairs = randomPairs(random);
-    while (by_threads && pairs.scan.columns * pairs.scan.lasers < kWorthThreads) pairs = randomPairs(random);
+    while (by_threads && pairs.scan.columns * pairs.scan.lasers < kMinCellsForThreads) pairs = randomPairs(random);
     scan = std::move(pairs.scan);
     parameters.tolerance = pairs.tolerance;
     if (random.chance(0.7)) parameters.sensor = pairs.hints;
@@ -47,16 +47,16 @@ struct Rotation {
     parameters.expected_returns = 10;
     parameters.threads = by_threads ? 2 + random.below(3) : 1;
     right = trueClusters(scan.points(), parameters.tolerance);
-    // Calls: begin, some of addColumns (), one of addColumn (), update, the rest at once, update, two looks.
+    // Calls: begin, some of addColumns (), one of addColumn (), update, the rest at once, update, two queries.
     first_columns = by_threads ? scan.columns * 9 / 10 : random.below(scan.columns);
-    looks_by_place = random.chance(0.5);
+    queries_by_cell = random.chance(0.5);
   }
 
   Scan scan{0, 0};
   lisco::Parameters parameters;
   Clustering right;
   std::size_t first_columns = 0;
-  bool looks_by_place = false;
+  bool queries_by_cell = false;
 };
 
 class RotationSession {
@@ -68,8 +68,8 @@ class RotationSession {
     kUpdate,
     kAddRest,
     kUpdateAgain,
-    kLook,
-    kLookAgain,
+    kQuery,
+    kQueryAgain,
     kCalls
   };
 
@@ -91,17 +91,17 @@ class RotationSession {
       case kAddRest:
         return add(rotation_.first_columns + 1, columns);
       default:
-        if (rotation_.looks_by_place == (number == kLook))
+        if (rotation_.queries_by_cell == (number == kQuery))
           clusterer_->subclusterAt(rotation_.scan.lasers - 1, columns - 1);
         else
           clusterer_->forEachRun([&](const std::uint32_t*, std::size_t, std::uint32_t) { burn(); });
     }
   }
 
-  /// No call but begin () is of use; the others say so, or do nothing.
+  /// Only begin () may be called; the others report it, or do nothing.
   void checkInterrupted(std::size_t number) {
     fuse_ = nullptr;
-    if (number == kLook || number == kLookAgain) {  // nothing was changed
+    if (number == kQuery || number == kQueryAgain) {  // nothing was changed
       EXPECT_EQ(difference(rotation_.right, clustersOf(*clusterer_)), "");
       return;
     }
@@ -138,10 +138,10 @@ class RotationSession {
   const Rotation& rotation_;
   Fuse* fuse_;
   std::unique_ptr<lisco::ColumnClusterer> clusterer_ = std::make_unique<lisco::ColumnClusterer>();
-  std::vector<lisco::Return> column_;  ///< that comes by itself
+  std::vector<lisco::Return> column_;  ///< added by itself
 };
 
-TEST(ExceptionsCampaign, RotationsThatAreRefusedMemory) {
+TEST(ExceptionsCampaign, RotationsSurviveRefusedMemory) {
   std::array<std::size_t, RotationSession::kCalls> refused{};
   for (std::uint64_t seed = 1; seed <= timesEffort(2); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -154,11 +154,11 @@ TEST(ExceptionsCampaign, RotationsThatAreRefusedMemory) {
     if (HasFailure()) return;
   }
   for (const std::size_t number : {RotationSession::kBegin, RotationSession::kAddColumns, RotationSession::kUpdate,
-                                   RotationSession::kAddRest, RotationSession::kUpdateAgain, RotationSession::kLook})
+                                   RotationSession::kAddRest, RotationSession::kUpdateAgain, RotationSession::kQuery})
     EXPECT_GT(refused[number], 0U) << "call " << number << " was refused nothing";
 }
 
-TEST(ExceptionsCampaign, RotationsWhoseCallbacksThrow) {
+TEST(ExceptionsCampaign, RotationsSurviveThrowingCallbacks) {
   std::array<std::size_t, RotationSession::kCalls> interrupted{};
   for (std::uint64_t seed = 1000; seed < 1000 + timesEffort(50); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -166,8 +166,8 @@ TEST(ExceptionsCampaign, RotationsWhoseCallbacksThrow) {
     const SimdLevel level(levels()[seed % levels().size()]);
     const Rotation rotation(random);
     const std::size_t live = liveAllocations();
-    for (const std::size_t number : {RotationSession::kAddColumns, RotationSession::kAddRest, RotationSession::kLook,
-                                     RotationSession::kLookAgain}) {
+    for (const std::size_t number : {RotationSession::kAddColumns, RotationSession::kAddRest, RotationSession::kQuery,
+                                     RotationSession::kQueryAgain}) {
       Fuse fuse(0);
       RotationSession session(rotation, &fuse);
       for (std::size_t before = 0; before < number; ++before) session.call(before);
@@ -182,12 +182,12 @@ TEST(ExceptionsCampaign, RotationsWhoseCallbacksThrow) {
     if (HasFailure()) return;
   }
   for (const std::size_t number :
-       {RotationSession::kAddColumns, RotationSession::kAddRest, RotationSession::kLook, RotationSession::kLookAgain})
+       {RotationSession::kAddColumns, RotationSession::kAddRest, RotationSession::kQuery, RotationSession::kQueryAgain})
     EXPECT_GT(interrupted[number], 0U) << "call " << number << " was not interrupted";
 }
 
 // Where threads are started for each call, each may be refused.
-TEST(ExceptionsCampaign, ParallelWorkThatIsRefusedMemory) {
+TEST(ExceptionsCampaign, ParallelWorkSurvivesRefusedMemory) {
   constexpr std::size_t kThreads = 4;
   bool happened = true;
   for (std::size_t refused = 1; happened; ++refused) {
@@ -227,7 +227,7 @@ struct Sliding {
   std::vector<Clustering> right;  ///< of each window
 };
 
-/// Calls: begin, then a column each, after which the last window is visited in the next call.
+/// Calls: begin, then one for each column, after which the last window is visited by the next call.
 class WindowSession {
  public:
   explicit WindowSession(const Sliding& sliding, Fuse* fuse = nullptr) : sliding_(sliding), fuse_(fuse) {}
@@ -276,7 +276,7 @@ class WindowSession {
   bool window_ends_ = false;
 };
 
-TEST(ExceptionsCampaign, WindowsThatAreRefusedMemory) {
+TEST(ExceptionsCampaign, WindowsSurviveRefusedMemory) {
   std::array<std::size_t, 3> refused{};  // by begin (), addColumn () and visits
   for (std::uint64_t seed = 2000; seed < 2000 + timesEffort(60); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -291,7 +291,7 @@ TEST(ExceptionsCampaign, WindowsThatAreRefusedMemory) {
   for (const std::size_t count : refused) EXPECT_GT(count, 20U);
 }
 
-TEST(ExceptionsCampaign, WindowsWhoseVisitorsThrow) {
+TEST(ExceptionsCampaign, WindowsSurviveThrowingVisitors) {
   std::size_t interrupted = 0;
   for (std::uint64_t seed = 3000; seed < 3000 + timesEffort(100); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -330,7 +330,7 @@ struct Unending {
 
   ColumnStream stream;
   std::vector<Delivery> truth;
-  std::vector<std::size_t> updates;  ///< after which columns
+  std::vector<std::size_t> updates;  ///< numbers of the columns before them
 };
 
 /// Calls: begin, then each column and perhaps an update, finish.
@@ -387,7 +387,7 @@ class EndlessSession {
   std::size_t column_ = 0;
 };
 
-TEST(ExceptionsCampaign, EndlessStreamsThatAreRefusedMemory) {
+TEST(ExceptionsCampaign, EndlessStreamsSurviveRefusedMemory) {
   std::array<std::size_t, 4> refused{};  // by begin (), addColumn (), update () and finish ()
   for (std::uint64_t seed = 4000; seed < 4000 + timesEffort(50); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -407,7 +407,7 @@ TEST(ExceptionsCampaign, EndlessStreamsThatAreRefusedMemory) {
   for (std::size_t call = 1; call < refused.size(); ++call) EXPECT_GT(refused[call], 5U) << call;
 }
 
-TEST(ExceptionsCampaign, EndlessStreamsWhoseCallbackThrows) {
+TEST(ExceptionsCampaign, EndlessStreamsSurviveAThrowingCallback) {
   interruptEndlessStreams<EndlessSession, Unending>(5000, timesEffort(200));
 }
 

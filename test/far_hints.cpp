@@ -11,7 +11,7 @@ double minRangeOf(const lisco::SensorHints& hints) {
 }
 
 float elevationStepFor(lisco::SensorHints hints, double min_range) {
-  // Unless the steps limit it, the range goes with the square root of the density.
+  // Unless the steps limit it, the range is proportional to the square root of the density.
   hints.elevation_step = 1e-6F;
   const double ratio = minRangeOf(hints) / min_range;
   return static_cast<float>(1e-6 * ratio * ratio);

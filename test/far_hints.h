@@ -6,10 +6,10 @@
 
 namespace lisco_test {
 
-/// The range from which on returns are far, in units of the tolerance; infinite if the hints are of no help.
+/// The least far range in units of the tolerance; infinite if the hints are not usable.
 double minRangeOf(const lisco::SensorHints& hints);
 
-/// The elevation step with which returns are far from about a range on, as near to it as the steps allow.
+/// The elevation step that makes returns far from about a range on, as near to it as the steps allow.
 float elevationStepFor(lisco::SensorHints hints, double min_range);
 
 }  // namespace lisco_test

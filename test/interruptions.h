@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Calls that are interrupted by an exception: memory is refused, or a callback throws. For programs with
-// refused_allocations.cpp in them.
+// Calls that are interrupted by an exception: memory is refused, or a callback throws. For programs that include
+// refused_allocations.cpp.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,10 +19,10 @@
 
 namespace lisco_test {
 
-/// What callbacks throw.
+/// Thrown by callbacks.
 struct Interruption {};
 
-/// Throws when it has been asked so many times, by any thread; never if 0.
+/// Throws at the n-th call of burn (), by any thread; never if n is 0.
 class Fuse {
  public:
   explicit Fuse(std::size_t times) : left_(times) {}
@@ -35,9 +35,9 @@ class Fuse {
   std::atomic<std::size_t> left_;
 };
 
-/// Makes one call of a session, which must come to its end, be refused memory or be interrupted.
-/// \param refused which of its allocations; 0: none
-/// \return whether as many were asked for
+/// Makes one call of a session, which returns, is refused memory or is interrupted.
+/// \param refused number of the allocation to refuse, from 1; 0: none
+/// \return whether that allocation was asked for
 template <typename Session>
 bool interruptedCall(Session& session, std::size_t number, std::size_t refused, bool& thrown) {
   const RefusedAllocation refusal(refused);
@@ -52,18 +52,17 @@ bool interruptedCall(Session& session, std::size_t number, std::size_t refused, 
 }
 
 /// Refuses the first allocation of a call, then in a new session the second, and so on until the call needs no more.
-/// After each refusal, holds the session to what it promises, then to being usable again, and to giving all its memory
-/// back.
+/// After each refusal, checks what the session promises, that it can be used again, and that it frees all its memory.
 ///
-/// A Session has call (number); checkInterrupted (number), after an exception in that call; and redo (), which begins
-/// anew and tells what is wrong with the clusters.
+/// A Session has call (number); checkInterrupted (number), called after an exception in that call; and redo (), which
+/// begins again and returns what is wrong with the clusters.
 /// \param make makes a session
 /// \param number of the call
 /// \return how many allocations were refused
 template <typename Make>
 std::size_t refuseEachAllocation(Make&& make, std::size_t number) {
-  constexpr std::size_t kMostRefused = 20000;
-  for (std::size_t refused = 1; refused < kMostRefused; ++refused) {
+  constexpr std::size_t kMaxRefused = 20000;
+  for (std::size_t refused = 1; refused < kMaxRefused; ++refused) {
     const std::size_t live = liveAllocations();
     bool thrown = false;
     bool happened = false;
@@ -84,11 +83,11 @@ std::size_t refuseEachAllocation(Make&& make, std::size_t number) {
     if (!happened) return refused - 1;
   }
   ADD_FAILURE() << "call " << number << " has no end";
-  return kMostRefused;
+  return kMaxRefused;
 }
 
-/// Lets the callback of endless streams throw in each kind of call: addColumn (), update (), finish (). Holds the session
-/// to what it promises, then to being usable again, and to giving all its memory back.
+/// Makes the callback of endless streams throw in each kind of call: addColumn (), update (), finish (). Checks what
+/// the session promises, that it can be used again, and that it frees all its memory.
 /// \param first_seed of `streams` streams, one of each
 template <typename Session, typename Stream>
 void interruptEndlessStreams(std::uint64_t first_seed, std::uint64_t streams) {

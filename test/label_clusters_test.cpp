@@ -24,7 +24,7 @@ std::vector<Point> pointsOf(const Scan& scan) {
   return points;
 }
 
-/// The clusters that labels give, by first members.
+/// The clusters that labels give, ordered by first members.
 Clustering clustersOf(const std::vector<std::int32_t>& labels) {
   std::map<std::int32_t, Cluster> by_label;
   for (std::uint32_t i = 0; i < labels.size(); ++i)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Columns that come in another order than their azimuths: late and swapped packets, and worse. The order decides the
-// speed, never the clusters.
+// Columns in another order than their azimuths, as by late and swapped packets. The order decides the speed, never the
+// clusters.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,13 +21,13 @@
 namespace lisco_test {
 namespace {
 
-using Order = std::vector<std::size_t>;  ///< which columns come, one after the other
+using Order = std::vector<std::size_t>;  ///< the columns in the order in which they come
 
-/// What may happen to the packets of a rotation.
-enum class Disorder { kSwappedPackets, kLatePacket, kRepeatedColumns, kReversedPart, kShuffled, kTurnsAnew };
+/// Faults of a rotation's packets.
+enum class Disorder { kSwappedPackets, kLatePacket, kRepeatedColumns, kReversedPart, kShuffled, kRestart };
 constexpr std::array<Disorder, 6> kDisorders{Disorder::kSwappedPackets,  Disorder::kLatePacket,
                                              Disorder::kRepeatedColumns, Disorder::kReversedPart,
-                                             Disorder::kShuffled,        Disorder::kTurnsAnew};
+                                             Disorder::kShuffled,        Disorder::kRestart};
 
 Order::iterator placeIn(Order& order, std::size_t place) {
   return order.begin() + static_cast<std::ptrdiff_t>(std::min(place, order.size()));
@@ -62,7 +62,7 @@ void disturb(Random& random, Order& order, Disorder disorder, std::size_t column
       std::copy(part.begin(), part.end(), placeIn(order, at));
       break;
     }
-    case Disorder::kTurnsAnew:  // from another azimuth on
+    case Disorder::kRestart:  // restarts at another azimuth
       std::rotate(order.begin(), placeIn(order, at), order.end());
       break;
   }
@@ -78,7 +78,7 @@ Scan inOrder(const Scan& scan, const Order& order) {
   return arranged;
 }
 
-/// A scan of up to three turns, with hints that fit it but for the order of its columns.
+/// A scan of up to three turns, with hints that fit all but the order of its columns.
 PairScan disordered(Random& random, PairScan pairs, Disorder disorder) {
   Order order(pairs.scan.columns);
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -90,11 +90,11 @@ PairScan disordered(Random& random, PairScan pairs, Disorder disorder) {
   return pairs;
 }
 
-/// In parts, so that they can run side by side.
+/// In parts that run side by side.
 class LateColumns : public testing::TestWithParam<Disorder> {};
 INSTANTIATE_TEST_SUITE_P(Disorders, LateColumns, testing::ValuesIn(kDisorders));
 
-TEST_P(LateColumns, ChangeNoCluster) {
+TEST_P(LateColumns, EqualTheOracle) {
   lisco::ColumnClusterer clusterer;
   std::size_t joined = 0;
   const std::uint64_t count = timesEffort(60);
@@ -109,7 +109,7 @@ TEST_P(LateColumns, ChangeNoCluster) {
     hinted.parameters.sensor = pairs.hints;
     hinted.parameters.block_columns = random.oneOf(std::array<std::size_t, 5>{64, 64, 1, 16, 1 + random.below(64)});
     hinted.parameters.threads = random.chance(0.5) ? random.below(5) : 1;
-    // Hints of the scan, and wrong ones.
+    // The scan's hints, and wrong ones.
     for (const Setting& setting : {hinted, allSettings()[seed % allSettings().size()]}) {
       lisco::Parameters parameters = setting.parameters;
       parameters.tolerance = pairs.tolerance;
@@ -119,7 +119,7 @@ TEST_P(LateColumns, ChangeNoCluster) {
     }
     for (const Cluster& cluster : right) joined += cluster.members.size() > 1 ? 1 : 0;
   }
-  EXPECT_GT(joined, count * 10) << "too few pairs are neighbours to tell anything";
+  EXPECT_GT(joined, count * 10) << "too few pairs are neighbours";
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// How work is spread: over the columns of a rotation, and over threads.
+// How work is spread over the columns of a rotation, and over threads.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct Spent {
   std::size_t most_left = 0;  ///< parts
 };
 
-/// Rotations of which every block of 64 columns brings parts; what each column spends in the last one.
+/// Rotations of which every block of 64 columns brings parts of work; records the work of each column of the last one.
 Spent spend(const std::vector<std::size_t>& work_of_part, std::size_t parts_per_block, std::size_t rotations) {
   lisco::WorkBudget budget;
   Spent spent;
@@ -56,19 +56,19 @@ TEST(WorkBudget, SpreadsEvenWorkEvenly) {
   EXPECT_LT(spent.most_left, 800U);
 }
 
-// A tenth of the parts, all in one place, takes ten times as much as others.
-TEST(WorkBudget, EvensOutWhatIsDense) {
+// A tenth of the parts, all adjacent, costs ten times as much as the others.
+TEST(WorkBudget, SpreadsDenseWorkEvenly) {
   std::vector<std::size_t> work(200 * 50, 10);
   std::fill(work.begin() + 4000, work.begin() + 5000, 100);
   const Spent spent = spend(work, 200, 5);
   const std::size_t all = std::accumulate(work.begin(), work.end(), std::size_t{0});
   EXPECT_EQ(std::accumulate(spent.per_column.begin(), spent.per_column.end(), std::size_t{0}), all);
   const std::size_t most = *std::max_element(spent.per_column.begin(), spent.per_column.end());
-  EXPECT_LT(most, 200 * 100 / 64) << "as much as if each block were done while the next one comes";
+  EXPECT_LT(most, 200 * 100 / 64) << "as much as without spreading beyond the next block";
   EXPECT_LT(spent.most_left, 200U * 25);
 }
 
-TEST(WorkBudget, DoesItsWorkWhateverItWasBefore) {
+TEST(WorkBudget, DoesAllWorkAfterAnyRotation) {
   for (const std::size_t work : {std::size_t{1}, std::size_t{1000}, std::size_t{1000000}}) {
     const Spent spent = spend(std::vector<std::size_t>(2000, work), 50, 1);
     EXPECT_EQ(std::accumulate(spent.per_column.begin(), spent.per_column.end(), std::size_t{0}), 2000 * work);
@@ -89,7 +89,7 @@ std::vector<Share> cut(const lisco::LoadBalancer& balancer, std::size_t count) {
   return all;
 }
 
-TEST(LoadBalancer, HoldEachColumnOnce) {
+TEST(LoadBalancer, AssignsEachColumnOnce) {
   for (std::uint64_t seed = 1; seed < 200; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
@@ -115,27 +115,27 @@ TEST(LoadBalancer, HoldEachColumnOnce) {
   }
 }
 
-TEST(LoadBalancer, FollowTheWorkOfTheLastRotation) {
+TEST(LoadBalancer, FollowsTheWorkOfTheLastRotation) {
   lisco::LoadBalancer balancer;
-  std::size_t looks = 0;
+  std::size_t queries = 0;
   const auto cell_at = [&](std::size_t, std::size_t) {
-    ++looks;
+    ++queries;
     return lisco::Return{1, 2, 3, 0};
   };
   balancer.prepare(1024, 64, lisco::CellSource(cell_at));
-  EXPECT_GT(looks, 0U);
+  EXPECT_GT(queries, 0U);
   EXPECT_EQ(cut(balancer, 2)[0].end, 512U);
   for (std::size_t first = 0; first < 1024; first += 64) balancer.record(first, 64, first < 256 ? 3000 : 1000);
-  looks = 0;
+  queries = 0;
   balancer.prepare(1024, 64, lisco::CellSource(cell_at));
-  EXPECT_EQ(looks, 0U);
+  EXPECT_EQ(queries, 0U);
   EXPECT_EQ(cut(balancer, 2)[0].end, 256U) << "4 x 3000 and 12 x 1000";
   balancer.prepare(1024, 32, lisco::CellSource(cell_at));  // another sensor
-  EXPECT_GT(looks, 0U);
+  EXPECT_GT(queries, 0U);
   EXPECT_EQ(cut(balancer, 2)[0].end, 512U);
 }
 
-TEST(LoadBalancer, HoldColumnsThatTookNothing) {
+TEST(LoadBalancer, AssignsColumnsWithoutWork) {
   lisco::LoadBalancer balancer;
   const auto cell_at = [](std::size_t, std::size_t) { return lisco::Return{1, 2, 3, 0}; };
   balancer.prepare(1000, 64, lisco::CellSource(cell_at));
@@ -144,13 +144,13 @@ TEST(LoadBalancer, HoldColumnsThatTookNothing) {
   EXPECT_EQ(cut(balancer, 3).back().end, 1000U);
 }
 
-TEST(LoadBalancer, FollowTheReturnsOfTheFirstRotation) {
+TEST(LoadBalancer, FollowsTheReturnsOfTheFirstRotation) {
   lisco::LoadBalancer balancer;
   const auto cell_at = [](std::size_t, std::size_t column) {
     return column < 400 ? lisco::Return{1, 2, 3, 0} : lisco::Return{0, 0, 0, 0};
   };
   balancer.prepare(1600, 64, lisco::CellSource(cell_at));
-  const std::size_t border = cut(balancer, 2)[0].end;  // a return has five times the weight of a cell alone
+  const std::size_t border = cut(balancer, 2)[0].end;  // a return weighs five times as much as an empty cell
   EXPECT_GT(border, 250U);
   EXPECT_LT(border, 450U);
 }

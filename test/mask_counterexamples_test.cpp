@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Neighbours that the paper's mask (Algorithm 2), taken literally, does not show, and that Lisco must join.
+// Neighbours that the paper's mask (Algorithm 2), taken literally, misses, and that Lisco must join.
 //
 // The literal mask of a return at distance d: sigma = ceil(asin(eps/d)/dAlpha) steps to either side and
 // lambda = ceil(asin(eps/d)/dTheta) lasers up and down, with the nominal dAlpha and dTheta of the sensor.
@@ -24,7 +24,7 @@ struct Cell {
   std::size_t laser, step;
 };
 
-/// What Algorithm 2 knows of a sensor.
+/// What Algorithm 2 is given of a sensor.
 struct NominalSensor {
   std::size_t steps;
   double delta_alpha, delta_theta;
@@ -65,9 +65,9 @@ void expectMissedByTheLiteralMaskOnly(const NominalSensor& sensor, std::size_t l
     EXPECT_EQ(cluster(clusterer, scan, eps, setting).size(), 1U) << setting.name;
 }
 
-// (a) Off the horizon, steps lie closer together than the distance d says: at elevation e, two returns at one
+// (a) Off the horizon, steps lie closer together than the distance d suggests: at elevation e, two returns at one
 // distance d and azimuths A apart are only 2 d cos(e) sin(A/2) from each other. asin(eps/d) bounds the angle
-// between the rays, not the angle between their azimuths, which takes asin(eps/rho).
+// between the rays; the angle between their azimuths is bounded by asin(eps/rho).
 //
 //   from above:   q   p         from the side:        p
 //                  \ / rho                           /|
@@ -75,7 +75,7 @@ void expectMissedByTheLiteralMaskOnly(const NominalSensor& sensor, std::size_t l
 //                                                  /e |       twice as many steps as sigma
 //              A is wide                          o---+
 //                                                  rho
-TEST(MaskCounterexample, HorizonError) {
+TEST(MaskCounterexample, JoinsOffTheHorizon) {
   const NominalSensor sensor{360, 1.0 * kDegree, 2.0 * kDegree};
   constexpr double kDistance = 10.0;
   constexpr float kEps = 1.0F;  // sigma = ceil(5.74) = 6
@@ -85,43 +85,43 @@ TEST(MaskCounterexample, HorizonError) {
 }
 
 // The same at the zenith, where a whole turn of steps may lie within eps.
-TEST(MaskCounterexample, AcrossTheZenith) {
+TEST(MaskCounterexample, JoinsAcrossTheZenith) {
   const NominalSensor sensor{360, 1.0 * kDegree, 2.0 * kDegree};
   const double elevation = 89.0 * kDegree;
   expectMissedByTheLiteralMaskOnly(sensor, 32, 1.0F, {0, 10}, polar(10.0, 10 * kDegree, elevation), {0, 190},
                                    polar(10.0, 190 * kDegree, elevation));
 }
 
-// (b) The seam. The mask wraps around at S steps, but a capture is not S nominal steps: here it holds 380
-// degrees, so its last columns see again what its first saw, S - 20 steps later.
+// (b) The seam. The mask wraps around at S steps, but a capture is not S nominal steps: this one covers 380
+// degrees, so its last columns repeat its first ones, S - 20 steps later.
 //
 //   step  0    10    20  ...  350   360   370   380 = S
 //         |-----p-----|--------|-----|-----q-----|
 //         azimuth 10                 azimuth 370 = 10:  the same place, but 360 steps from p, or 20 around
-TEST(MaskCounterexample, SeamOfACaptureOverMoreThanATurn) {
+TEST(MaskCounterexample, JoinsAcrossTheSeamOfMoreThanATurn) {
   const NominalSensor sensor{380, 1.0 * kDegree, 2.0 * kDegree};
   expectMissedByTheLiteralMaskOnly(sensor, 4, 0.5F, {1, 10}, polar(10.0, 10 * kDegree, 0.0), {1, 370},
                                    polar(10.01, 370 * kDegree, 0.0));
 }
 
-// Packets that came twice just before the seam: 3 columns are there again, so that steps no longer count degrees.
+// Repeated packets just before the seam: 3 columns come twice, so that steps no longer count degrees.
 //
 //   azimuth  356 357 357 358 358 359 359 | 0   1   2
 //   step     356 357 358 359 360 361 362 | 0   1   2
 //             p                                    q      6 degrees apart, but 9 columns; sigma = 7
-TEST(MaskCounterexample, SeamWithRepeatedColumns) {
+TEST(MaskCounterexample, JoinsAcrossTheSeamWithRepeatedColumns) {
   const NominalSensor sensor{363, 1.0 * kDegree, 2.0 * kDegree};
   expectMissedByTheLiteralMaskOnly(sensor, 4, 1.05F, {1, 356}, polar(10.0, 356 * kDegree, 0.0), {1, 2},
                                    polar(10.0, 2 * kDegree, 0.0));
 }
 
-// (c) Staggered lasers: laser 1 fires when the sensor has turned on by 6 degrees, so one column is not one
-// azimuth. What lies side by side is 12 columns apart.
+// (c) Staggered lasers: laser 1 fires when the sensor has turned by 6 more degrees, so a column holds several
+// azimuths. Adjacent returns are 12 columns apart.
 //
 //   laser 0:   . . . . . . p . . . . . . . . . .
 //   laser 1:   . . . . . . . . . . . . . . . . . . q      one below the other in the world:  p
 //              columns ->                                                                     q
-TEST(MaskCounterexample, StaggeredLasers) {
+TEST(MaskCounterexample, JoinsStaggeredLasers) {
   const NominalSensor sensor{720, 0.5 * kDegree, 1.0 * kDegree};
   constexpr double kStagger = 6.0 * kDegree;
   constexpr std::size_t kColumn = 300;
@@ -137,21 +137,21 @@ TEST(MaskCounterexample, StaggeredLasers) {
                                    polar(10.0, azimuth(q), -1.0 * kDegree));
 }
 
-// Rows that are not in the order of their elevations: lambda counts rows, which say nothing.
+// Rows in another order than their elevations: lambda counts rows.
 //
 //   row 0:  elevation  0 degrees   p
 //   row 1:  elevation -8           .        lambda = 3 rows
 //   row 2:  elevation -4           .
 //   ...
 //   row 7:  elevation -1           q  <- just below p
-TEST(MaskCounterexample, UnsortedRows) {
+TEST(MaskCounterexample, JoinsUnsortedRows) {
   const NominalSensor sensor{360, 1.0 * kDegree, 1.0 * kDegree};
   expectMissedByTheLiteralMaskOnly(sensor, 8, 0.5F, {0, 50}, polar(10.0, 50 * kDegree, 0.0), {7, 50},
                                    polar(10.0, 50 * kDegree, -1.0 * kDegree));
 }
 
-// And the literal mask does show what ideal columns and rings hold: the function above is not simply blind.
-TEST(MaskCounterexample, AnIdealNeighbourIsShown) {
+// The literal mask covers ideal columns and rings.
+TEST(MaskCounterexample, CoversAnIdealNeighbour) {
   const NominalSensor sensor{360, 1.0 * kDegree, 2.0 * kDegree};
   EXPECT_TRUE(literalMaskShows(sensor, 10.0, 1.0, {3, 100}, {3, 105}));
   EXPECT_TRUE(literalMaskShows(sensor, 10.0, 1.0, {3, 100}, {5, 95}));

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Puts plausible bugs into a copy of the engine, one at a time, and runs the tests of the core on each: they are to fail.
+"""Puts plausible bugs into a copy of the engine, one at a time, and runs the engine's tests, which must fail.
 
     test/mutations.py                   all of test/mutations.txt
-    test/mutations.py seam "late re"    those whose names hold one of these
+    test/mutations.py seam "late re"    those whose names contain one of these
 
-Prints `killed` or `SURVIVED` for each, and by which tests. Exits with 1 if one survives, or no longer fits the source.
-The copy stays in build/mutations, so that a second run builds less.
+Prints `killed` and the first failing test, or `SURVIVED`, for each. Exits with 1 if one survives, or no longer fits
+the source. The copy stays in build/mutations, so that a second run builds less.
 """
 import pathlib
 import re
@@ -16,17 +16,17 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 WORK = ROOT / "build" / "mutations"
-# Each program and its tests, those first that take the least time or kill the most.
+# Each program and its tests: first those that take the least time or kill the most.
 RUNS = [
     ("lisco_core_tests", "-*Seeds*:Larger*:*Threads*"),
     ("lisco_core_tests", "*RandomScans*/0:WindowClusterer*:Endless*:Stream*"),
     ("lisco_core_tests", "*"),
 ]
-TIMEOUT = 600  # seconds; a bug that never ends is killed, too
+TIMEOUT = 600  # seconds; an endless bug counts as killed
 
 
 def read_list(path):
-    """The bugs: `= name`, `file`, then `- line` to be replaced and `+ line` that replaces it."""
+    """Reads the bugs: `= name`, `file`, then `- line` to be replaced and `+ line` that replaces it."""
     mutations = []
     for number, line in enumerate(path.read_text().splitlines(), 1):
         if not line or line.startswith("#"):
@@ -41,12 +41,12 @@ def read_list(path):
         elif kind == "+":
             mutations[-1]["new"].append(rest)
         else:
-            sys.exit(f"{path}:{number}: no line of a bug: {line}")
+            sys.exit(f"{path}:{number}: not a line of a bug: {line}")
     return mutations
 
 
 def mutate(source, mutation):
-    """The source with the bug, None if it does not fit exactly once."""
+    """Returns the source with the bug, None if it does not fit exactly once."""
     old, new = ("\n".join(mutation[key]) for key in ("old", "new"))
     return source.replace(old, new) if source.count(old) == 1 else None
 
@@ -60,7 +60,7 @@ def copy_tree():
             if not file.is_file():
                 continue
             copy = tree / file.relative_to(ROOT)
-            if not copy.exists() or copy.read_bytes() != file.read_bytes():  # what is as it was is not built again
+            if not copy.exists() or copy.read_bytes() != file.read_bytes():  # equal files are not rebuilt
                 copy.parent.mkdir(parents=True, exist_ok=True)
                 copy.write_bytes(file.read_bytes())
     return tree
@@ -80,7 +80,7 @@ def build(programs):
 
 
 def killer():
-    """Which test fails, None if none does."""
+    """Returns the first failing test, None if all pass."""
     for program, tests in RUNS:
         path = WORK / "build" / "test" / program
         status, output = run([str(path), f"--gtest_filter={tests}", "--gtest_fail_fast", "--gtest_brief=1"], TIMEOUT)

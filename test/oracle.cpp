@@ -13,8 +13,7 @@ bool isValid(const Point& point) {
   return point.x != 0.0F || point.y != 0.0F || point.z != 0.0F;
 }
 
-// Written out a second time, on purpose: an error in the library's arithmetic must not hide here as well.
-// This file is compiled with -ffp-contract=off.
+// Repeats the library's arithmetic on purpose, so that an error there shows. Compiled with -ffp-contract=off.
 bool areNeighbours(const Point& a, const Point& b, float tolerance) {
   const float dx = a.x - b.x;
   const float dy = a.y - b.y;
@@ -63,15 +62,15 @@ std::string difference(const Clustering& expected, const Clustering& actual) {
       out << "nothing";
       return;
     }
-    out << "size " << clusters[i].claimed_size << " {";
-    constexpr std::size_t kMostPrinted = 40;
-    for (std::size_t k = 0; k < std::min(kMostPrinted, clusters[i].members.size()); ++k)
+    out << "size " << clusters[i].reported_size << " {";
+    constexpr std::size_t kMaxPrinted = 40;
+    for (std::size_t k = 0; k < std::min(kMaxPrinted, clusters[i].members.size()); ++k)
       out << (k > 0 ? " " : "") << clusters[i].members[k];
-    out << (clusters[i].members.size() > kMostPrinted ? " ...}" : "}");
+    out << (clusters[i].members.size() > kMaxPrinted ? " ...}" : "}");
   };
   for (std::size_t i = 0; i < std::max(expected.size(), actual.size()); ++i) {
     if (i < expected.size() && i < actual.size() && expected[i].members == actual[i].members &&
-        expected[i].claimed_size == actual[i].claimed_size)
+        expected[i].reported_size == actual[i].reported_size)
       continue;
     std::ostringstream out;
     out << expected.size() << " clusters expected, " << actual.size() << " found; the first to differ is " << i

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// The tests of the tests: right clusterings pass, and each kind of wrong one is noticed twice.
+// Tests of the oracle and the verifier: right clusterings pass, and both notice each kind of wrong one.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,11 +35,11 @@ TEST(Oracle, FindsTheClusters) {
   EXPECT_TRUE(violations(kPoints, kRight, kTolerance).empty());
 }
 
-TEST(Oracle, DoesNotCareForOrder) {
+TEST(Oracle, IgnoresOrder) {
   EXPECT_EQ(difference(kRight, inOrder({{{5}, 1}, {{4, 3}, 2}, {{2, 0, 1}, 3}})), "");
 }
 
-TEST(Oracle, PointsAtTheToleranceAreNoNeighbours) {
+TEST(Oracle, SeparatesPointsAtTheTolerance) {
   EXPECT_FALSE(areNeighbours({1, 1, 1}, {1.5F, 1, 1}, 0.5F));
   EXPECT_TRUE(areNeighbours({1, 1, 1}, {1.5F, 1, 1}, std::nextafter(0.5F, 1.0F)));
   EXPECT_TRUE(areNeighbours({1, 1, 1}, {1, 1, 1}, -0.5F));
@@ -64,7 +64,7 @@ TEST(Verifier, NoticesAnInvalidPoint) {
   expectNoticed({{{0, 1, 2}, 3}, {{3, 4}, 2}, {{5}, 1}, {{7}, 1}}, "coverage");
 }
 
-TEST(Verifier, NoticesAPointThatDoesNotExist) {
+TEST(Verifier, NoticesANonexistentPoint) {
   expectNoticed({{{0, 1, 2}, 3}, {{3, 4}, 2}, {{5}, 1}, {{8}, 1}}, "coverage");
 }
 
@@ -80,7 +80,7 @@ TEST(Verifier, NoticesAnEmptyCluster) {
   expectNoticed({{{0, 1, 2}, 3}, {{3, 4}, 2}, {{5}, 1}, {{}, 0}}, "size");
 }
 
-// Two algorithms that share only the comparison of two points agree on random points, and on spoilt copies.
+// Two algorithms that share only the comparison of two points agree on random points, and on corrupted copies.
 TEST(Verifier, AgreesWithTheOracleOnRandomPoints) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -94,7 +94,7 @@ TEST(Verifier, AgreesWithTheOracleOnRandomPoints) {
     if (right.size() < 2) continue;
     Clustering merged = right;
     merged[0].members.insert(merged[0].members.end(), merged[1].members.begin(), merged[1].members.end());
-    merged[0].claimed_size += merged[1].claimed_size;
+    merged[0].reported_size += merged[1].reported_size;
     merged.erase(merged.begin() + 1);
     EXPECT_FALSE(violations(points, merged, tolerance).empty());
     EXPECT_NE(difference(right, inOrder(merged)), "");

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Where a sensor looks: its cells, and in which of them a laser sees something.
+/// A sensor's cells, and which of them sees a position.
 class Sensor {
  public:
   Sensor(Random& random, PairScan& pairs) : random_(random), scan_(pairs.scan), hints_(pairs.hints) {
@@ -40,7 +40,7 @@ class Sensor {
     if (random.chance(0.2)) std::reverse(slope_.begin(), slope_.end());
     const std::array<double, 6> jitters{0.0, 0.0, 0.02, 0.3, 0.74, 2.0};
     jitter_ = random.oneOf(jitters);
-    // Lost packets: the columns behind them move up.
+    // Lost packets: the columns after them move up.
     const double lost = random.chance(0.4) ? 0.05 : 0.0;
     for (std::size_t column = 0; column < scan_.columns; ++column)
       if (column % 16 != 0 || !random.chance(lost))
@@ -55,7 +55,6 @@ class Sensor {
   std::size_t columns() const { return scan_.columns; }
   double slope(std::size_t laser) const { return slope_[laser]; }
 
-  /// The place where the tolerance reaches over so many places, or nearly.
   static Point at(const lisco::SensorHints& hints, double start, double turned, double ahead, double left, double up) {
     const double azimuth = start + (hints.clockwise ? -turned : turned);
     const double aside = hints.clockwise ? -left : left;
@@ -64,14 +63,14 @@ class Sensor {
             static_cast<float>(up) + hints.origin[2]};
   }
 
-  /// Puts into the cell that sees a place, if it is empty, what lies ahead and to the left of another place.
-  bool set(std::size_t laser, double seen_place, double place, double ahead, double left, double up) {
-    const double time = seen_place + lag_[laser] + random_.between(-jitter_, jitter_);
+  /// Sets the empty cell that sees one bin to a return ahead and to the left of another bin.
+  bool set(std::size_t laser, double seen_bin, double bin, double ahead, double left, double up) {
+    const double time = seen_bin + lag_[laser] + random_.between(-jitter_, jitter_);
     if (!(time > -0.5) || time > static_cast<double>(column_of_time_.size()) - 0.6) return false;
     const std::size_t column = column_of_time_[static_cast<std::size_t>(std::lround(time))];
     const lisco::Return& cell = scan_.at(laser, column);
     if (isValid({cell.x, cell.y, cell.z})) return false;
-    scan_.set(laser, column, at(hints_, start_, place * step(), ahead, left, up));
+    scan_.set(laser, column, at(hints_, start_, bin * step(), ahead, left, up));
     return true;
   }
 
@@ -94,9 +93,9 @@ PairScan randomPairs(Random& random) {
   const std::array<double, 6> scales{1.0, 1.0, 1.0, 0.3, 1e-15, 1e11};
   const double tolerance = random.oneOf(scales);
   pairs.tolerance = static_cast<float>(tolerance);
-  const double near_end = tolerance * std::min(1e4, minRangeOf(pairs.hints));
+  const double min_range = tolerance * std::min(1e4, minRangeOf(pairs.hints));
   if (random.chance(0.3))
-    for (float& axis : pairs.hints.origin) axis = static_cast<float>(near_end * random.between(-2.0, 2.0));
+    for (float& axis : pairs.hints.origin) axis = static_cast<float>(min_range * random.between(-2.0, 2.0));
   const auto almost = [&random] {
     const std::array<double, 5> closeness{1e-7, 1e-6, 1e-5, 1e-3, 0.3};
     return 1.0 + random.oneOf(closeness) * random.between(-1.0, 1.0);
@@ -104,28 +103,28 @@ PairScan randomPairs(Random& random) {
 
   const std::size_t sites = 20 + random.below(150);
   for (std::size_t site = 0; site < sites; ++site) {
-    // Often at the borders of sectors, which are sixteen places from the first return's.
-    double place = random.between(0.0, static_cast<double>(sensor.columns()));
-    if (random.chance(0.6)) place = std::round(place / 16.0) * 16.0 + static_cast<double>(random.below(4)) - 2.0;
-    if (random.chance(0.3)) place += random.between(-0.75, 0.75);
+    // Often at the borders of sectors, which are sixteen bins from the first return's.
+    double bin = random.between(0.0, static_cast<double>(sensor.columns()));
+    if (random.chance(0.6)) bin = std::round(bin / 16.0) * 16.0 + static_cast<double>(random.below(4)) - 2.0;
+    if (random.chance(0.3)) bin += random.between(-0.75, 0.75);
     const std::array<double, 16> spans{0, 1, 2, 3, 8, 14, 15, 16, 17, 31, 32, 33, 44, 45, 46, 47};
     const double span = random.oneOf(spans);
-    const std::array<double, 6> distances{near_end,
-                                          near_end + tolerance,
-                                          near_end + 0.5 * tolerance,
-                                          near_end * random.between(1.0, 1.5),
-                                          near_end * random.magnitude(0.7, 30.0),
+    const std::array<double, 6> distances{min_range,
+                                          min_range + tolerance,
+                                          min_range + 0.5 * tolerance,
+                                          min_range * random.between(1.0, 1.5),
+                                          min_range * random.magnitude(0.7, 30.0),
                                           tolerance / (2.0 * std::sin(std::max(span, 0.3) * sensor.step() / 2.0))};
     const double rho = random.oneOf(distances) * almost();
     const std::size_t one = random.below(sensor.lasers());
     const std::size_t other = random.chance(0.3) ? one : random.below(sensor.lasers());
     const double up = rho * sensor.slope(one);
 
-    // The way to the other one, about the tolerance long.
+    // The vector to the other return, about the tolerance long.
     const double sine = std::min(0.9, tolerance / rho);
     std::array<double, 3> way{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
     switch (random.below(7)) {
-      case 0:  // as far aside as can be
+      case 0:  // as far aside as possible
         way = {-sine, std::sqrt(1.0 - sine * sine), 0.0};
         break;
       case 1:  // aside at the same distance
@@ -150,26 +149,26 @@ PairScan randomPairs(Random& random) {
     if (random.chance(0.5)) way[1] = -way[1];
     if (random.chance(0.5)) way[2] = -way[2];
     const double turned = std::atan2(way[1], rho + way[0]) / sensor.step();
-    // Seen in the same turn, or in the one before or after it.
+    // Seen in the same turn, or in the turn before or after.
     const std::array<int, 4> turns{0, 0, 1, -1};
     const double turn = sensor.steps() * random.oneOf(turns);
-    sensor.set(one, place, place, rho, 0.0, up);
-    sensor.set(other, place + turned + turn, place, rho + way[0], way[1], up + way[2]);
-    // And a third in a row with one of them, so that runs have more than one return.
+    sensor.set(one, bin, bin, rho, 0.0, up);
+    sensor.set(other, bin + turned + turn, bin, rho + way[0], way[1], up + way[2]);
+    // A third return next to one of them makes runs of more than one return.
     if (random.chance(0.4))
-      sensor.set(one, place + 1.0, place + 1.0, rho * almost(), 0.0, up + 0.5 * tolerance * random.between(-1, 1));
+      sensor.set(one, bin + 1.0, bin + 1.0, rho * almost(), 0.0, up + 0.5 * tolerance * random.between(-1, 1));
   }
 
-  // Others far behind, so that lasers are known to be where they are; or none, so that they must be found.
+  // Returns far behind tell the bins of the lasers; or none do, so that the bins must be found.
   const double behind = random.chance(0.3) ? 0.0 : 500.0 / static_cast<double>(pairs.scan.cells.size());
   for (std::size_t laser = 0; laser < sensor.lasers(); ++laser)
     for (std::size_t column = 0; column < sensor.columns(); ++column) {
       if (!random.chance(behind)) continue;
-      const double rho = 3000.0 * near_end * random.between(1.0, 10.0);
-      const auto place = static_cast<double>(column);
-      sensor.set(laser, place, place, rho, 0.0, rho * sensor.slope(laser));
+      const double rho = 3000.0 * min_range * random.between(1.0, 10.0);
+      const auto bin = static_cast<double>(column);
+      sensor.set(laser, bin, bin, rho, 0.0, rho * sensor.slope(laser));
     }
-  if (random.chance(0.1)) pairs.hints.clockwise = !pairs.hints.clockwise;  // and wrong hints
+  if (random.chance(0.1)) pairs.hints.clockwise = !pairs.hints.clockwise;  // wrong hints
   if (random.chance(0.1)) pairs.hints.steps_per_turn += static_cast<int>(random.below(20));
   return pairs;
 }

@@ -8,15 +8,15 @@
 
 namespace lisco_test {
 
-/// A scan of pairs, its tolerance and what is known of its view.
+/// Pairs in a scan, their tolerance, and the hints of the sensor.
 struct PairScan {
   Scan scan{0, 0};
   lisco::SensorHints hints;
   float tolerance = 1.0F;
 };
 
-/// Many pairs in one scan of up to three turns, each just within the tolerance or just beyond it, where windows and
-/// segments end. The hints fit the scan, but for one in five.
+/// Many pairs in one scan of up to three turns, each just within the tolerance or just beyond it, where masks and
+/// segments end. The hints fit four scans in five.
 PairScan randomPairs(Random& random);
 
 }  // namespace lisco_test

@@ -14,7 +14,7 @@ namespace {
 using pcl::PointXYZ;
 using Cloud = pcl::PointCloud<PointXYZ>;
 
-/// What the vector holds before a call that is to clear it.
+/// Content of the vector before a call that clears it.
 Clusters anyClusters() {
   Clusters clusters(2);
   clusters[0].indices = {1, 2, 3};
@@ -27,7 +27,7 @@ Cloud::Ptr fivePoints() {
   return cloud;
 }
 
-/// One client body again: both classes clear the vector and return.
+/// Both classes clear the vector and return.
 template <typename Extraction>
 class PclMissingInput : public testing::Test {};
 using Extractions = testing::Types<pcl::EuclideanClusterExtraction<PointXYZ>, pcl::LiscoClusterExtraction<PointXYZ>>;
@@ -120,7 +120,7 @@ void expectRejected(const pcl::Indices& indices, const std::string& bad_index) {
   EXPECT_NE(error.find(bad_index), std::string::npos) << error;
   EXPECT_TRUE(clusters.empty());
 
-  // Nothing of it stays behind.
+  // The cloud set afterwards is clustered as usual.
   extraction.setIndices(std::make_shared<pcl::Indices>(pcl::Indices{4, 0}));
   extraction.extract(clusters);
   EXPECT_EQ(clusters.size(), 2U);
@@ -159,7 +159,7 @@ TEST(PclIndexType, HoldsAsManyPointsAsIndexT) {
   EXPECT_FALSE(LiscoCloudClusterer::fitsIndexType(std::numeric_limits<std::size_t>::max()));
 }
 
-// NaN, infinite and (0, 0, 0) points are in no cluster, whatever is_dense says and whoever selects them.
+// NaN, infinite and (0, 0, 0) points are in no cluster, for any is_dense and any indices.
 TEST(PclNoReturn, IsInNoCluster) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -169,7 +169,7 @@ TEST(PclNoReturn, IsInNoCluster) {
   cloud->push_back(PointXYZ(1, 1, -kInfinity));
   cloud->push_back(PointXYZ(0, 0, 0));
   cloud->push_back(PointXYZ(-0.0F, 0, -0.0F));
-  cloud->push_back(PointXYZ(0, 0, 1e-40F));  // a return, if a strange one
+  cloud->push_back(PointXYZ(0, 0, 1e-40F));  // a denormal, but a return
   for (const bool is_dense : {false, true})
     for (const double tolerance : {0.2, 0.0, 100.0, static_cast<double>(kInfinity), static_cast<double>(kNan)}) {
       cloud->is_dense = is_dense;
@@ -182,7 +182,7 @@ TEST(PclNoReturn, IsInNoCluster) {
     }
 }
 
-TEST(PclNoReturn, OnlyNoReturnsAddNothing) {
+TEST(PclNoReturn, AddsNothingIfThereAreNoOthers) {
   const auto cloud = std::make_shared<Cloud>(4, 3, PointXYZ(0, 0, 0));
   for (const bool is_dense : {false, true}) {
     cloud->is_dense = is_dense;

@@ -24,15 +24,14 @@ namespace lisco_test {
 
 using Clusters = std::vector<pcl::PointIndices>;
 
-/// What a user of either class decides; the defaults are PCL's.
+/// Parameters of either class; the defaults are PCL's.
 struct Request {
   double tolerance = 0.5;
   pcl::uindex_t min_size = 1;
   pcl::uindex_t max_size = std::numeric_limits<pcl::uindex_t>::max();
 };
 
-/// A user's code, written once for pcl::EuclideanClusterExtraction and pcl::LiscoClusterExtraction: changing
-/// the class name is all that migration takes.
+/// A user's code, for pcl::EuclideanClusterExtraction and pcl::LiscoClusterExtraction alike.
 template <typename Extraction>
 class Client {
  public:
@@ -60,7 +59,7 @@ using PclClient = Client<pcl::EuclideanClusterExtraction<PointT>>;
 template <typename PointT>
 using LiscoClient = Client<pcl::LiscoClusterExtraction<PointT>>;
 
-/// Those of the indices (nullptr: of all points) that are returns: what PCL is to be given, in the same order.
+/// Those of the indices (nullptr: of all points) that are returns, in the same order: PCL's input.
 template <typename PointT>
 pcl::IndicesPtr returnsOf(const pcl::PointCloud<PointT>& cloud, const pcl::IndicesPtr& indices = nullptr) {
   auto returns = std::make_shared<pcl::Indices>();
@@ -138,9 +137,9 @@ inline bool isRefinement(const Clusters& fine, const Clusters& coarse, std::size
   });
 }
 
-/// The vectors are equal; or PCL's tree has missed a pair by rounding (doc/contract.md): then the definition decides, and
-/// PCL's components are parts of the true ones.
-/// \param returns of the cloud, which PCL was given
+/// Expects equal vectors; if PCL's tree has missed a pair by rounding (doc/contract.md), the vector of the definition,
+/// and PCL's components as parts of the true ones.
+/// \param returns of the cloud, as given to PCL
 template <typename PointT>
 bool expectSameUnlessMissed(const typename pcl::PointCloud<PointT>::ConstPtr& cloud, const pcl::IndicesPtr& returns,
                             const Request& request, const Clusters& by_pcl, const Clusters& actual) {
@@ -154,7 +153,7 @@ bool expectSameUnlessMissed(const typename pcl::PointCloud<PointT>::ConstPtr& cl
   return expectSame(clustersByDefinition(*cloud, *returns, request), actual);
 }
 
-/// Both clients' clusters of the same returns are the same vector. \return PCL's
+/// Expects the same vector of both clients on the same returns. \return PCL's
 template <typename PointT>
 Clusters expectSameAsPcl(const typename pcl::PointCloud<PointT>::ConstPtr& cloud, const pcl::IndicesPtr& indices,
                          const Request& request) {

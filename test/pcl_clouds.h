@@ -15,7 +15,7 @@
 
 namespace lisco_test {
 
-/// A scan as an organized cloud: rows are lasers. Its header is filled in, as a driver does it.
+/// A scan as an organized cloud: rows are lasers. Its header is filled in.
 template <typename PointT = pcl::PointXYZ>
 typename pcl::PointCloud<PointT>::Ptr cloudOf(const Scan& scan) {
   auto cloud = std::make_shared<pcl::PointCloud<PointT>>(static_cast<std::uint32_t>(scan.columns),
@@ -32,10 +32,10 @@ typename pcl::PointCloud<PointT>::Ptr cloudOf(const Scan& scan) {
   return cloud;
 }
 
-/// A rotating scan of boxes around the sensor, with steps as of a real one: columns x lasers cells.
+/// A rotating scan of boxes around the sensor, with the steps of a real one: columns x lasers cells.
 Scan boxesAround(Random& random, std::size_t columns, std::size_t lasers);
 
-/// What a depth camera sees: z forward, y down, a wall with a few boxes before it.
+/// A depth camera's cloud: z forward, y down, a wall with a few boxes before it.
 Scan cameraView(Random& random, std::size_t columns, std::size_t lasers);
 
 /// The points in one row.
@@ -47,7 +47,7 @@ typename pcl::PointCloud<PointT>::Ptr unorganized(const pcl::PointCloud<PointT>&
   return row;
 }
 
-/// The cloud in a frame in which its sensor stands at (x, y, z).
+/// The cloud in a frame in which its sensor is at (x, y, z).
 template <typename PointT>
 typename pcl::PointCloud<PointT>::Ptr displaced(const pcl::PointCloud<PointT>& cloud, float x, float y, float z,
                                                 bool with_origin) {
@@ -62,8 +62,8 @@ typename pcl::PointCloud<PointT>::Ptr displaced(const pcl::PointCloud<PointT>& c
   return moved;
 }
 
-/// The cloud of doc/contract.md at whose tolerance, kMissingTolerance, the search of PCL's kd-tree misses a pair of
-/// neighbours: 23 points, of which 0 and 1 are the pair.
+/// The cloud of doc/contract.md: at kMissingTolerance the search of PCL's kd-tree misses a pair of neighbours. 23
+/// points, of which 0 and 1 are the pair.
 constexpr double kMissingTolerance = 0.450000107;
 inline pcl::PointCloud<pcl::PointXYZ>::Ptr cloudWithAMissedPair() {
   auto cloud = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();

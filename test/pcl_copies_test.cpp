@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Copies of the PCL classes, whose state lies behind a pointer, and what is left of an object that was moved from.
+// Copies of the PCL classes, whose state lies behind a pointer, and moved-from objects.
 #include <gtest/gtest.h>
 
 #include <type_traits>
@@ -39,7 +39,7 @@ Clusters clustersOf(Extraction& extraction) {
   return clusters;
 }
 
-TEST(PclCopies, OfAnExtractionWorkBesideIt) {
+TEST(PclCopies, OfAnExtractionAreIndependent) {
   Random random(1);
   Extraction extraction;
   extraction.setClusterTolerance(0.5);
@@ -63,7 +63,7 @@ TEST(PclCopies, OfAnExtractionWorkBesideIt) {
   EXPECT_TRUE(areSame(clustersOf(copy), expected));
 }
 
-TEST(PclCopies, OfAnExtractionThatWasMovedFromWorkAgain) {
+TEST(PclCopies, MovedFromExtractionsWorkAgain) {
   Random random(2);
   const auto cloud = cloudOf(boxesAround(random, 120, 8));
   Extraction extraction;
@@ -79,7 +79,7 @@ TEST(PclCopies, OfAnExtractionThatWasMovedFromWorkAgain) {
   EXPECT_TRUE(areSame(clustersOf(extraction), expected));
 }
 
-TEST(PclCopies, OfAStreamGoOnFromTheSameColumn) {
+TEST(PclCopies, OfAStreamContinueFromTheSameColumn) {
   Random random(3);
   const auto columns = columnsOf(*cloudOf(boxesAround(random, 120, 8)));
   Stream stream;
@@ -115,7 +115,7 @@ TEST(PclCopies, OfAStreamGoOnFromTheSameColumn) {
   expectRotationSameAsPcl(copy, random, columns, {0.5, 3});  // NOLINT: a moved-from object can be used again
 }
 
-TEST(PclCopies, OfWindowsGoOnFromTheSameColumn) {
+TEST(PclCopies, OfWindowsContinueFromTheSameColumn) {
   Random random(4);
   const auto columns = columnsOf(*cloudOf(boxesAround(random, 120, 8)));
   Windows windows;

@@ -34,7 +34,7 @@ TEST(PclCustomPoint, EqualsPcl) {
   expectSameAsPcl<LidarPoint>(cloud, shuffledIndices(random, cloud->size()), {0.5});
 }
 
-TEST(PclCustomPoint, FreeFunctionsAndLabels) {
+TEST(PclCustomPoint, WorksInFreeFunctionsAndLabels) {
   Random random(2);
   const auto cloud = cloudOf<LidarPoint>(boxesAround(random, 60, 4));
   Clusters found;
@@ -50,7 +50,7 @@ TEST(PclCustomPoint, FreeFunctionsAndLabels) {
   EXPECT_EQ(labels.width, 60U);
 }
 
-TEST(PclCustomPoint, Streams) {
+TEST(PclCustomPoint, WorksInStreams) {
   Random random(3);
   const auto columns = columnsOf(*cloudOf<LidarPoint>(boxesAround(random, 120, 8)));
   pcl::LiscoStreamExtraction<LidarPoint> stream;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Exceptions in the midst of the PCL face's calls: memory that is refused, callbacks that throw. Nothing leaks, what is
-// still given out is right, and what is begun anew is the oracle's. A program of its own: refused_allocations.cpp
-// replaces operator new.
+// Exceptions during the PCL face's calls: memory is refused, callbacks throw. Nothing leaks, later results are right,
+// and a new rotation or stream is the oracle's. A program for itself: refused_allocations.cpp replaces operator new.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -26,7 +25,7 @@ using Cloud = pcl::PointCloud<PointXYZ>;
 
 class PclExceptionsCampaign : public testing::Test {
  protected:
-  // PCL tells of each refused allocation.
+  // PCL reports each refused allocation.
   void SetUp() override { pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS); }
   void TearDown() override { pcl::console::setVerbosityLevel(pcl::console::L_INFO); }
 };
@@ -46,8 +45,8 @@ struct Extracted {
   explicit Extracted(Random& random) {
     const bool by_threads = random.chance(0.4);
     PairScan pairs = randomPairs(random);
-    constexpr std::size_t kWorthThreads = 8192;  // cells
-    while (by_threads == (pairs.scan.columns * pairs.scan.lasers < kWorthThreads)) pairs = randomPairs(random);
+    constexpr std::size_t kMinCellsForThreads = 8192;  // cells
+    while (by_threads == (pairs.scan.columns * pairs.scan.lasers < kMinCellsForThreads)) pairs = randomPairs(random);
     request.tolerance = static_cast<double>(pairs.tolerance);
     request.min_size = static_cast<pcl::uindex_t>(1 + random.below(2));
     threads = by_threads ? 3 : 1;
@@ -108,7 +107,7 @@ class ExtractSession {
   void checkInterrupted(std::size_t) {}
 
   std::string redo() {
-    // PCL's initCompute () catches what its own indices are refused, and says so: then there is nothing to cluster.
+    // PCL's initCompute () catches the refusal of its own indices and reports it: then there is nothing to cluster.
     if (passed_ && !clusters_.empty()) return "extract () went on: " + differenceOf(extracted_.right, clusters_);
     clusters_.clear();
     call(0);
@@ -132,7 +131,7 @@ class ExtractSession {
   bool passed_ = false;
 };
 
-TEST_F(PclExceptionsCampaign, CloudsThatAreRefusedMemory) {
+TEST_F(PclExceptionsCampaign, CloudsSurviveRefusedMemory) {
   std::size_t refused = 0;
   for (std::uint64_t seed = 1; seed <= timesEffort(6); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -173,7 +172,7 @@ struct Streamed {
   std::vector<Delivery> truth;  ///< of the endless stream
 };
 
-/// Calls: twice begin, each column, the end; so that the second rotation begins with what the first one has taught.
+/// Calls: begin twice, each column, the end; the second rotation uses the hints of the first one.
 class RotationSession {
  public:
   explicit RotationSession(const Streamed& streamed) : streamed_(streamed) {
@@ -192,12 +191,12 @@ class RotationSession {
     else if (number <= columns)
       stream_->addColumn(streamed_.columns[number - 1]);
     else if (number == columns + 1)
-      stream_->getSubclusters(looked_at_);
+      stream_->getSubclusters(queried_);
     else
       stream_->endRotation(clusters_);
   }
 
-  /// The rotation is over, unless it was but a look that failed.
+  /// The rotation has ended, unless a query failed.
   void checkInterrupted(std::size_t number) {
     const std::size_t columns = streamed_.columns.size();
     number %= columns + 3;
@@ -209,15 +208,15 @@ class RotationSession {
     EXPECT_EQ(cloud.width, stream_->getNumberOfColumns());
     clusters_.clear();
     stream_->getSubclusters(clusters_);
-    // What failed before it reached the engine has left all that was there to be looked at.
+    // A call that failed before it reached the engine leaves all columns.
     EXPECT_TRUE(clusters_.empty() ||
                 differenceOf(streamed_.trueClustersBetween(0, stream_->getNumberOfColumns()), clusters_).empty());
     const bool is_over = !stream_->addColumn(nullptr, 0);
     EXPECT_TRUE(is_over || number > columns);
-    const std::size_t looked_at = clusters_.size();
+    const std::size_t queried = clusters_.size();
     EXPECT_EQ(stream_->endRotation(clusters_), !is_over);
-    EXPECT_EQ(clusters_.size(), is_over ? 0 : 2 * looked_at) << "not appended";
-    EXPECT_TRUE(is_over || looked_at == streamed_.trueClustersBetween(0, columns).size());
+    EXPECT_EQ(clusters_.size(), is_over ? 0 : 2 * queried) << "not appended";
+    EXPECT_TRUE(is_over || queried == streamed_.trueClustersBetween(0, columns).size());
   }
 
   std::string redo() {
@@ -235,10 +234,10 @@ class RotationSession {
   const Streamed& streamed_;
   std::unique_ptr<pcl::LiscoStreamExtraction<PointXYZ>> stream_ =
       std::make_unique<pcl::LiscoStreamExtraction<PointXYZ>>();
-  Clusters looked_at_, clusters_;
+  Clusters queried_, clusters_;
 };
 
-/// Calls: begin, then a column and a look each.
+/// Calls: begin, then a column and a query each.
 class WindowSession {
  public:
   explicit WindowSession(const Streamed& streamed) : streamed_(streamed) {
@@ -262,7 +261,7 @@ class WindowSession {
     }
   }
 
-  /// The stream is over, unless it was but a look that failed: then it goes on.
+  /// The stream has ended, unless a query failed: then it continues.
   void checkInterrupted(std::size_t number) {
     Cloud cloud;
     windows_->getWindow(cloud);
@@ -384,7 +383,7 @@ void refuseStreams(std::uint64_t first_seed, std::uint64_t seeds) {
     for (std::size_t number = 0; number <= last;) {
       refused += refuseEachAllocation([&] { return Session(streamed); }, number);
       if (testing::Test::HasFailure()) return;
-      // Ends and beginnings are never left out: they allocate most.
+      // The first and the last call are never left out: they allocate most.
       const std::size_t step = 1 + random.below(12);
       number = number < last ? std::min(last, number + step) : last + 1;
     }
@@ -392,19 +391,19 @@ void refuseStreams(std::uint64_t first_seed, std::uint64_t seeds) {
   EXPECT_GT(refused, 10 * seeds);
 }
 
-TEST_F(PclExceptionsCampaign, RotationsThatAreRefusedMemory) {
+TEST_F(PclExceptionsCampaign, RotationsSurviveRefusedMemory) {
   refuseStreams<RotationSession>(1000, timesEffort(20));
 }
 
-TEST_F(PclExceptionsCampaign, WindowsThatAreRefusedMemory) {
+TEST_F(PclExceptionsCampaign, WindowsSurviveRefusedMemory) {
   refuseStreams<WindowSession>(2000, timesEffort(20));
 }
 
-TEST_F(PclExceptionsCampaign, EndlessStreamsThatAreRefusedMemory) {
+TEST_F(PclExceptionsCampaign, EndlessStreamsSurviveRefusedMemory) {
   refuseStreams<EndlessSession>(3000, timesEffort(20));
 }
 
-TEST_F(PclExceptionsCampaign, EndlessStreamsWhoseCallbackThrows) {
+TEST_F(PclExceptionsCampaign, EndlessStreamsSurviveAThrowingCallback) {
   interruptEndlessStreams<EndlessSession, Streamed>(4000, timesEffort(300));
 }
 

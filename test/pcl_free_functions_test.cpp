@@ -15,7 +15,7 @@ Cloud::Ptr scanOfBoxes() {
   return cloudOf(boxesAround(random, 150, 10));
 }
 
-TEST(PclFreeFunctions, OnIndices) {
+TEST(PclFreeFunctions, EqualPclsOnIndices) {
   Random random(2);
   const Cloud::Ptr cloud = scanOfBoxes();
   const pcl::search::KdTree<PointXYZ>::Ptr tree(new pcl::search::KdTree<PointXYZ>(false));
@@ -32,8 +32,8 @@ TEST(PclFreeFunctions, OnIndices) {
   EXPECT_GT(expected.size(), 20U);
 }
 
-TEST(PclFreeFunctions, OnAWholeCloud) {
-  // PCL's function knows no invalid points.
+TEST(PclFreeFunctions, EqualPclsOnAWholeCloud) {
+  // PCL's function accepts only valid points.
   const Cloud::Ptr cloud = scanOfBoxes();
   const auto dense = std::make_shared<Cloud>(*cloud, *returnsOf(*cloud));
   const pcl::search::KdTree<PointXYZ>::Ptr tree(new pcl::search::KdTree<PointXYZ>(false));
@@ -48,7 +48,7 @@ TEST(PclFreeFunctions, OnAWholeCloud) {
   EXPECT_GT(expected.size(), 10U);
 }
 
-TEST(PclFreeFunctions, WholeCloudWithoutSomeReturnsIsThatOfItsReturns) {
+TEST(PclFreeFunctions, SkipNoReturnsOfAWholeCloud) {
   const Cloud::Ptr cloud = scanOfBoxes();
   Clusters of_returns;
   Clusters of_all;
@@ -58,7 +58,7 @@ TEST(PclFreeFunctions, WholeCloudWithoutSomeReturnsIsThatOfItsReturns) {
   expectSame(of_returns, of_all);
 }
 
-/// The calls that each name has in common with the other one: a plain rename.
+/// The common calls of both names: a plain rename.
 template <typename Extract>
 void extractWithTree(const Extract& extract, const Cloud::Ptr& cloud, const pcl::IndicesPtr& indices,
                      Clusters& clusters) {
@@ -74,7 +74,7 @@ void extractWithTree(const Extract& extract, const Cloud::Ptr& cloud, const pcl:
   extract(*cloud, tree, 0.5F, clusters, 2, 300);
 }
 
-TEST(PclFreeFunctions, TakeATreeAsPclsDo) {
+TEST(PclFreeFunctions, AcceptATreeAsPclsDo) {
   Random random(3);
   const Cloud::Ptr scan = scanOfBoxes();
   const auto cloud = std::make_shared<Cloud>(*scan, *returnsOf(*scan));
@@ -106,7 +106,7 @@ TEST(PclFreeFunctions, IgnoreTheTree) {
   EXPECT_EQ(empty_tree->getInputCloud(), nullptr);
 }
 
-TEST(PclFreeFunctions, OnNothing) {
+TEST(PclFreeFunctions, AcceptEmptyClouds) {
   Clusters clusters;
   pcl::extractLiscoClusters(Cloud(), 0.5F, clusters);
   pcl::extractLiscoClusters(Cloud(), pcl::Indices(), 0.5F, clusters);

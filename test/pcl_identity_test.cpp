@@ -27,7 +27,7 @@ Cloud::Ptr scanOfBoxes(std::uint64_t seed = 1) {
 
 class PclIdentity : public testing::TestWithParam<std::uint64_t> {};
 
-TEST_P(PclIdentity, OfRandomScans) {
+TEST_P(PclIdentity, HoldsOnRandomScans) {
   for (std::uint64_t seed = GetParam(); seed < GetParam() + 700; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
@@ -43,7 +43,7 @@ TEST_P(PclIdentity, OfRandomScans) {
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, PclIdentity, testing::Values(1, 1001, 2001, 3001));
 
-// FLANN adds up the bound by which it prunes a branch with rounding: here it is above r2 while d2 is below.
+// FLANN sums up the bound by which it prunes a branch with rounding: here it exceeds r2 while d2 is below.
 TEST(PclMissesPairs, ByTheRoundingOfItsTree) {
   const Cloud::Ptr cloud = cloudWithAMissedPair();
   const Request request{kMissingTolerance};
@@ -75,7 +75,7 @@ TEST(PclMissesPairs, WhereItsBoundOverflows) {
 }
 
 // Without a pair that PCL misses, its vector is the definition's: indices in any order and repeated, sizes, headers.
-TEST(PclMissesPairs, ElseTheDefinitionIsItsVector) {
+TEST(PclMissesPairs, InNoOtherCases) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
@@ -94,13 +94,13 @@ TEST(PclMissesPairs, ElseTheDefinitionIsItsVector) {
   }
 }
 
-TEST(Pcl, WholeScanAtManyTolerances) {
+TEST(PclIdentity, HoldsAtManyTolerances) {
   const Cloud::Ptr cloud = scanOfBoxes();
   for (const double tolerance : {0.05, 0.1, 0.3, 0.7, 1.0, 5.0, 100.0})
     EXPECT_FALSE(expectSameAsPcl<PointXYZ>(cloud, nullptr, {tolerance}).empty()) << tolerance;
 }
 
-TEST(Pcl, AnyTolerance) {
+TEST(PclIdentity, HoldsAtAnyTolerance) {
   const Cloud::Ptr cloud = scanOfBoxes();
   for (const double tolerance : {0.0, -0.0, -0.5, 1e-30, 1e-22, 1e15, 1e30, 1e300, kNan, kInfinity, -kInfinity}) {
     SCOPED_TRACE(tolerance);
@@ -108,7 +108,7 @@ TEST(Pcl, AnyTolerance) {
   }
 }
 
-TEST(Pcl, SizesAreInclusiveOnBothSides) {
+TEST(PclIdentity, HoldsAtBothLimitsOfSize) {
   const Cloud::Ptr cloud = scanOfBoxes();
   const Clusters all = expectSameAsPcl<PointXYZ>(cloud, nullptr, {0.5});
   ASSERT_GT(all.size(), 4U);
@@ -119,7 +119,7 @@ TEST(Pcl, SizesAreInclusiveOnBothSides) {
     expectSameAsPcl<PointXYZ>(cloud, nullptr, request);
 }
 
-TEST(Pcl, IndicesShuffledDoubledAndFew) {
+TEST(PclIdentity, HoldsForShuffledRepeatedAndFewIndices) {
   Random random(2);
   const Cloud::Ptr cloud = scanOfBoxes();
   const pcl::IndicesPtr all = shuffledIndices(random, cloud->size());
@@ -134,13 +134,13 @@ TEST(Pcl, IndicesShuffledDoubledAndFew) {
     random.shuffle(*doubled);
     expectSameAsPcl<PointXYZ>(cloud, doubled, {0.8});
   }
-  // Far more indices than points.
+  // Many more indices than points.
   auto many = std::make_shared<pcl::Indices>();
   for (int i = 0; i < 3; ++i) many->insert(many->end(), all->begin(), all->end());
   expectSameAsPcl<PointXYZ>(cloud, many, {0.5});
 }
 
-TEST(Pcl, IndicesOfARectangle) {
+TEST(PclIdentity, HoldsForIndicesOfARectangle) {
   const Cloud::Ptr cloud = scanOfBoxes();
   PclClient<PointXYZ> reference;
   LiscoClient<PointXYZ> lisco;
@@ -155,8 +155,8 @@ TEST(Pcl, IndicesOfARectangle) {
   expectSame(expected, actual);
 }
 
-// The order among clusters of one size is that of an unstable sort of more than 16 elements.
-TEST(Pcl, ManyClustersOfOneSize) {
+// Clusters of one size are ordered by an unstable sort of more than 16 elements.
+TEST(PclIdentity, HoldsForManyClustersOfOneSize) {
   Random random(3);
   Scan scan(400, 2);
   for (std::size_t column = 0; column < 400; ++column)
@@ -169,7 +169,7 @@ TEST(Pcl, ManyClustersOfOneSize) {
   expectSameAsPcl<PointXYZ>(cloud, shuffledIndices(random, cloud->size()), {0.5});
 }
 
-TEST(Pcl, ClustersAreAppendedAndAllSortedAgain) {
+TEST(PclIdentity, HoldsForAppendedClusters) {
   PclClient<PointXYZ> reference;
   LiscoClient<PointXYZ> lisco;
   Clusters expected;
@@ -183,8 +183,8 @@ TEST(Pcl, ClustersAreAppendedAndAllSortedAgain) {
   }
 }
 
-// One object for clouds of all sizes, with and without indices: nothing stays behind.
-TEST(Pcl, OneObjectForManyClouds) {
+// One object for clouds of all sizes, with and without indices: each extraction starts afresh.
+TEST(PclIdentity, HoldsForOneObjectAndManyClouds) {
   LiscoClient<PointXYZ> lisco;
   for (std::uint64_t seed = 1; seed < 200; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -202,7 +202,7 @@ TEST(Pcl, OneObjectForManyClouds) {
   }
 }
 
-TEST(Pcl, ExtractTwiceWithoutSettingAnything) {
+TEST(PclIdentity, HoldsForASecondExtraction) {
   LiscoClient<PointXYZ> lisco;
   Clusters first;
   lisco.extract(scanOfBoxes(), nullptr, {0.5}, first);
@@ -212,7 +212,7 @@ TEST(Pcl, ExtractTwiceWithoutSettingAnything) {
   expectSame(first, second);
 }
 
-TEST(Pcl, SearchMethodChangesNothing) {
+TEST(PclIdentity, HoldsForAnySearchMethod) {
   const Cloud::Ptr cloud = scanOfBoxes();
   pcl::LiscoClusterExtraction<PointXYZ> extraction;
   extraction.setInputCloud(cloud);
@@ -226,10 +226,10 @@ TEST(Pcl, SearchMethodChangesNothing) {
   Clusters with;
   extraction.extract(with);
   expectSame(without, with);
-  EXPECT_EQ(tree->getInputCloud(), nullptr);  // it was not even looked at
+  EXPECT_EQ(tree->getInputCloud(), nullptr);  // the tree was not used
 }
 
-TEST(Pcl, AnyOrganization) {
+TEST(PclIdentity, HoldsForAnyOrganization) {
   Random random(4);
   const Cloud::Ptr cloud = scanOfBoxes();
   expectSameAsPcl<PointXYZ>(unorganized(*cloud), nullptr, {0.5});
@@ -240,7 +240,7 @@ TEST(Pcl, AnyOrganization) {
   expectSameAsPcl<PointXYZ>(dense, nullptr, {0.5});
   random.shuffle(*dense);
   expectSameAsPcl<PointXYZ>(dense, nullptr, {0.5});
-  for (const std::uint32_t width : {1U, 7U, 179U, 2160U, 5000U}) {  // of which only some give the right product
+  for (const std::uint32_t width : {1U, 7U, 179U, 2160U, 5000U}) {  // only some of which divide the size
     const auto wrong = std::make_shared<Cloud>(*cloud);
     wrong->width = width;
     SCOPED_TRACE(width);
@@ -248,7 +248,7 @@ TEST(Pcl, AnyOrganization) {
   }
 }
 
-TEST(Pcl, OrganizedWithoutAnyNan) {
+TEST(PclIdentity, HoldsForOrganizedCloudsWithoutNan) {
   Random random(5);
   Scan scan(60, 8);
   for (std::size_t laser = 0; laser < 8; ++laser)
@@ -264,7 +264,7 @@ TEST(Pcl, OrganizedWithoutAnyNan) {
   for (const double tolerance : {0.2, 0.4, 0.55, 0.6}) expectSameAsPcl<PointXYZ>(cloud, nullptr, {tolerance});
 }
 
-TEST(Pcl, CameraView) {
+TEST(PclIdentity, HoldsForACameraView) {
   Random random(6);
   const Cloud::Ptr cloud = cloudOf(cameraView(random, 80, 60));
   for (const double tolerance : {0.02, 0.05, 0.08, 0.2}) {
@@ -273,7 +273,7 @@ TEST(Pcl, CameraView) {
   }
 }
 
-TEST(Pcl, DisplacedClouds) {
+TEST(PclIdentity, HoldsForDisplacedClouds) {
   const Cloud::Ptr cloud = scanOfBoxes();
   for (const bool with_origin : {false, true})
     for (const float distance : {1.0F, 30.0F, 1000.0F, 1e6F}) {
@@ -282,7 +282,7 @@ TEST(Pcl, DisplacedClouds) {
     }
 }
 
-TEST(Pcl, SensorOriginThatIsNoNumberOrElsewhere) {
+TEST(PclIdentity, HoldsForAnySensorOrigin) {
   const Cloud::Ptr cloud = displaced(*scanOfBoxes(), 1000.0F, 1000.0F, 0.0F, false);
   const std::array<float, 4> origins{std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
                                      3e38F, -1000.0F};

@@ -67,7 +67,7 @@ TEST(PclLabels, AreOrganizedAsTheInput) {
   expectSame(without_labels, clusters);
 }
 
-TEST(PclLabels, OfSomeIndicesOnly) {
+TEST(PclLabels, AreZeroOutsideTheIndices) {
   Random random(2);
   const Cloud::Ptr cloud = cloudOf(boxesAround(random, 120, 8));
   const pcl::IndicesPtr all = shuffledIndices(random, cloud->size());
@@ -80,7 +80,7 @@ TEST(PclLabels, OfSomeIndicesOnly) {
   }
 }
 
-TEST(PclLabels, OfACloudWithAWrongWidthAreOneRow) {
+TEST(PclLabels, AreOneRowIfTheWidthIsWrong) {
   const Cloud::Ptr cloud = rowOf({0.0F, 0.1F, 5.0F, 5.1F}, 1);
   cloud->width = 3;
   cloud->height = 2;
@@ -95,7 +95,7 @@ TEST(PclLabels, OfACloudWithAWrongWidthAreOneRow) {
   expectLabelsOf(clusters, *cloud, labels);
 }
 
-TEST(PclLabels, WithoutClustersAreZero) {
+TEST(PclLabels, AreZeroWithoutClusters) {
   Extraction extraction;
   Clusters clusters(3);
   Extraction::Labels labels(4, 4);
@@ -115,7 +115,7 @@ TEST(PclLabels, WithoutClustersAreZero) {
 }
 
 // The vector may hold the clusters of a larger cloud, whose indices this cloud does not have.
-TEST(PclLabels, AfterALargerCloud) {
+TEST(PclLabels, IgnoreClustersOfALargerCloud) {
   Random random(3);
   const Cloud::Ptr large = cloudOf(boxesAround(random, 120, 8));
   large->header.seq = 1;
@@ -129,8 +129,8 @@ TEST(PclLabels, AfterALargerCloud) {
   expectLabelled(extraction, rowOf({0.0F, 0.1F, 0.2F, 7.0F}, 3), {bad, pcl::PointIndices()});
 }
 
-// Another cloud's clusters have the very indices of this cloud's: they must not lend them their numbers.
-TEST(PclLabels, AfterACloudWithEqualIndices) {
+// Another cloud's clusters have the same indices as this cloud's: they do not number this cloud's labels.
+TEST(PclLabels, IgnoreClustersOfEqualIndices) {
   std::vector<float> pairs;
   for (int i = 0; i < 40; ++i) {
     pairs.push_back(static_cast<float>(i));
@@ -143,8 +143,8 @@ TEST(PclLabels, AfterACloudWithEqualIndices) {
   expectLabelled(extraction, rowOf(pairs, 2), clusters);
 }
 
-// And here this cloud's group is too small to be a cluster at all.
-TEST(PclLabels, AfterACloudWithTheIndicesOfATooSmallGroup) {
+// This cloud's group is too small to be a cluster.
+TEST(PclLabels, IgnoreClustersOfATooSmallGroup) {
   Extraction extraction;
   extraction.setClusterTolerance(0.2);
   const Clusters clusters = expectLabelled(extraction, rowOf({0.0F, 0.1F, 0.2F}, 1));

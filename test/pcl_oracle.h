@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// The vectors that doc/contract.md promises, by brute force: neither PCL nor the engine computes them.
+// The vectors that doc/contract.md promises, by brute force, independent of PCL and the engine.
 #pragma once
 
 #include <algorithm>
@@ -53,7 +53,7 @@ inline Request requestFor(Random& random, const EndlessStream& stream) {
   return request;
 }
 
-/// Those of the deliveries that are of the sizes asked for.
+/// The deliveries of the sizes asked for.
 inline std::vector<Delivery> wanted(std::vector<Delivery> deliveries, const Request& request) {
   const auto is_unwanted = [&](const Delivery& delivery) {
     return delivery.members.size() < request.min_size || delivery.members.size() > request.max_size;
@@ -62,12 +62,12 @@ inline std::vector<Delivery> wanted(std::vector<Delivery> deliveries, const Requ
   return deliveries;
 }
 
-/// What a user receives of an endless stream, held against the points that were given.
+/// A user's deliveries of an endless stream, compared with the points that were given.
 class EndlessReceiver {
  public:
   using Extraction = pcl::LiscoEndlessExtraction<pcl::PointXYZ>;
 
-  /// The next columns are those of this stream, counted from its first.
+  /// Makes the next columns those of this stream, counted from its first.
   void expect(const EndlessStream& stream, const pcl::PCLHeader& header) {
     stream_ = &stream;
     header_ = header;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Messages as drivers lay them out, arranged and clustered, against pcl::EuclideanClusterExtraction on their own points.
+// Messages laid out as by drivers, organized and clustered, against pcl::EuclideanClusterExtraction on the same points.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -81,7 +81,7 @@ PCLPointCloud2 messageOf(const std::vector<Shot>& shots, const std::vector<Field
   message.point_step = static_cast<std::uint32_t>(point_step);
   message.row_step = message.width * message.point_step;
   message.is_dense = 0;
-  message.data.assign(message.row_step, 0xA5);  // what is between the fields
+  message.data.assign(message.row_step, 0xA5);  // the bytes between the fields
   for (const Field& field : fields) {
     PCLPointField described;
     described.name = field.name;
@@ -135,32 +135,32 @@ constexpr std::uint8_t kU8 = PCLPointField::UINT8;
 constexpr std::uint8_t kU16 = PCLPointField::UINT16;
 constexpr std::uint8_t kU32 = PCLPointField::UINT32;
 
-/// As velodyne_pointcloud lays them out: packed, or padded for SSE as older versions do.
+/// As velodyne_pointcloud: packed, or padded for SSE as older versions do.
 const std::vector<Field> kVelodyne{{"x", kF32, 0},          {"y", kF32, 4},     {"z", kF32, 8},
                                    {"intensity", kF32, 12}, {"ring", kU16, 16}, {"time", kF32, 18}};
 const std::vector<Field> kVelodynePadded{{"x", kF32, 0},          {"y", kF32, 4},     {"z", kF32, 8},
                                          {"intensity", kF32, 16}, {"ring", kU16, 20}, {"time", kF32, 24}};
 const std::vector<Field> kVelodyneWithoutTime{
     {"x", kF32, 0}, {"y", kF32, 4}, {"z", kF32, 8}, {"intensity", kF32, 12}, {"ring", kU16, 16}};
-/// As ouster-ros does, older and newer.
+/// As ouster-ros, older and newer.
 const std::vector<Field> kOuster{{"x", kF32, 0},          {"y", kF32, 4},        {"z", kF32, 8},
                                  {"intensity", kF32, 16}, {"t", kU32, 20},       {"reflectivity", kU16, 24},
                                  {"ring", kU8, 26},       {"ambient", kU16, 28}, {"range", kU32, 32}};
 const std::vector<Field> kOusterNew{{"x", kF32, 0},          {"y", kF32, 4},        {"z", kF32, 8},
                                     {"intensity", kF32, 16}, {"t", kU32, 20},       {"reflectivity", kU16, 24},
                                     {"ring", kU16, 26},      {"ambient", kU16, 28}, {"range", kU32, 32}};
-/// As the driver of Hesai does, padded and packed.
+/// As Hesai's driver, padded and packed.
 const std::vector<Field> kHesai{{"x", kF32, 0},          {"y", kF32, 4},          {"z", kF32, 8},
                                 {"intensity", kF32, 16}, {"timestamp", kF64, 24}, {"ring", kU16, 32}};
 const std::vector<Field> kHesaiPacked{{"x", kF32, 0},          {"y", kF32, 4},     {"z", kF32, 8},
                                       {"intensity", kF32, 12}, {"ring", kU16, 16}, {"timestamp", kF64, 18}};
-/// As Autoware's drivers do.
+/// As Autoware's drivers.
 const std::vector<Field> kAutoware{{"x", kF32, 0},          {"y", kF32, 4},           {"z", kF32, 8},
                                    {"intensity", kU8, 12},  {"return_type", kU8, 13}, {"channel", kU16, 14},
                                    {"azimuth", kF32, 16},   {"elevation", kF32, 20},  {"distance", kF32, 24},
                                    {"time_stamp", kU32, 28}};
 
-/// Every return is in one cell, and what is in a cell is its point of the message.
+/// Each return is in one cell, and each cell holds its point of the message.
 void expectWhole(const PCLPointCloud2& message, const pcl::PointCloud<PointXYZ>& points,
                  const pcl::PointCloud<PointXYZI>& cloud, const pcl::Indices& point_of_cell) {
   ASSERT_EQ(cloud.size(), point_of_cell.size());
@@ -187,9 +187,9 @@ void expectWhole(const PCLPointCloud2& message, const pcl::PointCloud<PointXYZ>&
       ASSERT_LE(cells_of_point[i], 1) << i;
 }
 
-/// Arranges the message and compares its clusters with PCL's of the message's points. \return the arrangement
+/// Organizes the message and compares its clusters with PCL's of the message's points. \return the organization
 pcl::PointCloud<PointXYZI> expectSameAsPcl(const PCLPointCloud2& message, double tolerance = 0.5) {
-  const auto points = std::make_shared<pcl::PointCloud<PointXYZ>>();  // read here, not by what is tested
+  const auto points = std::make_shared<pcl::PointCloud<PointXYZ>>();  // read here, independent of the code tested
   points->header = message.header;
   const auto offset_of = [&](const char* name) {
     return std::find_if(message.fields.begin(), message.fields.end(), [&](const auto& f) { return f.name == name; })
@@ -239,7 +239,7 @@ std::string errorOf(const PCLPointCloud2& message) {
   return error;
 }
 
-TEST(PointCloud2, OfVelodyne) {
+TEST(PointCloud2, ClustersVelodynesMessages) {
   const Scan scan = scanOfBoxes();
   for (const auto& [fields, step] : {std::pair(kVelodyne, 22), std::pair(kVelodynePadded, 32)})
     for (const double start : {0.0, -0.1}) {
@@ -275,13 +275,13 @@ TEST(PointCloud2, GivesTheColumnsThatWereFired) {
     }
 }
 
-TEST(PointCloud2, OfVelodyneWithoutTime) {
+TEST(PointCloud2, ClustersVelodynesMessagesWithoutTime) {
   const auto cloud = expectSameAsPcl(messageOf(onlyReturns(shotsOf(scanOfBoxes())), kVelodyneWithoutTime, 18));
   EXPECT_EQ(cloud.height, 16U);
   EXPECT_LE(cloud.width, 500U);
 }
 
-/// An organized message, as it is and with rows and columns exchanged, whose rows have bytes to spare.
+/// An organized message, as it is or transposed, whose rows end in spare bytes.
 PCLPointCloud2 inRows(PCLPointCloud2 message, std::size_t height, std::size_t spare = 0) {
   const std::vector<std::uint8_t> data = message.data;
   message.height = static_cast<std::uint32_t>(height);
@@ -294,12 +294,12 @@ PCLPointCloud2 inRows(PCLPointCloud2 message, std::size_t height, std::size_t sp
   return message;
 }
 
-TEST(PointCloud2, OfOusterIsTakenAsItIs) {
+TEST(PointCloud2, KeepsTheOrganizationOfOuster) {
   const Scan scan = scanOfBoxes();
   std::vector<Shot> shots = shotsOf(scan, 0);
   std::stable_sort(shots.begin(), shots.end(), [](const Shot& a, const Shot& b) { return a.ring < b.ring; });
   for (Shot& shot : shots)
-    if (!lisco::isReturn(shot.x, shot.y, shot.z)) shot.x = shot.y = shot.z = 0;  // as Ouster has it
+    if (!lisco::isReturn(shot.x, shot.y, shot.z)) shot.x = shot.y = shot.z = 0;  // as Ouster's
   for (const auto& [fields, step] : {std::pair(kOuster, 48), std::pair(kOusterNew, 48)})
     for (const std::size_t spare : {0U, 7U}) {
       const auto cloud = expectSameAsPcl(inRows(messageOf(shots, fields, static_cast<std::size_t>(step)), 16, spare));
@@ -308,7 +308,7 @@ TEST(PointCloud2, OfOusterIsTakenAsItIs) {
     }
 }
 
-TEST(PointCloud2, WhoseRowsAreFiringsIsTurned) {
+TEST(PointCloud2, TransposesRowsOfFirings) {
   const Scan scan = scanOfBoxes();
   for (const std::size_t spare : {0U, 3U}) {
     const auto cloud = expectSameAsPcl(inRows(messageOf(shotsOf(scan), kVelodyne, 22), 360, spare));
@@ -317,13 +317,13 @@ TEST(PointCloud2, WhoseRowsAreFiringsIsTurned) {
   }
 }
 
-TEST(PointCloud2, OfOusterInOneRow) {
+TEST(PointCloud2, ClustersOustersMessagesInOneRow) {
   const auto cloud = expectSameAsPcl(messageOf(onlyReturns(shotsOf(scanOfBoxes(), 0)), kOuster, 48));
   EXPECT_EQ(cloud.height, 16U);
   EXPECT_LE(cloud.width, 360U);
 }
 
-TEST(PointCloud2, OfHesai) {
+TEST(PointCloud2, ClustersHesaisMessages) {
   const std::vector<Shot> shots = onlyReturns(shotsOf(scanOfBoxes()));
   for (const auto& [fields, step] : {std::pair(kHesai, 48), std::pair(kHesaiPacked, 26)}) {
     const auto cloud = expectSameAsPcl(messageOf(shots, fields, static_cast<std::size_t>(step), 1790000000.123));
@@ -332,7 +332,7 @@ TEST(PointCloud2, OfHesai) {
   }
 }
 
-TEST(PointCloud2, OfAutoware) {
+TEST(PointCloud2, ClustersAutowaresMessages) {
   const auto cloud = expectSameAsPcl(messageOf(onlyReturns(shotsOf(scanOfBoxes())), kAutoware, 32));
   EXPECT_EQ(cloud.height, 16U);
   EXPECT_LE(cloud.width, 360U);
@@ -341,7 +341,7 @@ TEST(PointCloud2, OfAutoware) {
   EXPECT_EQ(most, 199.0F);  // from an integer
 }
 
-TEST(PointCloud2, OfTwoReturnsPerShot) {
+TEST(PointCloud2, KeepsTwoReturnsPerShot) {
   std::vector<Shot> shots;
   for (Shot shot : shotsOf(scanOfBoxes())) {
     shots.push_back(shot);
@@ -356,8 +356,8 @@ TEST(PointCloud2, OfTwoReturnsPerShot) {
   EXPECT_LE(by_azimuth.width, 1000U);
 }
 
-// All times of a packet alike, times that say nothing, times that are none.
-TEST(PointCloud2, WithPoorTimes) {
+// All times of a packet equal, constant times, times that are NaN.
+TEST(PointCloud2, AcceptsPoorTimes) {
   std::vector<Shot> shots = onlyReturns(shotsOf(scanOfBoxes()));
   for (Shot& shot : shots) shot.time = kPeriod * static_cast<double>(shot.firing / 12 * 12);
   EXPECT_EQ(expectSameAsPcl(messageOf(shots, kVelodyne, 22)).height, 16U);
@@ -370,7 +370,7 @@ TEST(PointCloud2, WithPoorTimes) {
   expectSameAsPcl(messageOf(shots, kVelodyne, 22));
 }
 
-TEST(PointCloud2, WithoutRingIsTakenAsItIs) {
+TEST(PointCloud2, KeepsTheOrganizationWithoutRing) {
   std::vector<Field> fields = kVelodyne;
   fields.erase(fields.begin() + 4);
   const auto cloud = expectSameAsPcl(messageOf(shotsOf(scanOfBoxes()), fields, 22));
@@ -379,7 +379,7 @@ TEST(PointCloud2, WithoutRingIsTakenAsItIs) {
 }
 
 // A row and a column for every point would take the memory of their product.
-TEST(PointCloud2, WithARingForEachPointIsTakenAsItIs) {
+TEST(PointCloud2, KeepsTheOrganizationWithARingForEachPoint) {
   std::vector<Shot> shots = shotsOf(scanOfBoxes());
   for (std::size_t i = 0; i < shots.size(); ++i) shots[i].ring = i / 2;
   EXPECT_EQ(expectSameAsPcl(messageOf(shots, kVelodyne, 22)).height, 1U);
@@ -389,7 +389,7 @@ TEST(PointCloud2, WithARingForEachPointIsTakenAsItIs) {
   EXPECT_EQ(expectSameAsPcl(messageOf(shots, fields, 32)).height, 1U);
 }
 
-TEST(PointCloud2, WithFieldsInAnyOrderAndOfAnyType) {
+TEST(PointCloud2, AcceptsFieldsInAnyOrderAndOfAnyType) {
   const std::vector<Shot> all = shotsOf(scanOfBoxes());
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -459,7 +459,7 @@ TEST(PointCloud2, CopiesColor) {
     }
 }
 
-TEST(PointCloud2, WithoutPointsGivesAnEmptyCloud) {
+TEST(PointCloud2, GivesAnEmptyCloudWithoutPoints) {
   PCLPointCloud2 message = messageOf({}, kVelodyne, 22);
   EXPECT_EQ(errorOf(message), "");
   pcl::PointCloud<PointXYZI> cloud(3, 2);
@@ -469,7 +469,7 @@ TEST(PointCloud2, WithoutPointsGivesAnEmptyCloud) {
   EXPECT_TRUE(point_of_cell.empty());
 }
 
-TEST(PointCloud2, OnlyNoReturns) {
+TEST(PointCloud2, AcceptsOnlyNoReturns) {
   std::vector<Shot> shots = shotsOf(Scan(10, 4));
   pcl::PointCloud<PointXYZI> cloud;
   pcl::Indices point_of_cell;
@@ -477,7 +477,7 @@ TEST(PointCloud2, OnlyNoReturns) {
   EXPECT_EQ(cloud.size(), 40U);
 }
 
-TEST(PointCloud2, ErrorsSayWhatIsWrong) {
+TEST(PointCloud2, RejectsMalformedMessages) {
   const PCLPointCloud2 good = messageOf(shotsOf(scanOfBoxes()), kVelodyne, 22);
   EXPECT_EQ(errorOf(good), "");
   const auto expect = [&](const char* part, auto&& spoil) {
@@ -524,8 +524,8 @@ TEST(PointCloud2, ErrorsSayWhatIsWrong) {
   });
 }
 
-// Any bytes: an error or a cloud that fits the message, and never a read beyond the data (which the sanitizers see).
-TEST(PointCloud2, OfAnyBytes) {
+// Any bytes give an error or a cloud that fits the message; the sanitizers check that no read is beyond the data.
+TEST(PointCloud2, AcceptsAnyBytes) {
   const std::vector<Shot> shots = [] {
     Random random(5);
     return shotsOf(boxesAround(random, 12, 4));
@@ -594,7 +594,7 @@ TEST(PointCloud2, OfAnyBytes) {
   EXPECT_LT(read, 18000U);
 }
 
-TEST(PointCloud2, ClustersOfOtherCellsAreRejected) {
+TEST(PointCloud2, RejectsClustersOfOtherCells) {
   const pcl::Indices point_of_cell{5, pcl::UNAVAILABLE, 3, 4};
   Clusters good(2);
   good[0].indices = {0};

@@ -34,7 +34,7 @@ Columns<PointT> columnsOf(const pcl::PointCloud<PointT>& cloud) {
   return columns;
 }
 
-/// Columns without some of the no-returns at their ends, some without anything, and all in one go.
+/// Columns without some of the no-returns at their ends, some without any cell, and all at once.
 template <typename PointT>
 Columns<PointT> trimmed(Random& random, Columns<PointT> columns) {
   const double share = random.chance(0.5) ? 0.0 : random.unit();
@@ -84,7 +84,7 @@ void expectSameCloud(const pcl::PointCloud<PointT>& expected, const pcl::PointCl
   for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_TRUE(areSamePoint(expected[i], actual[i])) << "point " << i;
 }
 
-/// What LiscoClusterExtraction, which is tested against PCL by itself, finds in a cloud.
+/// The clusters of a cloud by LiscoClusterExtraction, which is tested against PCL elsewhere.
 template <typename PointT>
 Clusters batchClustersOf(const typename pcl::PointCloud<PointT>::Ptr& cloud, const Request& request) {
   Clusters clusters;
@@ -92,7 +92,7 @@ Clusters batchClustersOf(const typename pcl::PointCloud<PointT>::Ptr& cloud, con
   return clusters;
 }
 
-/// What PCL finds in the returns of a cloud.
+/// PCL's clusters of the returns of a cloud.
 template <typename PointT>
 Clusters pclClustersOf(const typename pcl::PointCloud<PointT>::Ptr& cloud, const Request& request) {
   Clusters clusters;
@@ -159,7 +159,7 @@ void expectWindowsSameAsPcl(pcl::LiscoWindowExtraction<PointT>& windows, Random&
       cloud = organized(columns, end - std::min(end, window), end, anyHeader());
       expected = pclClustersOf<PointT>(cloud, request);
     }
-    // Until the next one ends, the window can be asked for.
+    // Until the next one ends, the window can be queried.
     if (!cloud || !random.chance(ends ? 0.9 : 0.1)) continue;
     ASSERT_EQ(windows.getNumberOfColumns(), cloud->width);
     Clusters clusters;

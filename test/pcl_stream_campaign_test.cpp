@@ -18,7 +18,7 @@ namespace {
 using pcl::PointXYZ;
 using Cloud = pcl::PointCloud<PointXYZ>;
 
-/// What a vector holds before a call that appends to it.
+/// Content of a vector before a call that appends to it.
 Clusters someClusters(Random& random) {
   Clusters clusters(random.chance(0.8) ? 0 : 2);
   for (auto& cluster : clusters) cluster.indices.resize(1 + random.below(8));
@@ -29,7 +29,7 @@ Clusters someClusters(Random& random) {
 
 class Rotations {
  public:
-  /// A rotation that may be broken off, with looks in between.
+  /// A rotation that may be aborted, with queries in between.
   void rotate(Random& random) {
     const ColumnStream stream = random.chance(0.9) ? randomColumnStream(random) : pairStream(random);
     columns_ = columnsOf(stream);
@@ -42,11 +42,11 @@ class Rotations {
     stream_.setSensorOrigin(origin_);
     stream_.setBlockColumns(random.oneOf(std::array<std::size_t, 6>{1, 2, 7, 16, 64, 64}));
     stream_.beginRotation();
-    const double looks = random.chance(0.5) ? random.magnitude(0.5, 20) / static_cast<double>(columns_.size()) : 0.0;
+    const double queries = random.chance(0.5) ? random.magnitude(0.5, 20) / static_cast<double>(columns_.size()) : 0.0;
     const std::size_t end = random.chance(0.1) ? random.below(columns_.size()) : columns_.size();
     for (std::size_t column = 0; column < end; ++column) {
       ASSERT_TRUE(add(stream_, random, columns_[column]));
-      if (random.chance(looks)) look(random, column + 1);
+      if (random.chance(queries)) query(random, column + 1);
       if (testing::Test::HasFatalFailure()) return;
     }
     if (end < columns_.size()) return;
@@ -57,11 +57,11 @@ class Rotations {
     Cloud streamed;
     ASSERT_TRUE(random.chance(0.5) ? stream_.endRotation(found, streamed) : stream_.endRotation(found));
     ASSERT_TRUE(expectSame(expected, found));
-    look(random, end);
+    query(random, end);
   }
 
  private:
-  /// Of as many columns as a sensor has: the next rotation begins with what it has taught.
+  /// Of as many columns as a sensor has: the next rotation uses what it has estimated.
   static ColumnStream pairStream(Random& random) {
     const PairScan pairs = randomPairs(random);
     ColumnStream stream;
@@ -74,8 +74,8 @@ class Rotations {
 
   Cloud::Ptr cloudOfFirst(std::size_t end) const { return organized(columns_, 0, end, header_); }
 
-  /// Holds what can be asked about the columns so far against the oracle, once or several times.
-  void look(Random& random, std::size_t end) {
+  /// Compares all queries about the columns so far with the oracle, once or several times.
+  void query(Random& random, std::size_t end) {
     const auto cloud = cloudOfFirst(end);
     do {
       switch (random.below(3)) {
@@ -129,13 +129,13 @@ class Rotations {
   Eigen::Vector4f origin_ = Eigen::Vector4f::Zero();
 };
 
-TEST(PclStreamCampaign, RotationsAreTheOracles) {
+TEST(PclStreamCampaign, RotationsEqualTheOracle) {
   std::optional<Rotations> rotations;
   for (std::uint64_t seed = 1; seed <= timesEffort(800); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const SimdLevel level(levels()[seed % levels().size()]);
-    // One object for some rotations in a row, the first of which can be had again by its seed alone.
+    // One object for some rotations in a row, the first of which is reproduced by its seed alone.
     if (seed % 8 == 1) rotations.emplace();
     rotations->rotate(random);
     if (HasFailure()) return;
@@ -146,14 +146,14 @@ TEST(PclStreamCampaign, RotationsAreTheOracles) {
 
 class Windows {
  public:
-  /// A stream that begins anew, with a look at the last window now and then, also when it has ended some columns ago.
+  /// A stream that begins again, with a query of the last window now and then, also some columns after its end.
   void slide(Random& random) {
     const ColumnStream stream = randomColumnStream(random);
     columns_ = columnsOf(stream);
     request_ = requestFor(random, stream);
     const std::size_t hop = 1 + random.below(random.chance(0.3) ? 100 : 10);
     const std::size_t window = hop * (1 + random.below(10));
-    const double looks = random.magnitude(0.02, 0.7);
+    const double queries = random.magnitude(0.02, 0.7);
     set(windows_, request_);
     windows_.setHop(hop);
     windows_.setWindowSize(window);
@@ -168,15 +168,15 @@ class Windows {
         end_ = column;
         first_ = column - std::min(window, column);
       }
-      while (random.chance(looks)) look(random);
+      while (random.chance(queries)) query(random);
       if (testing::Test::HasFatalFailure()) return;
     }
   }
 
-  std::size_t looks() const { return looks_; }  ///< so far
+  std::size_t queries() const { return queries_; }  ///< so far
 
  private:
-  void look(Random& random) {
+  void query(Random& random) {
     ASSERT_EQ(windows_.getNumberOfColumns(), end_ - first_);
     const pcl::PCLHeader header = anyHeader(static_cast<std::uint32_t>(random.below(1000)));
     windows_.setHeader(header);
@@ -187,7 +187,7 @@ class Windows {
       appendTrueClusters(*cloud, request_, expected);
       ASSERT_TRUE(windows_.extract(found));
       ASSERT_TRUE(expectSame(expected, found));
-      ++looks_;
+      ++queries_;
     } else {
       Cloud streamed;
       windows_.getWindow(streamed);
@@ -199,12 +199,12 @@ class Windows {
   Columns<PointXYZ> columns_;
   Request request_;
   std::size_t first_ = 0, end_ = 0;
-  std::size_t looks_ = 0;
+  std::size_t queries_ = 0;
 };
 
-TEST(PclStreamCampaign, WindowsAreTheOracles) {
+TEST(PclStreamCampaign, WindowsEqualTheOracle) {
   std::optional<Windows> windows;
-  std::size_t looks = 0;
+  std::size_t queries = 0;
   for (std::uint64_t seed = 1'000'000; seed < 1'000'000 + timesEffort(1500); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
@@ -212,14 +212,14 @@ TEST(PclStreamCampaign, WindowsAreTheOracles) {
     if (seed % 8 == 0) windows.emplace();
     windows->slide(random);
     if (HasFailure()) return;
-    if (seed % 8 == 7) looks += windows->looks();
+    if (seed % 8 == 7) queries += windows->queries();
   }
-  EXPECT_GT(looks, timesEffort(1500 * 10));
+  EXPECT_GT(queries, timesEffort(1500 * 10));
 }
 
 // --- Without end ----------------------------------------------------------------------------------------------------
 
-/// One object for some streams: each is begun anew, and may be finished and go on, or left without an end.
+/// One object for some streams: each is begun again, and may be finished and continued, or left without an end.
 class Endless {
  public:
   Endless() {
@@ -300,7 +300,7 @@ class Endless {
   std::uint64_t returns_ = 0, strays_ = 0;
 };
 
-TEST(PclStreamCampaign, EndlessStreamsAreTheDefinitions) {
+TEST(PclStreamCampaign, EndlessStreamsEqualTheDefinition) {
   std::optional<Endless> endless;
   std::size_t cut = 0, continued = 0, unfinished = 0;
   for (std::uint64_t seed = 2'000'000; seed < 2'000'000 + timesEffort(3000); ++seed) {
@@ -315,7 +315,7 @@ TEST(PclStreamCampaign, EndlessStreamsAreTheDefinitions) {
     continued += endless->continued;
     unfinished += endless->unfinished;
   }
-  EXPECT_GT(cut, 10U);  // the streams try what they are to try
+  EXPECT_GT(cut, 10U);  // the streams cover these cases
   EXPECT_GT(continued, 10U);
   EXPECT_GT(unfinished, 10U);
 }

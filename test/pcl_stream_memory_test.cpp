@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Streams take nothing from the heap once their buffers have grown. A program of its own, since it replaces malloc (): operator
-// new and Eigen's allocations end there, too.
+// Streams allocate no memory once their buffers have grown. A program for itself, since it replaces malloc (), which
+// operator new and Eigen call, too.
 #include <malloc.h>
 
 #include <atomic>
@@ -11,7 +11,7 @@
 #include "pcl_stream.h"
 
 extern "C" {
-// The C library's own ones, which it offers to those that replace malloc ().
+// The C library's own functions, which it offers to those that replace malloc ().
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* memory, std::size_t size);
@@ -70,11 +70,11 @@ std::size_t allocationsOf(Action&& action) {
   return allocation_count - before;
 }
 
-TEST(PclStreamMemory, ACountThatCounts) {
+TEST(PclStreamMemory, CountsAllocations) {
   EXPECT_GT(allocationsOf([] { EXPECT_FALSE(columnsOfBoxes(1).empty()); }), 600U);
 }
 
-TEST(PclStreamMemory, RotationsTakeNothingButTheClusters) {
+TEST(PclStreamMemory, RotationsAllocateOnlyTheClusters) {
   const Columns<PointXYZ> columns = columnsOfBoxes(1);
   pcl::LiscoStreamExtraction<PointXYZ> stream;
   set(stream, {0.5, 3});
@@ -92,13 +92,13 @@ TEST(PclStreamMemory, RotationsTakeNothingButTheClusters) {
     }
     stream.endRotation(clusters, cloud);
   };
-  for (int turn = 0; turn < 3; ++turn) rotate();  // the first one knows nothing of the sensor
+  for (int turn = 0; turn < 3; ++turn) rotate();  // the first one has no hints
   EXPECT_GT(clusters.size(), 3U);
-  const std::size_t of_clusters = clusters.size();  // of their indices; the vector of clusters has its room
+  const std::size_t of_clusters = clusters.size();  // for their indices; the vector of clusters has its capacity
   EXPECT_EQ(allocationsOf(rotate), of_clusters);
 }
 
-TEST(PclStreamMemory, WindowsTakeNothingButTheClusters) {
+TEST(PclStreamMemory, WindowsAllocateOnlyTheClusters) {
   const Columns<PointXYZ> columns = columnsOfBoxes(1);
   pcl::LiscoWindowExtraction<PointXYZ> windows;
   set(windows, {0.5, 3});
@@ -124,7 +124,7 @@ TEST(PclStreamMemory, WindowsTakeNothingButTheClusters) {
   EXPECT_EQ(allocations, of_clusters);
 }
 
-TEST(PclStreamMemory, EndlessStreamsTakeNothing) {
+TEST(PclStreamMemory, EndlessStreamsAllocateNothing) {
   const Columns<PointXYZ> columns = columnsOfBoxes(1);
   pcl::LiscoEndlessExtraction<PointXYZ> endless;
   set(endless, {0.5, 3});

@@ -28,7 +28,7 @@ Columns<PointXYZ> columnsOfBoxes(std::uint64_t seed = 1, std::size_t columns = 1
   return columnsOf(*cloudOf(boxesAround(random, columns, lasers)));
 }
 
-/// Any scan, and a tolerance and a least size that suit it.
+/// A scan, and a tolerance and a least size that suit it.
 std::pair<Columns<PointXYZ>, Request> anyColumns(Random& random) {
   float spacing = 0;
   Scan scan = random.chance(0.1)   ? latticeScan(random, spacing)
@@ -42,7 +42,7 @@ std::pair<Columns<PointXYZ>, Request> anyColumns(Random& random) {
   return {trimmed(random, columnsOf(*cloudOf(scan))), request};
 }
 
-/// What was written to stderr, by PCL_ERROR.
+/// Output of PCL_ERROR on stderr.
 template <typename Action>
 std::string errorOf(Action&& action) {
   testing::internal::CaptureStderr();
@@ -50,7 +50,7 @@ std::string errorOf(Action&& action) {
   return testing::internal::GetCapturedStderr();
 }
 
-/// What the vector holds before a call that is to clear it.
+/// Content of the vector before a call that clears it.
 Clusters anyClusters() {
   Clusters clusters(2);
   clusters[0].indices = {1, 2, 3};
@@ -59,7 +59,7 @@ Clusters anyClusters() {
 
 // --- Rotation by rotation -------------------------------------------------------------------------------------------
 
-// One object for all, with rotations that are broken off, and blocks of any number of columns.
+// One object for all, with rotations that are aborted, and blocks of any number of columns.
 TEST(PclStream, EqualsPclOnRandomScans) {
   Stream stream;
   for (std::uint64_t seed = 1; seed <= timesEffort(1500); ++seed) {
@@ -77,8 +77,8 @@ TEST(PclStream, EqualsPclOnRandomScans) {
   }
 }
 
-// Large enough to learn from: the later rotations use what was seen in those before, be it right or not.
-TEST(PclStream, LearnsOnlySpeedFromTheRotationBefore) {
+// Large enough to estimate the sensor: later rotations use the hints of those before, right or not.
+TEST(PclStream, EqualsPclWithHintsOfTheRotationBefore) {
   Stream stream;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -143,23 +143,23 @@ TEST(PclStream, SubclustersAtAnyMomentEqualTheBatchSoFar) {
   }
 }
 
-TEST(PclStream, LooksAtTheLastRotationUntilTheNextBegins) {
+TEST(PclStream, GivesTheLastRotationUntilTheNextBegins) {
   Stream stream;
   set(stream, {0.5, 3});
   stream.beginRotation();
   for (const auto& column : columnsOfBoxes()) stream.addColumn(column);
   Clusters ended;
   stream.endRotation(ended);
-  Clusters looked;
-  stream.getSubclusters(looked);
+  Clusters subclusters;
+  stream.getSubclusters(subclusters);
   EXPECT_GT(ended.size(), 3U);
-  expectSame(ended, looked);
+  expectSame(ended, subclusters);
   EXPECT_GE(stream.getNumberOfSubclusters(), ended.size());
   stream.beginRotation();
   EXPECT_EQ(stream.getNumberOfSubclusters(), 0U);
   EXPECT_EQ(stream.getNumberOfColumns(), 0U);
-  stream.getSubclusters(looked);
-  EXPECT_TRUE(looked.empty());
+  stream.getSubclusters(subclusters);
+  EXPECT_TRUE(subclusters.empty());
 }
 
 TEST(PclStream, ClustersAreAppendedAndAllSortedAgain) {
@@ -181,7 +181,7 @@ TEST(PclStream, ClustersAreAppendedAndAllSortedAgain) {
 }
 
 // As the batch: no cell at all is an empty cloud, which clears the vector; cells without returns add nothing.
-TEST(PclStream, NothingMeasured) {
+TEST(PclStream, AcceptsNoColumnsAndNoReturns) {
   Stream stream;
   for (const std::size_t columns : {0, 1, 70}) {
     Clusters clusters = anyClusters();
@@ -202,7 +202,7 @@ TEST(PclStream, NothingMeasured) {
   }
 }
 
-TEST(PclStream, SettersAndGetters) {
+TEST(PclStream, KeepsItsParameters) {
   Stream stream;
   EXPECT_EQ(stream.getClusterTolerance(), 0.0);
   EXPECT_EQ(stream.getMinClusterSize(), 1U);
@@ -225,7 +225,7 @@ TEST(PclStream, SettersAndGetters) {
   EXPECT_EQ(cloud.sensor_orientation_.coeffs(), Eigen::Quaternionf::Identity().coeffs());
 }
 
-TEST(PclStream, SaysWhatIsWrong) {
+TEST(PclStream, RejectsWrongCalls) {
   const std::vector<PointXYZ, Eigen::aligned_allocator<PointXYZ>> points(3, PointXYZ(1, 2, 3));
   const std::string method = "[pcl::LiscoStreamExtraction::addColumn]";
   Stream stream;
@@ -250,7 +250,7 @@ TEST(PclStream, SaysWhatIsWrong) {
   error = errorOf([&] { EXPECT_FALSE(stream.addColumn(nullptr, 1)); });
   EXPECT_NE(error.find(method), std::string::npos) << error;
 
-  // Nothing of it stays behind.
+  // The rotation that follows is clustered as usual.
   EXPECT_EQ(errorOf([&] { EXPECT_TRUE(stream.addColumn(points.data(), 2)); }), "");
   EXPECT_TRUE(stream.endRotation(clusters));
   ASSERT_EQ(clusters.size(), 1U);
@@ -259,8 +259,8 @@ TEST(PclStream, SaysWhatIsWrong) {
   errorOf([&] { EXPECT_FALSE(stream.addColumn(points.data(), 2)); });
 }
 
-// They are before anything is read or kept.
-TEST(PclStream, CloudsThatAreTooLargeAreRejected) {
+// They are rejected before anything is read or kept.
+TEST(PclStream, RejectsTooLargeClouds) {
   const PointXYZ point(1, 2, 3);
   Stream stream;
   stream.beginRotation();
@@ -277,7 +277,7 @@ TEST(PclStream, CloudsThatAreTooLargeAreRejected) {
   EXPECT_NE(errorOf([&] { EXPECT_FALSE(windows.addColumn(&point, 4)); }), "");
 }
 
-TEST(PclStream, ObjectsSideBySideInThreads) {
+TEST(PclStream, ObjectsWorkSideBySideInThreads) {
   std::vector<Clusters> found(2);
   const auto run = [](std::uint64_t seed, Clusters& clusters) {
     Stream stream;
@@ -304,7 +304,7 @@ TEST(PclStream, ObjectsSideBySideInThreads) {
 
 // --- Sliding windows ------------------------------------------------------------------------------------------------
 
-TEST(PclWindows, EachEqualsPcl) {
+TEST(PclWindows, EqualPcl) {
   Windows windows;
   for (std::uint64_t seed = 1; seed <= timesEffort(1000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -316,7 +316,7 @@ TEST(PclWindows, EachEqualsPcl) {
   }
 }
 
-TEST(PclWindows, OverSeveralTurns) {
+TEST(PclWindows, EqualPclOverSeveralTurns) {
   Windows windows;
   Random random(1);
   Columns<PointXYZ> columns;
@@ -327,7 +327,7 @@ TEST(PclWindows, OverSeveralTurns) {
   expectWindowsSameAsPcl(windows, random, columns, {1.5, 2}, 300, 75);
 }
 
-TEST(PclWindows, SaysWhatIsWrong) {
+TEST(PclWindows, RejectWrongCalls) {
   const std::vector<PointXYZ, Eigen::aligned_allocator<PointXYZ>> points(3, PointXYZ(1, 2, 3));
   Windows windows;
   EXPECT_EQ(windows.getWindowSize(), 0U);
@@ -362,7 +362,7 @@ TEST(PclWindows, SaysWhatIsWrong) {
 
 using EndlessColumn = std::pair<double, Cloud>;  ///< with its position
 
-/// A room with things in it, for some turns; one laser in three sees a wall all around, if there is one.
+/// A room with objects in it, for some turns; one laser in three sees a wall all around, if there is one.
 std::vector<EndlessColumn> endlessColumns(Random& random, double turns, double room) {
   constexpr double kTwoPi = 6.283185307179586;
   const std::size_t lasers = 1 + random.below(4);
@@ -388,7 +388,7 @@ std::vector<EndlessColumn> endlessColumns(Random& random, double turns, double r
   return columns;
 }
 
-/// A delivery: which cells, and what is said of them.
+/// A delivery: its cells and its properties.
 struct Delivery {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> cells;  ///< column and row
   double first_position, last_position;
@@ -400,7 +400,7 @@ struct Delivery {
   }
 };
 
-/// What the engine delivers, whose cells are named here by column and row without any memory of a ring.
+/// The engine's deliveries, whose cells are named here by column and row, independent of the ring.
 std::vector<Delivery> engineDeliveries(const std::vector<EndlessColumn>& columns, lisco::EndlessParameters parameters) {
   std::vector<Delivery> deliveries;
   lisco::EndlessClusterer clusterer;
@@ -465,7 +465,7 @@ TEST(PclEndless, DeliversTheEnginesClustersWithTheirPoints) {
       endless.finish();
     else
       deliveries.insert(deliveries.end(), expected.begin() + static_cast<std::ptrdiff_t>(deliveries.size()),
-                        expected.end());  // the next stream begins without an end to this one
+                        expected.end());  // the next stream begins without finish ()
     ASSERT_TRUE(expected == deliveries);
     for (const Delivery& delivery : deliveries) {
       cut += delivery.is_cut ? 1 : 0;
@@ -476,7 +476,7 @@ TEST(PclEndless, DeliversTheEnginesClustersWithTheirPoints) {
   EXPECT_GT(across_the_seam, 200U);
 }
 
-TEST(PclEndless, PositionsByTheNumberOfColumnsOfATurn) {
+TEST(PclEndless, CountsPositionsByTheColumnsOfATurn) {
   Endless endless;
   set(endless, {0.5, 3});
   endless.setClockwise(true);
@@ -501,7 +501,7 @@ TEST(PclEndless, PositionsByTheNumberOfColumnsOfATurn) {
   EXPECT_EQ(endless.getNumberOfColumnsHeld(), 0U);
 }
 
-TEST(PclEndless, SettersAndGetters) {
+TEST(PclEndless, KeepsItsParameters) {
   Endless endless;
   EXPECT_FALSE(endless.getClockwise());
   EXPECT_EQ(endless.getStartAzimuth(), 0.0);
@@ -523,7 +523,7 @@ TEST(PclEndless, SettersAndGetters) {
   EXPECT_EQ(endless.getSensorOrigin(), Eigen::Vector4f(1, 2, 3, 0));
 }
 
-TEST(PclEndless, SaysWhatIsWrong) {
+TEST(PclEndless, RejectsWrongCalls) {
   const std::vector<PointXYZ, Eigen::aligned_allocator<PointXYZ>> points(3, PointXYZ(1, 0, 0));
   const std::string method = "[pcl::LiscoEndlessExtraction::addColumn]";
   Endless endless;
@@ -577,7 +577,7 @@ TYPED_TEST(PclStreamPointTypes, EqualPcl) {
   expectWindowsSameAsPcl(windows, random, columns, {0.5, 3}, 60, 20);
 }
 
-// What comes back is the whole point, not its coordinates alone.
+// Delivered points are whole, not only their coordinates.
 TEST(PclStream, PointsKeepTheirFields) {
   pcl::PointCloud<pcl::PointXYZI> column(2, 1);
   for (std::size_t i = 0; i < 2; ++i) {

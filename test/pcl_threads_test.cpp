@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// pcl::LiscoClusterExtraction by several threads: byte for byte what one gives, and PCL.
+// pcl::LiscoClusterExtraction by several threads gives byte for byte what one thread and PCL give.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <string>
 
 #include "pcl_client.h"
 #include "pcl_clouds.h"
+#include "scans.h"
 
 namespace lisco_test {
 namespace {
@@ -36,32 +36,6 @@ void expectSameByAnyThreads(LiscoClient<PointXYZ>& repeated, const Cloud::Ptr& c
   }
 }
 
-/// Large enough for threads: things around at any distance, staggered lasers, some returns lost.
-Cloud::Ptr randomCloud(Random& random) {
-  if (random.chance(0.3)) return cloudOf(boxesAround(random, 700 + random.below(300), 16));
-  const std::array<std::size_t, 4> laser_choices{2, 5, 32, 64};
-  const std::size_t lasers = random.oneOf(laser_choices);
-  const std::size_t columns = 8192 / lasers + random.below(200);
-  const double kept = random.chance(0.5) ? random.between(0.05, 0.3) : random.between(0.5, 1.0);
-  const double lag = random.chance(0.5) ? random.between(0.0, 20.0) : 0.0;
-  const double direction = random.chance(0.5) ? 1.0 : -1.0;
-  Scan scan(columns, lasers);
-  for (std::size_t laser = 0; laser < lasers; ++laser)
-    for (std::size_t column = 0; column < columns; ++column) {
-      if (!random.chance(kept)) continue;
-      const double azimuth = direction * 6.283185307179586 *
-                             (static_cast<double>(column) + lag * static_cast<double>(laser % 4)) /
-                             static_cast<double>(columns);
-      const double elevation = 0.1 - 0.4 * static_cast<double>(laser) / static_cast<double>(lasers);
-      double rho = 6.0 + 5.0 * std::sin(7.0 * azimuth) + random.magnitude(0.01, 3.0);
-      if (elevation < -0.01) rho = std::min(rho, -1.8 / elevation);
-      scan.set(laser, column,
-               {static_cast<float>(rho * std::cos(azimuth)), static_cast<float>(rho * std::sin(azimuth)),
-                static_cast<float>(rho * std::tan(elevation))});
-    }
-  return cloudOf(scan);
-}
-
 TEST(PclThreads, OneIsTheDefault) {
   pcl::LiscoClusterExtraction<PointXYZ> extraction;
   EXPECT_EQ(extraction.getNumberOfThreads(), 1U);
@@ -76,7 +50,7 @@ TEST(PclThreads, ChangeNothing) {
   for (std::uint64_t seed = 1; seed <= 25; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
-    Cloud::Ptr cloud = randomCloud(random);
+    Cloud::Ptr cloud = cloudOf(largeScan(random));
     if (random.chance(0.2)) cloud = unorganized(*cloud);
     if (random.chance(0.2)) cloud = displaced(*cloud, 1000.0F, -500.0F, 3.0F, random.chance(0.5));
     pcl::IndicesPtr indices;
@@ -95,8 +69,8 @@ TEST(PclThreads, ChangeNothing) {
   }
 }
 
-// Clouds that are too small for threads, and odd ones.
-TEST(PclThreads, ChangeNothingOfSmallClouds) {
+// Clouds that are too small for threads, and unusual ones.
+TEST(PclThreads, ChangeNothingInSmallClouds) {
   LiscoClient<PointXYZ> repeated;
   for (std::uint64_t seed = 100; seed < 200; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -113,7 +87,7 @@ TEST(PclThreads, ChangeNothingOfSmallClouds) {
 
 TEST(PclThreads, ChangeNoLabels) {
   Random random(1);
-  const Cloud::Ptr cloud = randomCloud(random);
+  const Cloud::Ptr cloud = cloudOf(largeScan(random));
   pcl::PointCloud<pcl::Label> by_one;
   for (const unsigned int threads : {1U, 2U, 3U, 0U}) {
     LiscoClient<PointXYZ> client;
@@ -130,9 +104,9 @@ TEST(PclThreads, ChangeNoLabels) {
   }
 }
 
-TEST(PclThreads, AnyTolerance) {
+TEST(PclThreads, ChangeNothingAtAnyTolerance) {
   Random random(2);
-  const Cloud::Ptr cloud = randomCloud(random);
+  const Cloud::Ptr cloud = cloudOf(largeScan(random));
   LiscoClient<PointXYZ> client;
   for (const double tolerance :
        {0.0, -0.3, 1e-30, 1e30, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {

@@ -9,8 +9,8 @@
 
 namespace lisco_test {
 
-/// Reproducible random numbers: the same seed gives the same scan on every machine, which the standard
-/// distributions do not promise.
+/// Reproducible random numbers: the same seed gives the same numbers on every machine, which the standard distributions
+/// do not guarantee.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
@@ -18,7 +18,7 @@ class Random {
   /// 0 <= number < 1
   double unit() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
   double between(double lo, double hi) { return lo + (hi - lo) * unit(); }
-  /// Every order of magnitude between lo and hi is as likely.
+  /// Each order of magnitude between lo and hi is equally likely.
   double magnitude(double lo, double hi) { return std::exp(between(std::log(lo), std::log(hi))); }
   bool chance(double probability) { return unit() < probability; }
   /// 0 <= number < count

@@ -21,7 +21,7 @@ using pcl::PointXYZ;
 
 constexpr pcl::uindex_t kMinPoints = 10;
 
-/// A file of the data folder, and the height below which its ground lies (NaN: it shows none).
+/// A file of the data folder, and the height of its ground (NaN: it shows none).
 struct ScanFile {
   const char* name;
   float ground_z;
@@ -94,7 +94,7 @@ TEST_P(RealScan, EqualsPclDisplaced) {
                               {GetParam().tolerances[1], kMinPoints});
 }
 
-// Column by column; from the second rotation on, the sensor is known.
+// Column by column; the second rotation uses the hints of the first.
 TEST_P(RealScan, RotationsEqualTheBatch) {
   const Columns<PointXYZ> columns = columnsOf(*cloud_);
   pcl::LiscoStreamExtraction<PointXYZ> stream;
@@ -138,7 +138,7 @@ TEST_P(RealScan, WindowsEqualTheBatch) {
 
 const auto nameOf = [](const auto& file) { return std::string(file.param.name); };
 
-/// Those of the files that show some ground.
+/// The files that show some ground.
 std::vector<ScanFile> filesWithGround() {
   std::vector<ScanFile> files;
   for (const ScanFile& file : kScanFiles)

@@ -36,14 +36,14 @@ constexpr double kDegree = kPi / 180.0;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// The clusters by a number per point; points with number `none` are in none.
+/// The clusters given by a number per point; points with number `none` are in none.
 Clustering byNumber(const std::vector<std::uint32_t>& number_of, std::uint32_t none = PaperLisco::kNoCluster) {
   std::map<std::uint32_t, Cluster> clusters;
   for (std::uint32_t i = 0; i < number_of.size(); ++i) {
     if (number_of[i] == none) continue;
     Cluster& cluster = clusters[number_of[i]];
     cluster.members.push_back(i);
-    ++cluster.claimed_size;
+    ++cluster.reported_size;
   }
   Clustering result;
   for (const auto& entry : clusters) result.push_back(entry.second);
@@ -58,7 +58,7 @@ std::vector<lisco::Return> returnsOf(const std::vector<Point>& points) {
 
 // --- The voxel grid ------------------------------------------------------------------------------------------------
 
-/// Whether the grid may refuse a scan: too many cells and returns, or a tolerance whose square is at the limits of float.
+/// Whether the grid may refuse a scan: too many cells and returns, or a tolerance with a square at the limits of float.
 bool mayRefuse(const std::vector<Point>& points, float tolerance) {
   const double eps = std::fabs(static_cast<double>(tolerance));
   if (!(eps > 1e-18 && eps < 1e18)) return true;
@@ -98,7 +98,7 @@ void expectGridExact(const std::vector<Point>& points, float tolerance) {
 }
 
 TEST(VoxelGrid, IsExactOnRandomScans) {
-  VoxelGrid grid;  // one for all: it keeps its memory, and must not remember anything else
+  VoxelGrid grid;  // one for all scans: it keeps only its memory
   std::size_t taken = 0;
   constexpr std::uint64_t kScans = 1500;
   for (std::uint64_t seed = 0; seed < kScans; ++seed) {
@@ -162,7 +162,7 @@ TEST(VoxelGrid, IsExactOnClumpsAndPlanes) {
   }
 }
 
-// Neighbours in every direction, up to two cells away in each axis, with the cell's border anywhere between them.
+// Neighbours in every direction, up to two cells apart along each axis, with the cell border at any position between.
 TEST(VoxelGrid, FindsNeighboursInEveryDirection) {
   VoxelGrid grid;
   Random random(1);
@@ -244,8 +244,8 @@ TEST(VoxelGrid, RefusesMoreCellsThanItCanNumber) {
   expectGridExact(grid, {{1, 1, 1}, {1.4F, 1, 1}, {2, 1, 1}}, 0.5F);
 }
 
-// One axis, so long that cells at its near end are equal in double: refused or right.
-TEST(VoxelGrid, DoesNotConfuseCellsOfALongAxis) {
+// One axis, so long that distinct cells at its near end are equal in double: refused or right.
+TEST(VoxelGrid, SeparatesCellsOfALongAxis) {
   for (const float far : {-1e6F, -1e9F, -1e10F, -1e11F, -1e12F, -1e14F, -1e16F, -1e17F, -3e17F}) {
     SCOPED_TRACE(far);
     VoxelGrid grid;
@@ -452,7 +452,7 @@ TEST(PaperLisco, JoinsAcrossTheSeam) {
   EXPECT_EQ(byThePaper(scan, sensor.nominal(), 0.9F).size(), 2U);
 }
 
-TEST(PaperLisco, ComparesPointsNearerThanEpsWithAll) {
+TEST(PaperLisco, ComparesPointsNearerThanEpsToTheSensorWithAll) {
   const RegularSensor sensor(36, 3, 1.0 * kDegree);
   Scan scan = sensor.empty();
   scan.set(0, 3, sensor.at(0, 3, 0.4));
@@ -486,7 +486,7 @@ TEST(PaperLisco, ToleranceZeroGivesSingletons) {
 
 // --- Algorithm 4's four cases, on one laser whose mask covers everything -------------------------------------------
 
-/// Numbers of the clusters of points at these places on a line, one per step.
+/// The cluster numbers of points on a line, one per step.
 std::vector<std::uint32_t> onALine(const std::vector<double>& places) {
   std::vector<lisco::Return> matrix;
   for (const double place : places)
@@ -563,7 +563,7 @@ NominalSensor someSensor(Random& random, std::size_t steps) {
           random.chance(0.1) ? 0.0 : random.magnitude(1e-3, 0.5)};
 }
 
-TEST(PaperLisco, MissesWhatItsMaskMissesAndNothingElse) {
+TEST(PaperLisco, MissesExactlyWhatItsMaskMisses) {
   std::size_t wrong = 0;
   constexpr std::uint64_t kScans = 1500;
   for (std::uint64_t seed = 0; seed < kScans; ++seed) {
@@ -576,7 +576,7 @@ TEST(PaperLisco, MissesWhatItsMaskMissesAndNothingElse) {
     wrong += difference(trueClusters(matrixOf(scan), tolerance), byThePaper(scan, sensor, tolerance)).empty() ? 0 : 1;
     if (testing::Test::HasFailure()) return;
   }
-  EXPECT_GT(wrong, kScans / 50);  // and it does miss some
+  EXPECT_GT(wrong, kScans / 50);  // and it misses some
 }
 
 TEST(PaperLisco, MissesNothingElseAtTheLimitsOfFloat) {

@@ -10,15 +10,15 @@ namespace {
 
 std::atomic<std::size_t> allocations{0};
 std::atomic<std::size_t> deallocations{0};
-std::atomic<std::size_t> refused_allocation{0};  ///< that one, by its number; 0: none
+std::atomic<std::size_t> refused_allocation{0};  ///< number of the allocation to refuse; 0: none
 
 }  // namespace
 
-// Not inlined: GCC would see malloc () and free () beside the other operators and warn.
+// Not inlined: GCC would warn of malloc () and free () beside the other operators.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   if (++allocations != refused_allocation)
     if (void* const memory = std::malloc(size)) return memory;
-  ++deallocations;  // of nothing
+  ++deallocations;  // delete of a null pointer
   throw std::bad_alloc();
 }
 [[gnu::noinline]] void operator delete(void* memory) noexcept {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// What is measured of a row, at every level of vector instructions, against the same cell by cell.
+// The measurements of a ring block at every level of vector instructions, against the same cell by cell.
 #include "core/ring_block.h"
 
 #include <gtest/gtest.h>
@@ -28,23 +28,23 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t kMargin = lisco::RingBlock::kMargin;
 
-/// What measureRow() is to find, without vectors. Elements beyond the columns are no returns.
-lisco::RingBlockInfo measuredCellByCell(const lisco::RingBlock& row, std::size_t columns, float squared_tolerance,
+/// What lisco::measure() finds, without vectors. Elements beyond the columns are no returns.
+lisco::RingBlockInfo measuredCellByCell(const lisco::RingBlock& block, std::size_t columns, float squared_tolerance,
                                         const lisco::FarRange& range) {
   lisco::RingBlockInfo measured{};
   measured.lowest = kInfinity;
   measured.highest = -kInfinity;
   for (std::size_t i = 0; i < columns; ++i) {
-    const float x = row.x[kMargin + i];
-    const float y = row.y[kMargin + i];
-    const float z = row.z[kMargin + i];
+    const float x = block.x[kMargin + i];
+    const float y = block.y[kMargin + i];
+    const float z = block.z[kMargin + i];
     if (!lisco::isReturn(x, y, z)) continue;
     const std::uint64_t bit = std::uint64_t{1} << i;
     const bool follows = (measured.returns & bit >> 1) != 0;
     measured.returns |= bit;
     const std::size_t before = kMargin + i - 1;
     if (i == 0 || !follows ||
-        !(lisco::squaredDistance(x - row.x[before], y - row.y[before], z - row.z[before]) < squared_tolerance))
+        !(lisco::squaredDistance(x - block.x[before], y - block.y[before], z - block.z[before]) < squared_tolerance))
       measured.starts |= bit;
     const float east = x - range.origin[0];
     const float north = y - range.origin[1];
@@ -60,17 +60,17 @@ lisco::RingBlockInfo measuredCellByCell(const lisco::RingBlock& row, std::size_t
   return measured;
 }
 
-/// Measures the row at every level of vector instructions.
-void expectMeasured(const lisco::RingBlock& row, std::size_t columns, float squared_tolerance,
+/// Measures the block at every level of vector instructions.
+void expectMeasured(const lisco::RingBlock& block, std::size_t columns, float squared_tolerance,
                     const lisco::FarRange& range) {
-  const lisco::RingBlockInfo right = measuredCellByCell(row, columns, squared_tolerance, range);
+  const lisco::RingBlockInfo right = measuredCellByCell(block, columns, squared_tolerance, range);
   for (const std::string& name : levels()) {
     const SimdLevel level(name);
     SCOPED_TRACE(name);
-    lisco::RingBlock measured_row = row;
+    lisco::RingBlock measured_block = block;
     lisco::RingBlockInfo measured;
     std::fill_n(measured.run, lisco::RingBlock::kColumns, 77U);
-    lisco::measure(measured_row, columns, squared_tolerance, range, measured);
+    lisco::measure(measured_block, columns, squared_tolerance, range, measured);
     ASSERT_EQ(measured.returns, right.returns);
     ASSERT_EQ(measured.starts, right.starts);
     ASSERT_EQ(measured.far, right.far);
@@ -79,15 +79,15 @@ void expectMeasured(const lisco::RingBlock& row, std::size_t columns, float squa
     ASSERT_EQ(measured.highest, right.highest);
     for (std::size_t i = 0; i < lisco::RingBlock::kColumns; ++i) {
       const std::size_t at = kMargin + i;
-      ASSERT_EQ(measured.run[i], 77U) << "runs are the engine's";
+      ASSERT_EQ(measured.run[i], 77U) << "runs are set by Runs::add";
       if ((right.returns >> i & 1U) == 0) {
-        ASSERT_TRUE(std::isnan(measured_row.x[at])) << i;
+        ASSERT_TRUE(std::isnan(measured_block.x[at])) << i;
         continue;
       }
       ASSERT_EQ(measured.rho[i], right.rho[i]) << i;
-      ASSERT_EQ(measured_row.x[at], row.x[at]) << i;
-      ASSERT_EQ(measured_row.y[at], row.y[at]) << i;
-      ASSERT_EQ(measured_row.z[at], row.z[at]) << i;
+      ASSERT_EQ(measured_block.x[at], block.x[at]) << i;
+      ASSERT_EQ(measured_block.y[at], block.y[at]) << i;
+      ASSERT_EQ(measured_block.z[at], block.z[at]) << i;
     }
   }
 }
@@ -99,64 +99,65 @@ float oddNumber(Random& random) {
   return random.oneOf(numbers);
 }
 
-lisco::RingBlock randomRow(Random& random) {
-  lisco::RingBlock row;
+lisco::RingBlock randomBlock(Random& random) {
+  lisco::RingBlock block;
   const std::array<double, 4> sizes{1.0, 30.0, 1e-15, 1e10};
   const double size = random.oneOf(sizes);
   const double step = size * random.magnitude(1e-4, 1.0);
   const double odd = random.chance(0.5) ? 0.0 : random.unit();
   const double lost = random.chance(0.5) ? 0.0 : random.unit();
   std::array<double, 3> at{random.between(-size, size), random.between(-size, size), random.between(-size, size)};
-  // The margin and what lies behind the columns hold anything.
+  // The margin and the elements beyond the columns hold anything.
   for (std::size_t i = 0; i < kMargin + lisco::RingBlock::kColumns; ++i) {
     for (double& axis : at) axis += random.between(-step, step);
-    row.x[i] = static_cast<float>(at[0]);
-    row.y[i] = static_cast<float>(at[1]);
-    row.z[i] = static_cast<float>(at[2]);
-    for (float* axis : {&row.x[i], &row.y[i], &row.z[i]})
+    block.x[i] = static_cast<float>(at[0]);
+    block.y[i] = static_cast<float>(at[1]);
+    block.z[i] = static_cast<float>(at[2]);
+    for (float* axis : {&block.x[i], &block.y[i], &block.z[i]})
       if (random.chance(odd * 0.5)) *axis = oddNumber(random);
-    if (random.chance(lost)) row.x[i] = row.y[i] = row.z[i] = random.chance(0.5) ? 0.0F : kNan;
+    if (random.chance(lost)) block.x[i] = block.y[i] = block.z[i] = random.chance(0.5) ? 0.0F : kNan;
     if (i > 0 && random.chance(0.05)) {
-      row.x[i] = row.x[i - 1];
-      row.y[i] = row.y[i - 1];
-      row.z[i] = row.z[i - 1];
+      block.x[i] = block.x[i - 1];
+      block.y[i] = block.y[i - 1];
+      block.z[i] = block.z[i - 1];
     }
   }
-  return row;
+  return block;
 }
 
-/// A tolerance that separates two of the row's returns, or just does not.
-float criticalSquare(Random& random, const lisco::RingBlock& row) {
+/// A tolerance at or just above the distance of two adjacent returns.
+float criticalSquare(Random& random, const lisco::RingBlock& block) {
   const std::size_t i = kMargin + 1 + random.below(lisco::RingBlock::kColumns - 1);
-  const float d2 = lisco::squaredDistance(row.x[i] - row.x[i - 1], row.y[i] - row.y[i - 1], row.z[i] - row.z[i - 1]);
+  const float d2 =
+      lisco::squaredDistance(block.x[i] - block.x[i - 1], block.y[i] - block.y[i - 1], block.z[i] - block.z[i - 1]);
   return random.chance(0.5) ? d2 : std::nextafter(d2, kInfinity);
 }
 
-TEST(RingBlock, IsMeasuredAlikeAtEveryLevel) {
+TEST(RingBlock, IsMeasuredEquallyAtEveryLevel) {
   for (std::uint64_t seed = 1; seed < 6000; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
-    const lisco::RingBlock row = randomRow(random);
+    const lisco::RingBlock block = randomBlock(random);
     lisco::FarRange range;
     if (random.chance(0.4))
       for (float& axis : range.origin) axis = static_cast<float>(random.between(-20.0, 20.0));
-    // Ends that are some return's distance exactly.
+    // Limits that equal some return's distance.
     const auto distance = [&] {
       const std::size_t i = kMargin + random.below(lisco::RingBlock::kColumns);
-      const float east = row.x[i] - range.origin[0];
-      const float north = row.y[i] - range.origin[1];
+      const float east = block.x[i] - range.origin[0];
+      const float north = block.y[i] - range.origin[1];
       return std::sqrt(east * east + north * north);
     };
     range.min_range = distance();
     range.max_range = random.chance(0.5) ? 1e15F : distance();
     range.interior_min = random.chance(0.5) ? 1.1F * range.min_range : distance();
     range.interior_max = random.chance(0.5) ? 0.9F * range.max_range : distance();
-    expectMeasured(row, 1 + random.below(lisco::RingBlock::kColumns), criticalSquare(random, row), range);
+    expectMeasured(block, 1 + random.below(lisco::RingBlock::kColumns), criticalSquare(random, block), range);
     if (HasFailure()) return;
   }
 }
 
-TEST(RingBlock, OfAnyNumberOfColumns) {
+TEST(RingBlock, HasAnyNumberOfColumns) {
   Random random(1);
   lisco::FarRange range;
   range.min_range = 0.5F;
@@ -165,28 +166,28 @@ TEST(RingBlock, OfAnyNumberOfColumns) {
   for (std::size_t columns = 0; columns <= lisco::RingBlock::kColumns; ++columns)
     for (int time = 0; time < 20; ++time) {
       SCOPED_TRACE(columns);
-      const lisco::RingBlock row = randomRow(random);
-      expectMeasured(row, columns, criticalSquare(random, row), range);
+      const lisco::RingBlock block = randomBlock(random);
+      expectMeasured(block, columns, criticalSquare(random, block), range);
       if (HasFailure()) return;
     }
 }
 
-TEST(RingBlock, EqualReturnsAtToleranceThatJoinsNothing) {
-  lisco::RingBlock row{};
-  for (std::size_t i = 0; i < kMargin + lisco::RingBlock::kColumns; ++i) row.x[i] = 1.0F;
+TEST(RingBlock, SeparatesEqualReturnsIfTheToleranceJoinsNothing) {
+  lisco::RingBlock block{};
+  for (std::size_t i = 0; i < kMargin + lisco::RingBlock::kColumns; ++i) block.x[i] = 1.0F;
   for (const float squared : {0.0F, kNan, 1e-45F, kInfinity})
-    expectMeasured(row, lisco::RingBlock::kColumns, squared, lisco::FarRange());
+    expectMeasured(block, lisco::RingBlock::kColumns, squared, lisco::FarRange());
 }
 
-// By the ranges that the range image sets.
-TEST(RingBlock, WithoutFarReturns) {
+// With the ranges that the range image sets.
+TEST(RingBlock, HasNoFarReturnsWithoutARangeImage) {
   Random random(2);
   lisco::RangeImage image;
   image.prepare(lisco::Tolerance(1.0F), lisco::SensorHints(), ~std::size_t{0});
   for (int time = 0; time < 100; ++time) {
-    const lisco::RingBlock row = randomRow(random);
-    expectMeasured(row, lisco::RingBlock::kColumns, 1.0F, image.range);
-    EXPECT_EQ(measuredCellByCell(row, lisco::RingBlock::kColumns, 1.0F, image.range).far, 0U);
+    const lisco::RingBlock block = randomBlock(random);
+    expectMeasured(block, lisco::RingBlock::kColumns, 1.0F, image.range);
+    EXPECT_EQ(measuredCellByCell(block, lisco::RingBlock::kColumns, 1.0F, image.range).far, 0U);
   }
 }
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs what is missing, then builds and runs all tests in a release build, and all but those on real scans again
-# under AddressSanitizer and UndefinedBehaviorSanitizer. Prints what ctest says at its end; more only if something fails.
-# Real scans are looked for in $LISCO_TEST_DATA (default: ../shared/data); without them their tests are skipped.
+# Installs missing packages, then builds and runs all tests in a release build, and all but those on real scans again
+# under AddressSanitizer and UndefinedBehaviorSanitizer. Prints ctest's summary, and its whole output after a failure.
+# Real scans are read from $LISCO_TEST_DATA (default: ../shared/data); without them their tests are skipped.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/cmake/script_tools.sh"

@@ -99,9 +99,9 @@ std::vector<Point> Scan::points() const {
   return points;
 }
 
-Scan randomScan(Random& random, std::size_t most_cells) {
-  const std::size_t lasers = random.chance(0.15) ? 1 : 1 + random.below(most_cells / 15);
-  const std::size_t columns = random.chance(0.1) ? 1 : 1 + random.below(1 + most_cells / lasers);
+Scan randomScan(Random& random, std::size_t max_cells) {
+  const std::size_t lasers = random.chance(0.15) ? 1 : 1 + random.below(max_cells / 15);
+  const std::size_t columns = random.chance(0.1) ? 1 : 1 + random.below(1 + max_cells / lasers);
   Scan scan(columns, lasers);
 
   const double direction = random.chance(0.5) ? 1.0 : -1.0;

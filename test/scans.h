@@ -11,7 +11,7 @@
 
 namespace lisco_test {
 
-/// A small rotation: cells laser by laser, each named by its place.
+/// A small rotation: cells laser by laser; a return's source index is the number of its cell.
 struct Scan {
   std::size_t columns = 0;
   std::size_t lasers = 0;
@@ -25,24 +25,24 @@ struct Scan {
   std::vector<lisco::Return> column(std::size_t number) const;
 };
 
-/// Any number of these may be wrong with a scan at once, in any strength: the sensor turns either way from
-/// any azimuth, over less or more than a turn; lasers are staggered, rings sway, rows are shuffled, columns
-/// are missing or come twice; elevations reach to straight up; returns are nearer than any tolerance, or at
-/// random ranges; cells are NaN, infinite or (0, 0, 0); the whole is of any size and stands anywhere.
-/// \param most_cells about as many as there are at the most
-Scan randomScan(Random& random, std::size_t most_cells = 150);
+/// A scan with any number of these faults, in any strength: the sensor turns either way from any azimuth, over less or
+/// more than a turn; lasers are staggered, rings sway, rows are shuffled, columns are missing or come twice; elevations
+/// reach to straight up; returns are nearer than any tolerance, or at random ranges; cells are NaN, infinite or (0, 0,
+/// 0); the scan has any size and position.
+/// \param max_cells maximum number of cells, roughly
+Scan randomScan(Random& random, std::size_t max_cells = 150);
 
 /// Points on a lattice whose spacing is a power of two, so that distances are exact.
 /// \param spacing receives it
 Scan latticeScan(Random& random, float& spacing);
 
-/// Coordinates where floats end: 3e38, 1e30, denormals, and everything else in between.
+/// Coordinates where floats end: 3e38, 1e30, denormals, and everything in between.
 Scan extremeScan(Random& random);
 
-/// A rotation of at least as many cells as are worth threads, of which few or most are returns.
+/// A rotation of at least as many cells as several threads need, of which few or most are returns.
 Scan largeScan(Random& random);
 
-/// A tolerance near which some points of the scan change sides, often by one ulp; positive and finite.
+/// A tolerance near some distances of the scan, often within one ulp; positive and finite.
 float criticalTolerance(Random& random, const Scan& scan);
 
 }  // namespace lisco_test

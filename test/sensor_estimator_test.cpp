@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Whether a cloud gets a view, and from where it is seen.
+// When a cloud gets hints, and of which sensor.
 #include "lisco/sensor_hints.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ bool isUnknown(const lisco::SensorHints& hints) {
   return hints.steps_per_turn == 0;
 }
 
-TEST(SensorEstimator, ARotationIsSeenFromItsSensor) {
+TEST(SensorEstimator, FindsTheSensorOfARotation) {
   const lisco::SensorHints hints = estimate(rotation());
   EXPECT_EQ(hints.origin, kHere);
   EXPECT_EQ(hints.steps_per_turn, static_cast<int>(kColumns));
@@ -55,7 +55,7 @@ TEST(SensorEstimator, ARotationIsSeenFromItsSensor) {
   EXPECT_NEAR(hints.elevation_step, 0.03F, 0.01F);
 }
 
-TEST(SensorEstimator, AnUnorganizedCloudIsNoView) {
+TEST(SensorEstimator, GivesNoHintsForUnorganizedClouds) {
   Scan scan = rotation();
   scan.columns *= scan.lasers;
   scan.lasers = 1;
@@ -65,13 +65,14 @@ TEST(SensorEstimator, AnUnorganizedCloudIsNoView) {
   EXPECT_TRUE(isUnknown(estimate(scan)));
 }
 
-/// A sensor in a frame that is not its own.
+/// The pose of a sensor in the frame of its cloud.
 struct Mounting {
-  std::array<double, 3> place{};
+  std::array<double, 3> origin{};
   double pitch = 0;  ///< radians
 };
 
-/// A rotation in a hall with uneven walls and a floor. Some returns are wrong.
+/// A rotation in a hall with uneven walls and a floor.
+/// \param wrong share of returns with a wrong range or height
 Scan mountedRotation(const Mounting& mounting, double wrong = 0.0) {
   Random random(7);
   Scan scan(kColumns, kLasers);
@@ -87,16 +88,16 @@ Scan mountedRotation(const Mounting& mounting, double wrong = 0.0) {
       const double x = rho * std::cos(azimuth);
       const double z = rho * (slope + (random.chance(wrong) ? random.between(-0.1, 0.1) : 0.0));
       scan.set(laser, column,
-               {static_cast<float>(mounting.place[0] + cosine * x + sine * z),
-                static_cast<float>(mounting.place[1] + rho * std::sin(azimuth)),
-                static_cast<float>(mounting.place[2] - sine * x + cosine * z)});
+               {static_cast<float>(mounting.origin[0] + cosine * x + sine * z),
+                static_cast<float>(mounting.origin[1] + rho * std::sin(azimuth)),
+                static_cast<float>(mounting.origin[2] - sine * x + cosine * z)});
     }
   return scan;
 }
 
 void expectFound(const Mounting& mounting, const lisco::SensorHints& hints, double metres) {
   for (std::size_t axis = 0; axis < 3; ++axis)
-    EXPECT_NEAR(static_cast<double>(hints.origin[axis]), mounting.place[axis], metres) << "axis " << axis;
+    EXPECT_NEAR(static_cast<double>(hints.origin[axis]), mounting.origin[axis], metres) << "axis " << axis;
   EXPECT_NEAR(static_cast<double>(hints.tilt[0]), -std::tan(mounting.pitch), 0.003);
   EXPECT_NEAR(static_cast<double>(hints.tilt[1]), 0.0, 0.003);
   EXPECT_NEAR(hints.steps_per_turn, static_cast<int>(kColumns), 2);
@@ -117,7 +118,7 @@ TEST(SensorEstimator, FindsTheSensorInMapCoordinates) {
   expectFound(mounting, estimate(mountedRotation(mounting)), 0.3);
 }
 
-TEST(SensorEstimator, TakesAnExactOriginAsItIs) {
+TEST(SensorEstimator, KeepsAnExactOrigin) {
   EXPECT_EQ(estimate(mountedRotation({})).origin, kHere);
   EXPECT_EQ(estimate(mountedRotation({})).tilt, (std::array<float, 2>{0.0F, 0.0F}));
   EXPECT_EQ(estimate(mountedRotation({}, 0.1)).origin, kHere);
@@ -125,7 +126,7 @@ TEST(SensorEstimator, TakesAnExactOriginAsItIs) {
   EXPECT_EQ(estimate(mountedRotation({{-2.5, 0.5, 1.75}, 0.0}), declared).origin, declared);
 }
 
-TEST(SensorEstimator, StaysWhereNothingIsClearlyBetter) {
+TEST(SensorEstimator, KeepsTheOriginUnlessAnotherIsClearlyBetter) {
   Scan scan(kColumns, kLasers);
   Random random(3);
   for (std::size_t laser = 0; laser < kLasers; ++laser)
@@ -144,14 +145,14 @@ TEST(SensorEstimator, FindsASensorFarFromTheOrigin) {
   EXPECT_NEAR(hints.origin[1], 0.0F, 0.1F);
 }
 
-TEST(SensorEstimator, ADisplacedSensorIsUsedIfTheCloudTells) {
+TEST(SensorEstimator, UsesTheOriginGivenByTheCloud) {
   const Origin sensor{10000.0F, -500.0F, 30.0F};
   const lisco::SensorHints hints = estimate(rotation(sensor), sensor);
   EXPECT_EQ(hints.steps_per_turn, static_cast<int>(kColumns));
   EXPECT_EQ(hints.origin, sensor);
 }
 
-TEST(SensorEstimator, ASensorThatIsNoNumberIsNotUsed) {
+TEST(SensorEstimator, IgnoresANonFiniteOrigin) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   for (const Origin& sensor : {Origin{nan, nan, nan}, Origin{10000.0F, nan, 0.0F}, Origin{infinity, 0.0F, 0.0F}})
@@ -160,7 +161,7 @@ TEST(SensorEstimator, ASensorThatIsNoNumberIsNotUsed) {
 
 TEST(SensorEstimator, MeasuresTheJitterOfAzimuths) {
   EXPECT_LT(estimate(rotation()).jitter, 0.01F);
-  // Two returns of each firing, column by column.
+  // Two returns per firing, in successive columns.
   Scan twice(2 * kColumns, kLasers);
   const Scan once = rotation();
   for (std::size_t laser = 0; laser < kLasers; ++laser)
@@ -172,10 +173,10 @@ TEST(SensorEstimator, MeasuresTheJitterOfAzimuths) {
   EXPECT_EQ(estimate(twice).steps_per_turn, static_cast<int>(2 * kColumns));
 }
 
-// As a sensor leaves them that measures at every other step: no return has another right beside it.
-TEST(SensorEstimator, EveryOtherColumnIsEmpty) {
+// As from a sensor that measures at every other step: no two returns are adjacent.
+TEST(SensorEstimator, AcceptsEmptyEveryOtherColumn) {
   const Scan full = rotation();
-  Scan scan(1024, kLasers);  // all columns that are looked at are even ones
+  Scan scan(1024, kLasers);  // all columns that are sampled are even ones
   for (std::size_t laser = 0; laser < kLasers; ++laser)
     for (std::size_t column = 0; column < kColumns; column += 2) {
       const lisco::Return& cell = full.at(laser, column);
@@ -186,8 +187,8 @@ TEST(SensorEstimator, EveryOtherColumnIsEmpty) {
   EXPECT_GT(hints.far_distance, 0.0F);
 }
 
-// Runs are as short where most returns have none beside them as where ranges jump.
-TEST(SensorEstimator, ThinThingsAreRough) {
+// Runs are as short where most returns are isolated as where ranges jump.
+TEST(SensorEstimator, TakesThinObjectsForRough) {
   Scan scan = rotation();
   EXPECT_LT(estimate(scan).roughness, 0.1F);
   for (std::size_t laser = 0; laser < kLasers; ++laser)
@@ -199,13 +200,13 @@ TEST(SensorEstimator, ThinThingsAreRough) {
   EXPECT_GT(estimate(scan).roughness, 1e6F);
 }
 
-TEST(SensorEstimator, NothingToLookAt) {
+TEST(SensorEstimator, GivesNoHintsWithoutReturns) {
   EXPECT_TRUE(isUnknown(estimate(Scan(0, 4))));
   EXPECT_TRUE(isUnknown(estimate(Scan(1, 1))));
   EXPECT_TRUE(isUnknown(estimate(Scan(300, 16))));  // no returns
 }
 
-TEST(SensorEstimator, WithoutLasers) {
+TEST(SensorEstimator, GivesNoHintsWithoutLasers) {
   EXPECT_TRUE(isUnknown(estimate(Scan(0, 0))));
   EXPECT_TRUE(isUnknown(estimate(Scan(4, 0))));
 }

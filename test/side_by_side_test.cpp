@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Several instances of each clusterer at work at the same time, each with threads of its own: any number of them may
-// work side by side. To be run under ThreadSanitizer as well.
+// Several instances of each clusterer run at the same time, each with its own threads. Also to be run under
+// ThreadSanitizer.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,10 +27,10 @@
 namespace lisco_test {
 namespace {
 
-/// Clusters something again and again, with an instance of its own. \return what was wrong; empty if nothing
+/// Clusters something repeatedly, with an instance per task. \return what was wrong; empty if nothing
 using Task = std::function<std::string()>;
 
-// So often that the tasks overlap.
+// Often enough for the tasks to overlap.
 constexpr int kRotations = 3;
 constexpr int kStreams = 40;
 
@@ -100,7 +100,7 @@ Task endlessTask(Random& random) {
   };
 }
 
-TEST(SideBySide, InstancesDoNotDisturbEachOther) {
+TEST(SideBySide, InstancesAreIndependent) {
   using MakeTask = Task (*)(Random&);
   constexpr std::array<MakeTask, 3> kKinds{rotationTask, windowTask, endlessTask};
   for (std::uint64_t seed = 1; seed <= timesEffort(25); ++seed) {

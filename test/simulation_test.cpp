@@ -372,7 +372,7 @@ TEST(Scenes, AreNearAndFarWithTheSameObjects) {
       const Scene near_scene = makeScene(near_number, seed);
       const Scene far_scene = makeScene(near_number + 1, seed);
       ASSERT_EQ(near_scene.objects.size(), far_scene.objects.size());
-      double common = 0;  // distance by which they have moved away
+      double common = 0;  // distance by which all have moved away
       for (std::size_t object = 1; object < near_scene.objects.size(); ++object) {
         const auto& near_solids = near_scene.objects[object].solids;
         const auto& far_solids = far_scene.objects[object].solids;
@@ -458,15 +458,15 @@ TEST_P(EachStreet, HasEqualVehiclesForEqualSeeds) {
   EXPECT_TRUE(bytes() == bytes());
 }
 
-/// The clusters of a scan without ground: of each return its cluster's head, and the object it lies on.
+/// The clusters of a scan without ground: of each return the root of its cluster, and the object it lies on.
 struct Clustered {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> head_and_object;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> root_and_object;
 
   /// The cluster that holds most of an object.
   std::uint32_t clusterOf(std::uint32_t object) const {
     std::map<std::uint32_t, int> counts;
-    for (const auto& [head, of] : head_and_object)
-      if (of == object) ++counts[head];
+    for (const auto& [root, of] : root_and_object)
+      if (of == object) ++counts[root];
     const auto most = std::max_element(counts.begin(), counts.end(),
                                        [](const auto& a, const auto& b) { return a.second < b.second; });
     return most == counts.end() ? ~std::uint32_t{0} : most->first;
@@ -485,8 +485,8 @@ Clustered clustered(const Scan& rotation, float ground_z, float tolerance) {
   });
   clusterer.update();
   Clustered result;
-  clusterer.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t head) {
-    for (std::size_t i = 0; i < count; ++i) result.head_and_object.emplace_back(head, rotation.cells[cells[i]].object);
+  clusterer.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t root) {
+    for (std::size_t i = 0; i < count; ++i) result.root_and_object.emplace_back(root, rotation.cells[cells[i]].object);
   });
   return result;
 }
@@ -526,12 +526,12 @@ TEST_P(EachScene, HasNoTwoObjectsInOneClusterAt40Centimetres) {
     disturbance.seed = seed;
     const Scan rotation = scan(scene, makeSensor("hdl64e"), disturbance);
     std::map<std::uint32_t, std::set<std::uint32_t>> objects;
-    for (const auto& [head, object] : clustered(rotation, scene.ground_z, 0.4F).head_and_object) {
+    for (const auto& [root, object] : clustered(rotation, scene.ground_z, 0.4F).root_and_object) {
       const std::string& kind = object == 0 ? "" : scene.objects[object - 1].kind;
       // Shelves stand against the walls.
-      if (kind != "shelf" && kind != "walls and ceiling") objects[head].insert(object);
+      if (kind != "shelf" && kind != "walls and ceiling") objects[root].insert(object);
     }
-    for (const auto& [head, of] : objects) EXPECT_EQ(of.size(), 1U) << "seed " << seed << ", cluster " << head;
+    for (const auto& [root, of] : objects) EXPECT_EQ(of.size(), 1U) << "seed " << seed << ", cluster " << root;
   }
 }
 

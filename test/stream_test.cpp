@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// The engine while the sensor turns: subclusters at any time, and columns in any portions.
+// The engine during a rotation: subclusters at any time, and columns in any portions.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ lisco::Parameters withTolerance(const Setting& setting, float tolerance) {
   return parameters;
 }
 
-/// The oracle's clusters of the first columns; the others count as no returns.
+/// The oracle's clusters of the first columns; later columns count as no returns.
 Clustering trueClustersUpTo(const Scan& scan, std::size_t columns, float tolerance) {
   std::vector<Point> points = scan.points();
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -29,7 +29,7 @@ Clustering trueClustersUpTo(const Scan& scan, std::size_t columns, float toleran
   return trueClusters(points, tolerance);
 }
 
-/// Calls check(random, scan, tolerance, setting) for many scans, every setting in its turn.
+/// Calls check(random, scan, tolerance, setting) for many scans, with each setting in turn.
 template <typename Check>
 void forScans(std::uint64_t first, std::uint64_t count, Check&& check) {
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
@@ -42,7 +42,7 @@ void forScans(std::uint64_t first, std::uint64_t count, Check&& check) {
   }
 }
 
-TEST(Stream, SubclustersAfterEveryColumn) {
+TEST(Stream, SubclustersAreExactAfterEveryColumn) {
   lisco::ColumnClusterer clusterer;
   forScans(1, 300, [&](Random&, const Scan& scan, float tolerance, const Setting& setting) {
     clusterer.begin(withTolerance(setting, tolerance));
@@ -54,7 +54,7 @@ TEST(Stream, SubclustersAfterEveryColumn) {
   });
 }
 
-TEST(Stream, SubclustersNowAndThen) {
+TEST(Stream, SubclustersAreExactNowAndThen) {
   lisco::ColumnClusterer clusterer;
   forScans(1000, 600, [&](Random& random, const Scan& scan, float tolerance, const Setting& setting) {
     clusterer.begin(withTolerance(setting, tolerance));
@@ -68,7 +68,7 @@ TEST(Stream, SubclustersNowAndThen) {
   });
 }
 
-TEST(Stream, ColumnsInAnyPortions) {
+TEST(Stream, TakesColumnsInAnyPortions) {
   lisco::ColumnClusterer clusterer;
   forScans(2000, 800, [&](Random& random, const Scan& scan, float tolerance, const Setting& setting) {
     clusterer.begin(withTolerance(setting, tolerance));
@@ -80,14 +80,14 @@ TEST(Stream, ColumnsInAnyPortions) {
         clusterer.addColumns(count, scan.lasers,
                              [&](std::size_t laser, std::size_t column) { return scan.at(laser, first + column); });
       first += count;
-      if (random.chance(0.1)) clusterer.addColumn(nullptr, 0);  // a step in which nothing was measured
+      if (random.chance(0.1)) clusterer.addColumn(nullptr, 0);  // a step without measurements
     }
     EXPECT_EQ(difference(trueClusters(scan.points(), tolerance), clustersOf(clusterer)), "");
   });
 }
 
-// Columns may have different numbers of lasers, and their returns may be in any order.
-TEST(Stream, ColumnsOfAnyLengthAndOrder) {
+// Columns may have different numbers of lasers, with their returns in any order.
+TEST(Stream, TakesColumnsOfAnyLengthAndOrder) {
   lisco::ColumnClusterer clusterer;
   forScans(4000, 400, [&](Random& random, const Scan& scan, float tolerance, const Setting& setting) {
     clusterer.begin(withTolerance(setting, tolerance));
@@ -112,7 +112,7 @@ TEST(Stream, UpdateTwiceOrWithoutColumnsChangesNothing) {
   EXPECT_EQ(difference(once, clustersOf(clusterer)), "");
 }
 
-TEST(Stream, ABrokenOffRotationIsForgotten) {
+TEST(Stream, BeginForgetsAnAbortedRotation) {
   lisco::ColumnClusterer clusterer;
   forScans(5000, 200, [&](Random& random, const Scan& scan, float tolerance, const Setting& setting) {
     const Scan lost = randomScan(random);
@@ -135,8 +135,8 @@ TEST(Stream, CountsItsReturns) {
   }
 }
 
-// In whatever portions the columns came: the engine keeps them in blocks.
-TEST(Stream, WhichSubclusterACellIsIn) {
+// In any portions of columns: the engine keeps them in blocks.
+TEST(Stream, GivesTheSubclusterOfACell) {
   lisco::ColumnClusterer clusterer;
   EXPECT_EQ(clusterer.subclusterAt(0, 0), lisco::ColumnClusterer::kNone);
   forScans(7000, 400, [&](Random& random, const Scan& scan, float tolerance, const Setting& setting) {
@@ -157,7 +157,7 @@ TEST(Stream, WhichSubclusterACellIsIn) {
   });
 }
 
-TEST(Stream, SaysWhatIsWrong) {
+TEST(Stream, RejectsWrongCalls) {
   lisco::ColumnClusterer clusterer;
   const lisco::Return cells[2] = {{1, 0, 0, 0}, {1, 0, 1, 1}};
   EXPECT_THROW(clusterer.addColumn(cells, 2), std::logic_error);

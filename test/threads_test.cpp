@@ -40,7 +40,7 @@ Clustering clustered(lisco::ColumnClusterer& clusterer, const lisco::Parameters&
   return clustersOf(clusterer);
 }
 
-/// The runs, in the order in which they are visited.
+/// The runs, in the order of their visits.
 std::vector<std::uint32_t> visited(lisco::ColumnClusterer& clusterer) {
   std::vector<std::uint32_t> all;
   clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t) {
@@ -49,7 +49,7 @@ std::vector<std::uint32_t> visited(lisco::ColumnClusterer& clusterer) {
   return all;
 }
 
-// One object with changing numbers of threads, more than there are lasers among them.
+// One object with changing numbers of threads, some of them more than the lasers.
 TEST(Threads, GiveTheSubclustersOfOneThread) {
   lisco::ColumnClusterer alone;
   lisco::ColumnClusterer together;
@@ -84,8 +84,8 @@ TEST(Threads, EqualTheOracle) {
   }
 }
 
-// Columns that come after those that were read together, also of more lasers, and looks in between.
-TEST(Threads, MoreColumnsMayFollow) {
+// Columns that follow those read by threads, also with more lasers, and queries in between.
+TEST(Threads, AcceptMoreColumnsAfterwards) {
   lisco::ColumnClusterer alone;
   lisco::ColumnClusterer together;
   for (std::uint64_t seed = 2000; seed < 2000 + timesEffort(60); ++seed) {
@@ -97,7 +97,7 @@ TEST(Threads, MoreColumnsMayFollow) {
     parameters.block_columns = random.chance(0.5) ? 64 : 1 + random.below(64);
     const bool look_between = random.chance(0.5);
     const bool whole = random.chance(0.4);
-    const double looks = random.chance(0.5) ? 0.02 : 0.0;
+    const double queries = random.chance(0.5) ? 0.02 : 0.0;
     std::vector<Clustering> clusterings;
     for (lisco::ColumnClusterer* clusterer : {&alone, &together}) {
       Random own(seed);
@@ -117,7 +117,7 @@ TEST(Threads, MoreColumnsMayFollow) {
           return cell;
         });
         column += count;
-        if (own.chance(looks) && clusterer == &together) clusterer->update();
+        if (own.chance(queries) && clusterer == &together) clusterer->update();
       }
       clusterings.push_back(clustersOf(*clusterer));
     }
@@ -126,8 +126,8 @@ TEST(Threads, MoreColumnsMayFollow) {
   }
 }
 
-// So many returns that found their places taken that no more are placed, by one thread or by all.
-TEST(Threads, ManyLooseReturns) {
+// So many returns with taken bins that no more are placed, by one thread or by all.
+TEST(Threads, LinkManyUnplacedReturns) {
   lisco::ColumnClusterer alone;
   lisco::ColumnClusterer together;
   for (std::uint64_t seed = 3000; seed < 3000 + timesEffort(12); ++seed) {
@@ -140,7 +140,7 @@ TEST(Threads, ManyLooseReturns) {
     for (Scan* one : {&scan, &later})
       for (std::size_t laser = 0; laser < kLasers; ++laser)
         for (std::size_t column = 0; column < one->columns; ++column) {
-          // One laser sees the same directions again and again.
+          // One laser sees the same directions repeatedly.
           const bool stands = laser == standing && one == &scan;
           if (!stands && random.chance(one == &scan ? 0.95 : 0.5)) continue;
           const double turn = static_cast<double>(stands ? column % 300 : column % 1000) / 1000.0;
@@ -177,7 +177,7 @@ TEST(Threads, ManyLooseReturns) {
   }
 }
 
-TEST(Threads, EachIsCalledOnce) {
+TEST(Threads, AreEachCalledOnce) {
   EXPECT_GE(lisco::allThreads(), 1U);
   for (const std::size_t threads : {0, 1, 2, 3, 17}) {
     std::vector<std::atomic<int>> calls(threads);
@@ -186,7 +186,7 @@ TEST(Threads, EachIsCalledOnce) {
   }
 }
 
-TEST(Threads, WhatOneThrowsIsThrown) {
+TEST(Threads, PassOnExceptions) {
   std::atomic<int> finished{0};
   EXPECT_THROW(lisco::inParallel(3,
                                  [&](std::size_t thread) {

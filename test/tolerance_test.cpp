@@ -20,14 +20,14 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kDenormal = std::numeric_limits<float>::denorm_min();
 
-TEST(Tolerance, ThatJoinsNothing) {
+TEST(Tolerance, JoinsNothingIfItsSquareIsZero) {
   for (const float metres : {0.0F, -0.0F, kNan, 1e-30F, -1e-30F, kDenormal, 1e-23F}) {
     EXPECT_FALSE(Tolerance(metres).joinsAnything()) << metres;
     EXPECT_EQ(Tolerance(metres).reach(), 0.0) << metres;
   }
 }
 
-TEST(Tolerance, OfEitherSignIsTheSame) {
+TEST(Tolerance, IgnoresTheSign) {
   for (const float metres : {1e-20F, 0.1F, 0.4F, 1e10F, kInfinity}) {
     EXPECT_EQ(Tolerance(metres).squared(), Tolerance(-metres).squared());
     EXPECT_EQ(Tolerance(metres).reach(), Tolerance(-metres).reach());
@@ -44,7 +44,7 @@ TEST(Tolerance, IsSquaredInDoubleThenRounded) {
   EXPECT_EQ(Tolerance(1e30F).squared(), kInfinity);
 }
 
-// reach() bounds the true distance of all neighbours, also where the squares under- or overflow.
+// reach() bounds the true distance of all neighbours, also where squares under- or overflow.
 TEST(Tolerance, ReachBoundsEveryNeighbour) {
   Random random(1);
   for (int i = 0; i < 20000; ++i) {
@@ -60,7 +60,7 @@ TEST(Tolerance, ReachBoundsEveryNeighbour) {
   }
 }
 
-// Squares near the least float lose parts of themselves, or all: what passes the test may be further apart than eps.
+// Squares near the least float lose bits, or all of them: neighbours by the test may be farther apart than eps.
 TEST(Tolerance, ReachBoundsNeighboursWhoseSquaresUnderflow) {
   Random random(4);
   int further = 0;
@@ -79,12 +79,12 @@ TEST(Tolerance, ReachBoundsNeighboursWhoseSquaresUnderflow) {
   EXPECT_GT(further, 0);
 }
 
-TEST(Tolerance, ReachIsTightWhereFloatsAreFine) {
+TEST(Tolerance, ReachIsTightForNormalFloats) {
   for (const float metres : {1e-15F, 0.1F, 1.0F, 1e15F})
     EXPECT_LT(Tolerance(metres).reach(), 1.00001 * static_cast<double>(metres));
 }
 
-TEST(Tolerance, DistanceIsTheOracles) {
+TEST(Tolerance, DistanceEqualsTheOracles) {
   Random random(2);
   int neighbours = 0;
   for (int i = 0; i < 20000; ++i) {

@@ -15,8 +15,8 @@ std::string number(std::size_t n) {
   return std::to_string(n);
 }
 
-/// Whether the graph of neighbours among the members is connected, by growing reached groups until nothing
-/// changes: a member joins when it neighbours anything reached.
+/// Whether the graph of neighbours among the members is connected: grows the reached group by its neighbours until it
+/// no longer changes.
 bool connected(const std::vector<Point>& points, const std::vector<std::uint32_t>& members, float tolerance) {
   std::vector<std::uint32_t> waiting(members.begin() + 1, members.end());
   std::vector<std::uint32_t> edge{members.front()};
@@ -32,7 +32,7 @@ bool connected(const std::vector<Point>& points, const std::vector<std::uint32_t
   return waiting.empty();
 }
 
-/// Sweeps along x: once x alone is too far, so is everything behind it, since rounding is monotone.
+/// Sweeps along x: once x alone is too far, all further points are, since rounding is monotone.
 void checkSeparation(const std::vector<Point>& points, const std::vector<std::uint32_t>& cluster_of, float tolerance,
                      std::vector<std::string>& found) {
   std::vector<std::uint32_t> by_x;
@@ -58,8 +58,8 @@ std::vector<std::string> violations(const std::vector<Point>& points, const Clus
   std::vector<std::uint32_t> cluster_of(points.size(), kNoCluster);
   for (std::uint32_t c = 0; c < clusters.size(); ++c) {
     const Cluster& cluster = clusters[c];
-    if (cluster.members.size() != cluster.claimed_size || cluster.members.empty())
-      found.push_back("size: cluster " + number(c) + " claims " + number(cluster.claimed_size) + " points, holds " +
+    if (cluster.members.size() != cluster.reported_size || cluster.members.empty())
+      found.push_back("size: cluster " + number(c) + " reports " + number(cluster.reported_size) + " points, holds " +
                       number(cluster.members.size()));
     bool all_exist = !cluster.members.empty();
     for (const std::uint32_t member : cluster.members) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Near returns in their cubes, alone: what are neighbours is found, however it comes, and nothing else is joined.
+// Near returns in their voxels, alone: neighbours are joined in any order, other returns are not.
 #include "core/near/voxel_linker.h"
 
 #include <gtest/gtest.h>
@@ -43,12 +43,12 @@ Vector anyDirection(Random& random) {
   return direction(random.between(0.0, 2.0 * kPi), std::asin(random.between(-1.0, 1.0)));
 }
 
-/// Where the first return of a pair lies, seen from the sensor, and how large the tolerance is.
+/// The first return of a pair as seen from the sensor, and the tolerance.
 struct Geometry {
   const char* name;
   double (*azimuth)(Random&);
   double (*elevation)(Random&);
-  double least_range, greatest_range;  ///< in units of the tolerance
+  double min_range, max_range;  ///< in units of the tolerance
   double tolerance = 0.5;
   std::array<float, 3> origin{0.0F, 0.0F, 0.0F};
 };
@@ -119,18 +119,18 @@ Point placed(const Geometry& geometry, const Vector& seen) {
           static_cast<float>(seen.z + static_cast<double>(geometry.origin[2]))};
 }
 
-/// The tolerance cannot be longer than this without overflow.
+/// The longest distance up to the tolerance that does not overflow.
 double reachOf(const Geometry& geometry) {
   return std::min(geometry.tolerance, 1.8e19);
 }
 
-/// The side of a cube.
+/// The side of a voxel.
 double sideOf(const Geometry& geometry) {
   return 0.9999 * lisco::Tolerance(static_cast<float>(geometry.tolerance)).reach() / std::sqrt(3.0);
 }
 
-/// Where cubes meet, in one axis.
-double atCubesEnd(Random& random, const Geometry& geometry, std::size_t axis, double coordinate) {
+/// A coordinate at the border of two voxels.
+double atVoxelBorder(Random& random, const Geometry& geometry, std::size_t axis, double coordinate) {
   const double side = sideOf(geometry);
   const double moved = coordinate + static_cast<double>(geometry.origin[axis]);
   return std::round(moved / side) * side * (1.0 + (random.chance(0.5) ? 1e-7 : 1e-4) * random.between(-1, 1)) -
@@ -139,15 +139,15 @@ double atCubesEnd(Random& random, const Geometry& geometry, std::size_t axis, do
 
 Vector firstOfPair(Random& random, const Geometry& geometry) {
   const Vector to = direction(geometry.azimuth(random), geometry.elevation(random));
-  const double range = reachOf(geometry) * random.magnitude(geometry.least_range, geometry.greatest_range);
+  const double range = reachOf(geometry) * random.magnitude(geometry.min_range, geometry.max_range);
   Vector p{to.x * range, to.y * range, to.z * range};
-  if (random.chance(0.3)) p.x = atCubesEnd(random, geometry, 0, p.x);
-  if (random.chance(0.3)) p.y = atCubesEnd(random, geometry, 1, p.y);
-  if (random.chance(0.3)) p.z = atCubesEnd(random, geometry, 2, p.z);
+  if (random.chance(0.3)) p.x = atVoxelBorder(random, geometry, 0, p.x);
+  if (random.chance(0.3)) p.y = atVoxelBorder(random, geometry, 1, p.y);
+  if (random.chance(0.3)) p.z = atVoxelBorder(random, geometry, 2, p.z);
   return p;
 }
 
-/// Something about a tolerance away: often across the line of sight, where angles grow fastest, or along it.
+/// A point about a tolerance away: often across the line of sight, where angles grow fastest, or along it.
 Vector secondOfPair(Random& random, const Geometry& geometry, const Vector& p) {
   Vector by = anyDirection(random);
   const double rho = std::hypot(p.x, p.y);
@@ -163,7 +163,7 @@ Vector secondOfPair(Random& random, const Geometry& geometry, const Vector& p) {
     const double c = std::sqrt(1.0 - s * s);
     by = {(-p.x * s - sign * p.y * c) / rho, (-p.y * s + sign * p.x * c) / rho, 0.0};
   }
-  if (kind == 5) {  // along a diagonal of the cubes
+  if (kind == 5) {  // along a diagonal of the voxels
     const auto along = [&random] { return (random.chance(0.5) ? 1.0 : -1.0) / std::sqrt(3.0); };
     by = {along(), along(), along()};
   }
@@ -176,10 +176,10 @@ Vector secondOfPair(Random& random, const Geometry& geometry, const Vector& p) {
   return {p.x + by.x * length, p.y + by.y * length, p.z + by.z * length};
 }
 
-/// Joins what voxels find in others.
-class Joiner : public lisco::PairVisitor {
+/// Joins the pairs that voxels find in others.
+class JoiningVisitor : public lisco::PairVisitor {
  public:
-  explicit Joiner(lisco::DisjointSets& subclusters) : subclusters_(subclusters) {}
+  explicit JoiningVisitor(lisco::DisjointSets& subclusters) : subclusters_(subclusters) {}
   bool inDifferentSets(std::uint32_t own, std::uint32_t others) override {
     return subclusters_.find(own) != subclusters_.find(others);
   }
@@ -209,52 +209,53 @@ class Probe {
     others_.grid.prepare(tolerance_);
   }
 
-  /// Adds a row of up to 64 cells, of which some are no returns, and of those that are some only.
+  /// Adds up to 64 cells of a ring block, some of which are no returns.
+  /// \param which bit i: cell i is added
   /// \param apart to other voxels, to which these are linked
-  void addRow(const std::vector<Point>& cells, std::uint64_t which = ~std::uint64_t{0}, bool apart = false) {
+  void addBlock(const std::vector<Point>& cells, std::uint64_t which = ~std::uint64_t{0}, bool apart = false) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      row_.x[lisco::RingBlock::kMargin + i] = cells[i].x;
-      row_.y[lisco::RingBlock::kMargin + i] = cells[i].y;
-      row_.z[lisco::RingBlock::kMargin + i] = cells[i].z;
+      block_.x[lisco::RingBlock::kMargin + i] = cells[i].x;
+      block_.y[lisco::RingBlock::kMargin + i] = cells[i].y;
+      block_.z[lisco::RingBlock::kMargin + i] = cells[i].z;
     }
-    lisco::measure(row_, cells.size(), tolerance_.squared(), lisco::FarRange(), measured_);
-    which &= measured_.returns;
+    lisco::measure(block_, cells.size(), tolerance_.squared(), lisco::FarRange(), info_);
+    which &= info_.returns;
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      if ((measured_.returns >> i & 1U) == 0) continue;
-      if ((measured_.starts >> i & 1U) != 0) {  // the engine's runs: each chain of neighbours is one
+      if ((info_.returns >> i & 1U) == 0) continue;
+      if ((info_.starts >> i & 1U) != 0) {  // as Runs::add: a chain of neighbours is a run
         ++runs_;
         subclusters_.grow(runs_);
         subclusters_.create(runs_ - 1);
       }
-      measured_.run[i] = runs_ - 1;
+      info_.run[i] = runs_ - 1;
       if ((which >> i & 1U) != 0) added_.push_back({cells[i], runs_ - 1});
     }
-    if (which != 0) (apart ? others_ : voxels_).grid.add(row_, measured_, which, subclusters_);
+    if (which != 0) (apart ? others_ : voxels_).grid.add(block_, info_, which, subclusters_);
   }
-  void add(const Point& point) { addRow({point}); }
+  void add(const Point& point) { addBlock({point}); }
   void link() {
-    Joiner joiner(subclusters_);
+    JoiningVisitor visitor(subclusters_);
     for (NearPart* one : {&voxels_, &others_}) one->linker.link(one->grid, subclusters_);
-    lisco::VoxelLinker::linkTo(voxels_.grid, others_.grid, lisco::VoxelLinker::Part::kNew, joiner);
-    lisco::VoxelLinker::linkTo(others_.grid, voxels_.grid, lisco::VoxelLinker::Part::kNew, joiner);
+    lisco::VoxelLinker::linkTo(voxels_.grid, others_.grid, lisco::VoxelLinker::Part::kNew, visitor);
+    lisco::VoxelLinker::linkTo(others_.grid, voxels_.grid, lisco::VoxelLinker::Part::kNew, visitor);
     for (NearPart* one : {&voxels_, &others_}) lisco::VoxelLinker::markLinked(one->grid);
   }
 
-  /// Two of the returns added, in their order.
+  /// By their numbers in the order of adding.
   bool joined(std::size_t a, std::size_t b) {
     return subclusters_.find(added_[a].run) == subclusters_.find(added_[b].run);
   }
 
-  /// What differs from the clusters of all returns added. Runs that were added in part only still are one.
+  /// Differences from the clusters of all returns added. A run that was added in part is still one.
   std::string wrong(float tolerance) {
     std::vector<Point> points;
-    std::map<std::uint32_t, Cluster> by_head;
+    std::map<std::uint32_t, Cluster> by_root;
     for (const auto& [point, run] : added_) {
-      by_head[subclusters_.find(run)].members.push_back(static_cast<std::uint32_t>(points.size()));
+      by_root[subclusters_.find(run)].members.push_back(static_cast<std::uint32_t>(points.size()));
       points.push_back(point);
     }
     Clustering found;
-    for (auto& [head, cluster] : by_head) found.push_back({cluster.members, cluster.members.size()});
+    for (auto& [root, cluster] : by_root) found.push_back({cluster.members, cluster.members.size()});
     return difference(trueClusters(points, tolerance), inOrder(std::move(found)));
   }
 
@@ -269,8 +270,8 @@ class Probe {
   lisco::DisjointSets subclusters_;
   std::vector<Added> added_;
   std::uint32_t runs_ = 0;
-  lisco::RingBlock row_{};
-  lisco::RingBlockInfo measured_{};
+  lisco::RingBlock block_{};
+  lisco::RingBlockInfo info_{};
 };
 
 std::string print(const Point& p) {
@@ -280,7 +281,7 @@ std::string print(const Point& p) {
 
 class VoxelPairs : public testing::TestWithParam<Geometry> {};
 
-// In either order, at once or with a look in between, in one row or in two.
+// In either order, linked at once or in between, in one ring block or in two.
 TEST_P(VoxelPairs, AreJoinedIfTheyAreNeighbours) {
   const auto tolerance = static_cast<float>(GetParam().tolerance);
   Probe probe(tolerance);
@@ -302,23 +303,23 @@ TEST_P(VoxelPairs, AreJoinedIfTheyAreNeighbours) {
         if (linked_between) probe.link();
         probe.add(other);
         probe.link();
-        ASSERT_EQ(probe.joined(0, 1), near) << "in two rows" << (linked_between ? ", linked between" : "");
+        ASSERT_EQ(probe.joined(0, 1), near) << "in two blocks" << (linked_between ? ", linked between" : "");
       }
     std::vector<Point> cells(64, Point{0, 0, 0});
     cells[random.below(30)] = p;
     cells[32 + random.below(32)] = q;
     probe.begin(tolerance);
-    probe.addRow(cells);
+    probe.addBlock(cells);
     probe.link();
-    ASSERT_EQ(probe.joined(0, 1), near) << "in one row";
+    ASSERT_EQ(probe.joined(0, 1), near) << "in one block";
     probe.begin(tolerance);
-    probe.addRow({p, q});
+    probe.addBlock({p, q});
     probe.link();
     ASSERT_EQ(probe.joined(0, 1), near) << "side by side";
     probe.begin(tolerance);
     probe.add(p);
     if (random.chance(0.5)) probe.link();
-    probe.addRow({q}, 1, true);
+    probe.addBlock({q}, 1, true);
     probe.link();
     ASSERT_EQ(probe.joined(0, 1), near) << "apart";
   }
@@ -328,12 +329,12 @@ TEST_P(VoxelPairs, AreJoinedIfTheyAreNeighbours) {
 INSTANTIATE_TEST_SUITE_P(Geometries, VoxelPairs, testing::ValuesIn(kGeometries),
                          [](const auto& geometry) { return geometry.param.name; });
 
-/// In parts, so that they can run side by side.
+/// In parts that run side by side.
 class VoxelClouds : public testing::TestWithParam<std::uint64_t> {};
 INSTANTIATE_TEST_SUITE_P(Seeds, VoxelClouds, testing::Range<std::uint64_t>(1, 4));
 
-/// Rows of returns in a space of some cubes; those of a row follow each other, or lie anywhere.
-std::vector<std::vector<Point>> randomRows(Random& random, double side, std::size_t most_rows) {
+/// Ring blocks of returns in a space of some voxels; the returns of a block follow each other, or lie anywhere.
+std::vector<std::vector<Point>> randomBlocks(Random& random, double side, std::size_t max_blocks) {
   const std::array<double, 6> extents{0.7, 3.0, 5.0, 12.0, 30.0, 100.0};
   const double extent = side * random.oneOf(extents);
   const double height = random.chance(0.4) ? 0.0 : extent;
@@ -342,13 +343,13 @@ std::vector<std::vector<Point>> randomRows(Random& random, double side, std::siz
   const double step = side * random.magnitude(0.01, 3.0);
   const double lost = random.chance(0.5) ? random.unit() : 0.0;
   const bool lattice = random.chance(0.2);
-  std::vector<std::vector<Point>> rows(1 + random.below(most_rows));
-  for (std::vector<Point>& row : rows) {
+  std::vector<std::vector<Point>> blocks(1 + random.below(max_blocks));
+  for (std::vector<Point>& block : blocks) {
     std::array<double, 3> at{random.between(-extent, extent), random.between(-extent, extent),
                              random.between(-height, height)};
     const bool anywhere = random.chance(0.3);
-    row.resize(1 + random.below(64));
-    for (Point& cell : row) {
+    block.resize(1 + random.below(64));
+    for (Point& cell : block) {
       for (double& axis : at) {
         axis = anywhere ? random.between(-extent, extent) : axis + random.between(-step, step);
         if (lattice) axis = side * std::round(axis / side);
@@ -358,7 +359,7 @@ std::vector<std::vector<Point>> randomRows(Random& random, double side, std::siz
                                          static_cast<float>(at[1] - displacement), static_cast<float>(at[2])};
     }
   }
-  return rows;
+  return blocks;
 }
 
 TEST_P(VoxelClouds, EqualTheOracle) {
@@ -370,14 +371,14 @@ TEST_P(VoxelClouds, EqualTheOracle) {
     const SimdLevel level(random.oneOf(levels()));
     const std::array<float, 5> tolerances{1.0F, 0.3F, 1e-17F, 1e10F, 7e-22F};
     const float tolerance = random.oneOf(tolerances);
-    const auto rows = randomRows(random, 0.9999 / std::sqrt(3.0) * static_cast<double>(tolerance), 30);
+    const auto blocks = randomBlocks(random, 0.9999 / std::sqrt(3.0) * static_cast<double>(tolerance), 30);
     probe.begin(tolerance);
     const std::array<double, 4> chances{0.0, 0.0, 0.2, 1.0};
-    const double looks = random.oneOf(chances);
+    const double queries = random.oneOf(chances);
     const double apart = random.oneOf(chances);
-    for (const auto& row : rows) {
-      probe.addRow(row, ~std::uint64_t{0}, random.chance(apart));
-      if (!random.chance(looks)) continue;
+    for (const auto& block : blocks) {
+      probe.addBlock(block, ~std::uint64_t{0}, random.chance(apart));
+      if (!random.chance(queries)) continue;
       probe.link();
       ASSERT_EQ(probe.wrong(tolerance), "") << "in between";
     }
@@ -388,22 +389,22 @@ TEST_P(VoxelClouds, EqualTheOracle) {
   }
 }
 
-// Some returns of a row only, as where the others have places in a strip: all of them single, none is a run.
-TEST_P(VoxelClouds, OfSomeReturnsOfEachRow) {
+// Only some returns of a ring block, as where the others are placed in the range image: none continues a run.
+TEST_P(VoxelClouds, EqualTheOracleOnSomeReturns) {
   const std::uint64_t seeds = GetParam() * 1'000'000 + 500'000;
   Probe probe(1.0F);
   for (std::uint64_t seed = seeds; seed < seeds + timesEffort(300); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
-    const auto rows = randomRows(random, 0.9999 / std::sqrt(3.0), 20);
+    const auto blocks = randomBlocks(random, 0.9999 / std::sqrt(3.0), 20);
     probe.begin(1.0F);
-    for (const auto& row : rows) {
+    for (const auto& block : blocks) {
       std::vector<Point> alternating;
-      for (std::size_t i = 0; i < row.size() && alternating.size() < 63; ++i) {
-        alternating.push_back(row[i]);
-        alternating.push_back({1e6F + 10.0F * static_cast<float>(i), 0, 0});  // is not added
+      for (std::size_t i = 0; i < block.size() && alternating.size() < 63; ++i) {
+        alternating.push_back(block[i]);
+        alternating.push_back({1e6F + 10.0F * static_cast<float>(i), 0, 0});  // not added
       }
-      probe.addRow(alternating, 0x5555555555555555U & ~(random.chance(0.5) ? std::uint64_t{0xFF} << 8 : 0U));
+      probe.addBlock(alternating, 0x5555555555555555U & ~(random.chance(0.5) ? std::uint64_t{0xFF} << 8 : 0U));
       if (random.chance(0.1)) probe.link();
     }
     probe.link();
@@ -411,8 +412,8 @@ TEST_P(VoxelClouds, OfSomeReturnsOfEachRow) {
   }
 }
 
-// Along an axis, as far apart as neighbours can be, where numbers computed in float begin to be too coarse.
-TEST(VoxelLinker, WhereNumbersAreRounded) {
+// Along an axis, as far apart as neighbours can be, where voxel numbers computed in float begin to be too coarse.
+TEST(VoxelLinker, JoinsWhereNumbersAreRounded) {
   Probe probe(1.0F);
   int apart = 0;
   for (std::uint64_t seed = 1; seed < 1 + timesEffort(30000); ++seed) {
@@ -434,9 +435,9 @@ TEST(VoxelLinker, WhereNumbersAreRounded) {
     const SimdLevel level(random.oneOf(levels()));
     probe.begin(tolerance);
     for (const Point& point : points) {
-      // Beside another return that makes the whole row's numbers double; or not.
+      // With another return that makes the whole block's numbers double, or without.
       if (random.chance(0.3))
-        probe.addRow({point, {0, 0, 0}, {1e9F + static_cast<float>(seed), 0, 0}}, random.chance(0.5) ? 5 : 1);
+        probe.addBlock({point, {0, 0, 0}, {1e9F + static_cast<float>(seed), 0, 0}}, random.chance(0.5) ? 5 : 1);
       else
         probe.add(point);
     }
@@ -446,8 +447,8 @@ TEST(VoxelLinker, WhereNumbersAreRounded) {
   EXPECT_GT(apart, 10000);
 }
 
-// So far out that neighbouring floats, some of them alike, are many cubes apart, and numbers wrap.
-TEST(VoxelLinker, WhereNumbersWrap) {
+// So far out that neighbouring floats, some of them equal, are many voxels apart, and voxel numbers wrap.
+TEST(VoxelLinker, JoinsWhereNumbersWrap) {
   Probe probe(1.0F);
   for (std::uint64_t seed = 1; seed < 1 + timesEffort(200); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -464,7 +465,7 @@ TEST(VoxelLinker, WhereNumbersWrap) {
       cells.push_back(
           {coordinate(), random.chance(0.5) ? coordinate() : 1.0F, random.chance(0.5) ? coordinate() : 1.0F});
       if (cells.size() < 64) continue;
-      probe.addRow(cells);
+      probe.addBlock(cells);
       cells.clear();
       if (random.chance(0.3)) probe.link();
     }
@@ -473,15 +474,15 @@ TEST(VoxelLinker, WhereNumbersWrap) {
   }
 }
 
-// A cube is shared by those whose numbers are the same modulo 2^32: what does not fit together stays apart.
-TEST(VoxelLinker, OneCubeOfManyUnits) {
+// Voxels whose numbers are equal modulo 2^32 share an entry: their cliques stay apart.
+TEST(VoxelLinker, SeparatesCliquesOfOneVoxel) {
   constexpr float kTolerance = 1.0F;
   const double turn = 0.9999 / std::sqrt(3.0) * 4294967296.0;
   for (const bool linked : {false, true}) {
     Probe probe(kTolerance);
     for (int time = 0; time < 3; ++time)
       for (int i = -4; i <= 4; ++i) {
-        // There, floats are 128 m and more apart.
+        // Floats are at least 128 m apart here.
         probe.add({static_cast<float>(i * turn), 0.3F, 0.3F});
         probe.add({static_cast<float>(i * turn), 0.3F + 0.4F * static_cast<float>(time), 0.3F});
         if (linked) probe.link();
@@ -492,7 +493,7 @@ TEST(VoxelLinker, OneCubeOfManyUnits) {
 }
 
 // At the least and the greatest floats, where d2 under- or overflows.
-TEST(VoxelLinker, WhereSquaresEnd) {
+TEST(VoxelLinker, JoinsWhereSquaresUnderflowAndOverflow) {
   for (const float tolerance :
        {5e-23F, 1e-22F, 2e-22F, 1e-21F, 1.8e19F, 3e19F, 1e30F, std::numeric_limits<float>::infinity()}) {
     Probe probe(tolerance);
@@ -502,11 +503,11 @@ TEST(VoxelLinker, WhereSquaresEnd) {
       Random random(seed);
       probe.begin(tolerance);
       const double extent = reach * random.magnitude(0.3, 3.0);
-      for (int row = 0; row < 6; ++row) {
+      for (int block = 0; block < 6; ++block) {
         std::vector<Point> cells(1 + random.below(20));
         for (Point& cell : cells)
           for (float* axis : {&cell.x, &cell.y, &cell.z}) *axis = static_cast<float>(random.between(-extent, extent));
-        probe.addRow(cells);
+        probe.addBlock(cells);
         if (random.chance(0.3)) probe.link();
       }
       probe.link();
@@ -515,22 +516,22 @@ TEST(VoxelLinker, WhereSquaresEnd) {
   }
 }
 
-// The list of a block's cubes moves as it grows; all 64 of a block are found, from wherever it began.
-TEST(VoxelLinker, ABlockOfAllItsCubes) {
+// The list of a brick's voxels moves as it grows; all 64 voxels are found in any order.
+TEST(VoxelLinker, FindsAllVoxelsOfABrick) {
   constexpr float kTolerance = 1.0F;
   const double side = 0.9999 / std::sqrt(3.0);
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
-    std::vector<int> order(3 * 64);  // three blocks at once, so that their lists must move
+    std::vector<int> order(3 * 64);  // three bricks at once, so that their lists move
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
     random.shuffle(order);
     Probe probe(kTolerance);
     const double shift = random.chance(0.5) ? 0.5 : random.between(0.0, 1.0);
     for (std::size_t i = 0; i < order.size(); ++i) {
-      const int cube = order[i];
+      const int voxel = order[i];
       const auto inside = [&](int number) { return static_cast<float>(side * (number + shift)); };
-      probe.add({inside((cube & 3) + (cube >> 6) * 8), inside(cube >> 2 & 3), inside(cube >> 4 & 3)});
+      probe.add({inside((voxel & 3) + (voxel >> 6) * 8), inside(voxel >> 2 & 3), inside(voxel >> 4 & 3)});
       if (seed % 3 == 0 || i == 100) {
         probe.link();
         ASSERT_EQ(probe.wrong(kTolerance), "") << i;
@@ -541,20 +542,19 @@ TEST(VoxelLinker, ABlockOfAllItsCubes) {
   }
 }
 
-// More blocks than the table has slots at first; each is found again, before and after the table has grown.
-// Blocks of cubes that touch along a face, an edge or at a corner, all of them at once or one after the other: around
-// the origin, where numbers change their sign, and where numbers are last computed in float.
-TEST(VoxelLinker, BlocksInEveryDirection) {
+// Bricks that touch at a face, an edge or a corner, linked at once or in between: around the origin, where numbers
+// change their sign, and where numbers are last computed in float.
+TEST(VoxelLinker, JoinsBricksInEveryDirection) {
   constexpr float kTolerance = 1.0F;
-  const double block = 4 * 0.9999 / std::sqrt(3.0);
+  const double brick = 4 * 0.9999 / std::sqrt(3.0);
   for (const double corner : {0.0, -7.0, 200.0, 262143.0, -262143.0, 262144.0, -262144.0})
     for (const bool linked_between : {false, true})
       for (int direction = 0; direction < 27; ++direction) {
-        SCOPED_TRACE("block " + std::to_string(corner) + ", direction " + std::to_string(direction));
+        SCOPED_TRACE("brick " + std::to_string(corner) + ", direction " + std::to_string(direction));
         const std::array<int, 3> to{direction % 3 - 1, direction / 3 % 3 - 1, direction / 9 - 1};
-        const auto at = [&](double side) {  // how far from the corner, in tolerances
+        const auto at = [&](double side) {  // distance from the corner, in tolerances
           const auto along = [&](std::size_t axis) {
-            return static_cast<float>(corner * block + (to[axis] == 0 ? 1.0 : side * to[axis]));
+            return static_cast<float>(corner * brick + (to[axis] == 0 ? 1.0 : side * to[axis]));
           };
           return Point{along(0), along(1), along(2)};
         };
@@ -571,8 +571,8 @@ TEST(VoxelLinker, BlocksInEveryDirection) {
       }
 }
 
-// Two crowds of returns that are all but neighbours: each has more of them near the other than are looked at together.
-TEST(VoxelLinker, CrowdsApart) {
+// Two crowds of returns just farther apart than the tolerance: more pairs than one comparison of vectors takes.
+TEST(VoxelLinker, SeparatesCrowds) {
   constexpr float kTolerance = 1.0F;
   for (const std::string& level : levels())
     for (const std::size_t bridge : {0, 1, 100, 399}) {
@@ -592,7 +592,7 @@ TEST(VoxelLinker, CrowdsApart) {
     }
 }
 
-TEST(VoxelLinker, TheTableGrows) {
+TEST(VoxelLinker, FindsBricksAfterTheTableHasGrown) {
   constexpr float kTolerance = 1.0F;
   Probe probe(kTolerance);
   for (const bool in_between : {false, true})
@@ -615,7 +615,7 @@ TEST(VoxelLinker, TheTableGrows) {
     }
 }
 
-TEST(VoxelLinker, NothingOfTheLastRotationIsLeft) {
+TEST(VoxelLinker, BeginForgetsTheLastRotation) {
   Probe probe(1.0F);
   for (int rotation = 0; rotation < 3; ++rotation) {
     probe.begin(1.0F);
@@ -629,13 +629,13 @@ TEST(VoxelLinker, NothingOfTheLastRotationIsLeft) {
   }
 }
 
-TEST(VoxelLinker, OthersAreLinkedAgainWhenTheyHaveGrown) {
+TEST(VoxelLinker, LinksOtherVoxelsAgainAfterTheyHaveGrown) {
   Probe probe(1.0F);
   probe.link();
-  probe.addRow({{0.5F, 0, 0}}, 1, true);
+  probe.addBlock({{0.5F, 0, 0}}, 1, true);
   probe.link();
-  probe.addRow({{1.4F, 0, 0}, {9.0F, 0, 0}});
-  probe.addRow({{9.5F, 0, 0}}, 1, true);
+  probe.addBlock({{1.4F, 0, 0}, {9.0F, 0, 0}});
+  probe.addBlock({{9.5F, 0, 0}}, 1, true);
   probe.link();
   EXPECT_EQ(probe.wrong(1.0F), "");
   EXPECT_TRUE(probe.joined(0, 1));
@@ -643,11 +643,11 @@ TEST(VoxelLinker, OthersAreLinkedAgainWhenTheyHaveGrown) {
   EXPECT_FALSE(probe.joined(0, 2));
 }
 
-TEST(VoxelLinker, WithoutNeighboursNothingIsJoined) {
+TEST(VoxelLinker, JoinsNothingIfTheToleranceJoinsNothing) {
   for (const float tolerance : {0.0F, 1e-30F, kNan}) {
     Probe probe(tolerance);
     for (int time = 0; time < 2; ++time) {
-      probe.addRow({{1, 2, 3}, {1, 2, 3}, {3e38F, -3e38F, 3e38F}, {0, 0, -1e-45F}});
+      probe.addBlock({{1, 2, 3}, {1, 2, 3}, {3e38F, -3e38F, 3e38F}, {0, 0, -1e-45F}});
       probe.link();
     }
     EXPECT_EQ(probe.wrong(tolerance), "");

@@ -53,7 +53,7 @@ TEST(WindowClusterer, EachWindowIsExact) {
   }
 }
 
-TEST(WindowClusterer, LatticesAndExtremes) {
+TEST(WindowClusterer, WindowsOfLatticesAndExtremesAreExact) {
   lisco::WindowClusterer clusterer;
   for (std::uint64_t seed = 1; seed <= timesEffort(300); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -67,7 +67,7 @@ TEST(WindowClusterer, LatticesAndExtremes) {
   }
 }
 
-TEST(WindowClusterer, SaysWhatIsWrong) {
+TEST(WindowClusterer, RejectsWrongCalls) {
   lisco::WindowClusterer clusterer;
   const lisco::Return cells[3] = {{1, 0, 0, 0}, {1, 0, 1, 1}, {1, 0, 2, 2}};
   EXPECT_THROW(clusterer.addColumn(cells, 1), std::logic_error);

@@ -27,16 +27,16 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_COMPONENT_LIBRARIES_DESCRIPTION "The libraries: the clustering engine, and its classes for PCL.")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Headers, CMake package and pkg-config files.")
 set(CPACK_COMPONENT_APPLICATIONS_DESCRIPTION "Programs that cluster scans, compare with PCL, and simulate scans.")
-set(CPACK_COMPONENT_DOCUMENTATION_DESCRIPTION "How it works, what it promises, how fast it is.")
+set(CPACK_COMPONENT_DOCUMENTATION_DESCRIPTION "Algorithm, contract, tutorials, benchmarks.")
 set(CPACK_DEBIAN_LIBRARIES_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_APPLICATIONS_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SECTION doc)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)
 
-# What each needs: what its files are linked with, and the packages of other components.
+# Dependencies: the libraries that the files are linked with, and the packages of other components.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR})  # those that are being packaged
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR})  # the libraries that are being packaged
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
 set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// A program as PCL's users write it. after.cpp is the same with Lisco; both print the same.
+// A program for PCL. after.cpp is the same with Lisco; both print the same.
 #include <cstdio>
 #include <vector>
 

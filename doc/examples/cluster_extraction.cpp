@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Reads a scan, leaves out the ground by height, and writes a cloud for each cluster.
+// Reads a scan, removes the ground by height, and writes a cloud for each cluster.
 #include <cstdio>
 #include <limits>
 #include <vector>
@@ -19,10 +19,10 @@ int main(int argc, char** argv) {
 
   // Read in the cloud data
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
-  if (pcl::io::loadPCDFile(argv[1], *cloud) < 0) return 1;  // it says why
+  if (pcl::io::loadPCDFile(argv[1], *cloud) < 0) return 1;  // it prints the reason
   std::printf("The scan has %u lasers, %u columns.\n", cloud->height, cloud->width);
 
-  // Leave out the ground: indices of what is higher, so that the cloud stays organized
+  // Remove the ground: the indices of the other points keep the cloud organized
   pcl::IndicesPtr above_ground(new pcl::Indices);
   pcl::PassThrough<pcl::PointXYZ> pass;
   pass.setInputCloud(cloud);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Clusters a point cloud message as a LiDAR's driver sends it; a ROS node gets it by pcl_conversions::toPCL ().
+// Clusters a point cloud message of a LiDAR's driver; a ROS node gets it by pcl_conversions::toPCL ().
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -12,7 +12,7 @@
 #include <pcl/point_types.h>
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 
-// What the driver of a Velodyne sends: one row of points, x y z intensity ring time, 22 bytes each. Two posts.
+// A message of a Velodyne's driver: one row of points, x y z intensity ring time, 22 bytes each. Two posts.
 pcl::PCLPointCloud2 exampleMessage() {
   pcl::PCLPointCloud2 message;
   const auto add_field = [&](const char* name, std::uint8_t type, pcl::uindex_t offset) {
@@ -32,7 +32,7 @@ pcl::PCLPointCloud2 exampleMessage() {
   message.height = 1;
   for (int column = 0; column < 1800; ++column)
     for (std::uint16_t ring = 0; ring < 16; ++ring) {
-      if (column % 900 >= 20) continue;  // nothing came back: the driver leaves it out
+      if (column % 900 >= 20) continue;  // no return: the driver omits it
       const double azimuth = -2 * M_PI * column / 1800;
       const float point[] = {static_cast<float>(8 * std::cos(azimuth)), static_cast<float>(8 * std::sin(azimuth)),
                              0.2F * static_cast<float>(ring), 100.0F};
@@ -53,7 +53,7 @@ int main() {
 
   pcl::PointCloud<pcl::PointXYZI>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZI>);
   pcl::Indices point_of_cell;
-  if (!pcl::organizeLiscoCloud(message, *cloud, point_of_cell)) return 1;  // it says why
+  if (!pcl::organizeLiscoCloud(message, *cloud, point_of_cell)) return 1;  // it prints the reason
 
   pcl::LiscoClusterExtraction<pcl::PointXYZI> ec;
   ec.setClusterTolerance(0.4);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// A simulated sensor of 16 lasers turns twice among three posts; its columns are clustered while it turns.
+// A simulated sensor of 16 lasers turns twice among three posts; its columns are clustered during the rotations.
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -12,7 +12,7 @@
 constexpr int kLasers = 16;
 constexpr int kSteps = 1800;  // a turn
 
-// What the lasers measure in one step: posts 5, 10 and 15 metres away, the first of them where a turn begins and ends.
+// A column of one step: posts 5, 10 and 15 metres away, the first of them at the beginning and end of a turn.
 std::vector<pcl::PointXYZ, Eigen::aligned_allocator<pcl::PointXYZ>> measureColumn(int step) {
   std::vector<pcl::PointXYZ, Eigen::aligned_allocator<pcl::PointXYZ>> column(kLasers, pcl::PointXYZ(0, 0, 0));
   const double azimuth = 2 * M_PI * step / kSteps;
@@ -24,7 +24,7 @@ std::vector<pcl::PointXYZ, Eigen::aligned_allocator<pcl::PointXYZ>> measureColum
         column[laser].y = static_cast<float>(range * std::sin(azimuth));
         column[laser].z = static_cast<float>(range * 0.02 * (laser - 8));
       }
-  return column;  // what is (0, 0, 0), or NaN, is no return
+  return column;  // (0, 0, 0) and NaN are no returns
 }
 
 int main() {
@@ -37,7 +37,7 @@ int main() {
   pcl::LiscoEndlessExtraction<pcl::PointXYZ> endless;
   endless.setClusterTolerance(0.4);
   endless.setMinClusterSize(10);
-  endless.setStagger(0.02);  // radians: all lasers of a column look the same way
+  endless.setStagger(0.02);  // radians: all lasers of a column have one azimuth
   endless.setColumnsPerTurn(kSteps);
   endless.setClusterCallback([](const pcl::LiscoEndlessCluster<pcl::PointXYZ>& cluster) {
     std::printf("endless: %zu points, turns %.3f to %.3f\n", cluster.cloud.size(), cluster.first_position,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// The steps of PCL's tool pcl_cluster_extraction: clusters of a cloud of any fields, each written with all of them. As
-// there, the kd-tree is used without including it.
+// The steps of PCL's tool pcl_cluster_extraction: clusters of a cloud of any fields, each written with all of them.
+// Like the tool, it uses the kd-tree without including it.
 #include <cstdio>
 #include <memory>
 #include <string>

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# same_files.sh PROGRAM PROGRAM: both, given a small cloud, print the same and write the same files, at least two.
+# same_files.sh PROGRAM PROGRAM: both print the same for a small cloud and write the same files, at least two.
 set -euo pipefail
 export LC_ALL=C
 folder=$(mktemp -d)

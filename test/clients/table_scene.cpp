@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// The steps of PCL's tutorial on cluster extraction: thin the cloud out, take the planes away, write a cloud for each
+// The steps of PCL's tutorial on cluster extraction: downsample the cloud, remove the planes, write a cloud for each
 // cluster of the rest.
 #include <cstdio>
 #include <string>

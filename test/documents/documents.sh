@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# documents.sh ROOT PROGRAMS: what README.md and doc/*.md point to is there: relative links; paths in `backticks`; scripts, programs
-# and options in ```sh blocks; quoted code, after <!-- FILE --> in the file of that name; the README's diff in the example. Lines are
-# compared without blanks. The README stays short. Says all that is wrong.
+# documents.sh ROOT PROGRAMS: checks README.md and doc/*.md: relative links; paths in `backticks`; scripts, programs and
+# options in ```sh blocks; quoted code, after <!-- FILE --> in the file of that name; the README's diff in the example;
+# at most 120 columns outside of tables and code; at most 150 lines of README. Lines of code are compared without
+# blanks. Prints all errors.
 set -euo pipefail
 cd "$1"
 programs=$2
@@ -11,7 +12,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$failures" "$scratch"' EXIT
 wrong() { echo "$*" | tee -a "$failures" >&2; }
 
-# in_order FILE < LINES: each line is in the file, after the one before. Prints the first that is not.
+# in_order FILE < LINES: prints the first line that is not in the file after the line before.
 in_order() {
   awk 'function bare(line) { gsub(/[ \t]/, "", line); return line }
        FILENAME != "-" { lines[++count] = bare($0); next }
@@ -23,15 +24,17 @@ documents=(README.md doc/*.md)
 for document in "${documents[@]}"; do
   folder=$(dirname "$document")
 
-  # Links, but those in comments
+  # Links outside of comments
   while IFS= read -r link; do
     [ -z "$link" ] || [ -e "$folder/$link" ] || wrong "$document: link to $link, which does not exist"
-  done < <(awk '/^<!--/ { hidden = 1 } !hidden; /-->$/ { hidden = 0 }' "$document" | grep -o '](\([^)]*\))' | sed 's/^](//; s/)$//; s/#.*//' | grep -v '^[a-z]*://' || true)
+  done < <(awk '/^<!--/ { hidden = 1 } !hidden; /-->$/ { hidden = 0 }' "$document" | grep -o '](\([^)]*\))' |
+    sed 's/^](//; s/)$//; s/#.*//' | grep -v '^[a-z]*://' || true)
 
   # Paths
   while IFS= read -r path; do
     [ -e "$path" ] || wrong "$document: \`$path\` does not exist"
-  done < <(grep -oE '`(\.ci|apps|benchmarks|cmake|doc|include|src|test)/[A-Za-z0-9_./-]*[ `]' "$document" | tr -d '` ' || true)
+  done < <(grep -oE '`(\.ci|apps|benchmarks|cmake|doc|include|src|test)/[A-Za-z0-9_./-]*[ `]' "$document" |
+    tr -d '` ' || true)
 
   # Commands
   while IFS= read -r line; do
@@ -50,17 +53,23 @@ for document in "${documents[@]}"; do
           esac
         done
         ;;
-      */*) [ -x "$command" ] || wrong "$document: there is no $command to be run" ;;
+      */*) [ -x "$command" ] || wrong "$document: there is no script $command" ;;
       "" | cmake | ctest) ;;
-      *) wrong "$document: what is the command $command?" ;;
+      *) wrong "$document: unknown command $command" ;;
     esac
   done < <(awk '/^```sh$/ { inside = 1; next } /^```/ { inside = 0 } inside' "$document")
+
+  # Width
+  while IFS= read -r line; do
+    wrong "$document: more than 120 columns: $line"
+  done < <(awk '/^```/ { inside = !inside } { print inside || /^\|/ ? "" : $0 }' "$document" |
+    LC_ALL=C.UTF-8 grep -nE '^.{121}' || true)
 
   # Quoted code
   for file in $(sed -n 's/^<!-- \(examples\/[^ ]*\) -->$/\1/p' "$document" | sort -u); do
     missing=$(awk -v mark="<!-- $file -->" '$0 == mark { found = 1; next }
       found && /^```/ { inside = !inside; if (!inside) found = 0; next } inside' "$document" | in_order "$folder/$file")
-    [ -z "$missing" ] || wrong "$document: not in this place in $file: $missing"
+    [ -z "$missing" ] || wrong "$document: not in this order in $file: $missing"
   done
 done
 
@@ -71,10 +80,11 @@ for document in README.md doc/migration.md; do
   for side in "before -" "after +"; do
     read -r name sign <<<"$side"
     missing=$(grep "^[$sign ]" "$scratch/diff" | cut -c2- | in_order "doc/examples/$name.cpp")
-    [ -z "$missing" ] || wrong "$document: the diff's line is not in this place in $name.cpp: $missing"
+    [ -z "$missing" ] || wrong "$document: the diff's line is not in this order in $name.cpp: $missing"
   done
   grep '^-' "$scratch/diff" | cut -c2- | while IFS= read -r line; do
-    [ -n "$(in_order doc/examples/after.cpp <<<"$line")" ] || wrong "$document: the diff's line is still in after.cpp: $line"
+    [ -n "$(in_order doc/examples/after.cpp <<<"$line")" ] ||
+      wrong "$document: the diff's line is still in after.cpp: $line"
   done
 done
 

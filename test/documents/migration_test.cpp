@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// What doc/migration.md says about PCL itself.
+// The statements of doc/migration.md about PCL.
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -126,11 +126,11 @@ void expectPclsAlone(const Tree::Ptr& tree) {
                           [](const auto& a, const auto& b) { return a.indices == b.indices; }));
 }
 
-TEST(Migration, PclsClustersOfAnInexactKdTreeAreOthers) {
+TEST(Migration, PclsClustersDifferWithAnInexactKdTree) {
   expectPclsAlone(treeWithEpsilon(1.0F));
 }
 
-TEST(Migration, PclsClustersOfAnotherMetricAreOthers) {
+TEST(Migration, PclsClustersDifferWithAnotherMetric) {
   expectPclsAlone(treeWithScales({1.0F, 1.0F, 0.1F}));
   expectPclsAlone(treeOfPlan());
 }
@@ -146,7 +146,7 @@ void giveToFunctions(const Tree::Ptr& tree) {
   pcl::extractLiscoClusters(cloud, pcl::Indices(), tree, 0.4F, clusters);
 }
 
-/// A body run in a process of its own, where no warning has been given yet, prints one line for each text.
+/// Runs a body in a new process, where no warning has been given yet, and expects one line for each text.
 void expectWarnings(void (*body)(), const std::vector<std::string>& texts) {
   std::string pattern;
   for (const std::string& text : texts) pattern += "[^\n]*" + text + "[^\n]*\n";
@@ -154,7 +154,7 @@ void expectWarnings(void (*body)(), const std::vector<std::string>& texts) {
     body();
     std::exit(0);
   };
-  testing::GTEST_FLAG(death_test_style) = "threadsafe";  // a new process, not a copy of this one
+  testing::GTEST_FLAG(death_test_style) = "threadsafe";  // a new process, not a fork
   EXPECT_EXIT(run(), testing::ExitedWithCode(0), "^" + pattern + "[^\n]*$");
 }
 

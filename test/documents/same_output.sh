@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# same_output.sh PROGRAM PROGRAM: both print the same, and something.
+# same_output.sh PROGRAM PROGRAM: both print the same, at least one line.
 set -euo pipefail
 first=$("$1")
 second=$("$2")

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tutorial.sh LISCO_SIMULATE CLUSTER_EXTRACTION: what doc/tutorial.md says, in an empty folder.
+# tutorial.sh LISCO_SIMULATE CLUSTER_EXTRACTION: the commands of doc/tutorial.md, in an empty folder.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

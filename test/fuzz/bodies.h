@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// What is tried on any bytes, by a fuzzer or by a test. Each body throws a Finding if something does not hold.
+// Checks of any bytes, for a fuzzer or a test. Each body throws a Finding if something does not hold.
 //
 //   cmake -S . -B build/fuzz -DCMAKE_CXX_COMPILER=clang++ -DLISCO_BUILD_FUZZERS=ON && cmake --build build/fuzz
 //   build/fuzz/test/fuzz/lisco_fuzz_engine new_inputs test/fuzz/corpus/engine
@@ -13,7 +13,7 @@
 
 namespace lisco_test {
 
-/// Something that must never be.
+/// A violated property.
 struct Finding : std::logic_error {
   using std::logic_error::logic_error;
 };
@@ -23,13 +23,13 @@ inline void hold(bool what_must_be, const char* what) {
   if (!what_must_be) throw Finding(what);
 }
 
-/// A scan, its setting and how it is fed; against the oracle. So are sliding windows and endless streams.
+/// A scan, its setting and its portions, against the oracle; sliding windows and endless streams as well.
 void fuzzEngine(const std::uint8_t* data, std::size_t size);
 
-/// Any calls of the clusterers in any order, wrong ones too.
+/// Calls of the clusterers in any order, wrong ones too.
 void fuzzStream(const std::uint8_t* data, std::size_t size);
 
-/// A scan's file, of which the first byte tells the format.
+/// A scan's file, whose first byte gives the format.
 void fuzzReaders(const std::uint8_t* data, std::size_t size);
 
 /// Packets of a sensor, or a capture of them.

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-/// Chooses one of the levels of vector instructions; to change it takes as long as a scan.
+/// Uses one of the levels of vector instructions; changing it takes as long as a scan.
 void useLevel(Input& input) {
   static std::size_t in_use = levels().size();
   const std::size_t level = input.below(levels().size());
@@ -39,9 +39,9 @@ const std::vector<std::uint32_t>& subclustersOf(Clusterer& clusterer, std::size_
   std::size_t returns = 0;
   clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster) {
     hold(count > 0, "a run of no returns");
-    hold(subcluster < clusterer.subclusterCount(), "a subcluster that is none");
+    hold(subcluster < clusterer.subclusterCount(), "an unknown subcluster");
     for (std::size_t i = 0; i < count; ++i) {
-      hold(source_indices[i] < points, "a source index that nobody gave");
+      hold(source_indices[i] < points, "an unknown source index");
       hold(subcluster_of[source_indices[i]] == kNone, "a return comes twice");
       subcluster_of[source_indices[i]] = subcluster;
     }
@@ -81,7 +81,7 @@ void clusterScan(Input& input, float unit) {
   constexpr std::array<int, 8> kSteps{512, 512, 512, 0, 0, 600, 600, 2048};
   constexpr std::array<float, 5> kElevationSteps{0.5F, 0.3F, 0.1F, 0.02F, 0.002F};
   constexpr std::array<std::size_t, 8> kBlocks{64, 64, 64, 16, 16, 3, 1, 40};
-  static std::array<lisco::ColumnClusterer, 4> clusterers;  // what is left in them must not matter
+  static std::array<lisco::ColumnClusterer, 4> clusterers;  // each input starts afresh
   static Shape shape;
 
   lisco::Parameters parameters;
@@ -96,20 +96,20 @@ void clusterScan(Input& input, float unit) {
   if ((flags & 32U) != 0) parameters.sensor.roughness = 2 * unit;
   parameters.threads = 1 + flags / 64 % 3;
   parameters.block_columns = input.oneOf(kBlocks);
-  const std::size_t lasers = 1 + input.below(Shape::kMostLasers);
+  const std::size_t lasers = 1 + input.below(Shape::kMaxLasers);
   // Few columns where each costs much.
-  const std::size_t most_columns = parameters.block_columns < 16         ? 96
-                                   : parameters.sensor.steps_per_turn == 0 ? 160
-                                                                         : Shape::kMostColumns;
+  const std::size_t max_columns = parameters.block_columns < 16           ? 96
+                                  : parameters.sensor.steps_per_turn == 0 ? 160
+                                                                          : Shape::kMaxColumns;
   parameters.tolerance = toleranceFrom(input, unit);
   useLevel(input);
   const unsigned portions = input.byte();
   lisco::SensorHints shape_hints = parameters.sensor;
   if (!turns_as_told) shape_hints.clockwise = !shape_hints.clockwise;
-  shape.read(input, unit, lasers, most_columns, parameters.sensor.steps_per_turn == 600 ? 600 : 512, shape_hints);
+  shape.read(input, unit, lasers, max_columns, parameters.sensor.steps_per_turn == 600 ? 600 : 512, shape_hints);
   std::size_t columns = shape.columns();
-  // So many cells that threads share them.
-  if (parameters.threads > 1 && lasers == Shape::kMostLasers && parameters.block_columns == 64) columns = 1040;
+  // Enough cells for several threads.
+  if (parameters.threads > 1 && lasers == Shape::kMaxLasers && parameters.block_columns == 64) columns = 1040;
 
   const std::size_t which = steps / 8 % 4 == 3 ? steps / 32 % 4 : parameters.sensor.steps_per_turn == 0 ? 0 : 1;
   lisco::ColumnClusterer& clusterer =
@@ -117,15 +117,15 @@ void clusterScan(Input& input, float unit) {
   clusterer.begin(parameters);
   constexpr std::array<std::size_t, 8> kPortions{10000, 10000, 64, 65, 17, 7, 1, 200};
   const std::size_t portion = kPortions[portions % 8];
-  const std::size_t look_at = portions / 8 * 4;  // and there
-  bool looked = (portions / 8) % 2 == 0;
+  const std::size_t query_at = portions / 8 * 4;  // columns
+  bool queried = (portions / 8) % 2 == 0;
   for (std::size_t first = 0; first < columns;) {
     const std::size_t count = std::min(portion, columns - first);
     clusterer.addColumns(count, lasers,
                          [&](std::size_t laser, std::size_t column) { return shape.at(laser, first + column); });
     first += count;
-    if (looked || first < look_at || first >= columns) continue;
-    looked = true;
+    if (queried || first < query_at || first >= columns) continue;
+    queried = true;
     holdExactUpTo(clusterer, shape, first, parameters.tolerance);
   }
   holdExactUpTo(clusterer, shape, columns, parameters.tolerance);
@@ -143,7 +143,7 @@ void clusterWindows(Input& input, float unit) {
   shape.read(input, unit, lasers, 192, 512, {});
   const std::size_t columns = std::min<std::size_t>(shape.columns() + window, 192);
   clusterer.begin({tolerance, window, hop, lasers});
-  std::array<lisco::Return, Shape::kMostLasers> cells;
+  std::array<lisco::Return, Shape::kMaxLasers> cells;
   for (std::size_t column = 0; column < columns; ++column) {
     for (std::size_t laser = 0; laser < lasers; ++laser) cells[laser] = shape.at(laser, column);
     const bool ends = clusterer.addColumn(cells.data(), lasers);

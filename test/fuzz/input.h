@@ -9,7 +9,7 @@
 
 namespace lisco_test {
 
-/// Bytes that decide one thing after the other; zeros when they are used up.
+/// Bytes that are turned into decisions; zeros when they are used up.
 class Input {
  public:
   Input(const std::uint8_t* data, std::size_t size) : data_(data), left_(size) {}
@@ -26,7 +26,7 @@ class Input {
   const Item& oneOf(const std::array<Item, count>& choices) {
     return choices[byte() % count];
   }
-  /// Any float at all.
+  /// Any float, finite or not.
   float rawFloat() {
     std::uint32_t bits = 0;
     for (int i = 0; i < 4; ++i) bits = bits << 8 | byte();

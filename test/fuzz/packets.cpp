@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kDataBytes = 1206;
 
-/// The sensors; the HDL-64E as one might be calibrated.
+/// The sensors; the HDL-64E with a plausible calibration.
 const std::array<lisco_apps::SensorModel, 4>& models() {
   static const std::array<lisco_apps::SensorModel, 4> all = [] {
     lisco_apps::SensorModel hdl64e{"hdl64e", {}, {0xEEFF, 0xDDFF}, 1, 48., 0.002, {}};
@@ -83,19 +83,19 @@ void decodePackets(Input& input, const lisco_apps::SensorModel& model) {
       bytes.shrink_to_fit();
     } else if (how % 16 != 1 || bytes.size() != kDataBytes) {
       makePacket(input, model, bytes);
-    }  // or the last one once more
+    }  // or a repetition of the last one
     ++packets;
     const auto kind = decoder.decode({bytes.data(), bytes.size(), 0}, [&](const lisco_apps::Column& column) {
       ++columns;
       hold(column.cells.size() == model.lasers.size(), "the cells of a column");
-      hold(column.azimuth >= 0 && column.azimuth < 360, "an azimuth that is none");
-      hold(std::isfinite(column.time_us) && column.time_us >= 0, "a time that is none");
+      hold(column.azimuth >= 0 && column.azimuth < 360, "an invalid azimuth");
+      hold(std::isfinite(column.time_us) && column.time_us >= 0, "an invalid time");
       for (const lisco_apps::Cell& cell : column.cells) {
         const bool all = std::isfinite(cell.x) && std::isfinite(cell.y) && std::isfinite(cell.z) &&
                          cell.intensity >= 0 && cell.intensity <= 255;
         const bool none = std::isnan(cell.x) && std::isnan(cell.y) && std::isnan(cell.z) && std::isnan(cell.intensity);
         hold(all || none, "half a return");
-        hold(none || std::hypot(cell.x, cell.y, cell.z) < 300, "a return that no sensor can measure");
+        hold(none || std::hypot(cell.x, cell.y, cell.z) < 300, "an implausible return");
       }
       cutter.startsRotation(column.azimuth, column.after_break);
     });
@@ -103,8 +103,8 @@ void decodePackets(Input& input, const lisco_apps::SensorModel& model) {
     const lisco_apps::Decoder::Counts& counts = decoder.counts();
     hold(counts.data + counts.late + counts.position + counts.foreign == packets, "the number of packets");
     hold(counts.columns == columns, "the number of columns");
-    hold(decoder.step() >= 0 && decoder.step() < 2.56, "a step that no sensor makes");
-    hold(std::isfinite(decoder.turnUs()), "a number that is none");
+    hold(decoder.step() >= 0 && decoder.step() < 2.56, "an implausible step");
+    hold(std::isfinite(decoder.turnUs()), "an invalid number");
     hold(decoder.packetPeriodUs() > 0, "the period of packets");
   }
 }

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# run.sh BODY RUNS [SEED]: tries so many inputs (default seed: 1) on engine, stream, readers or packets, beginning with those of
-# test/fuzz/corpus. Prints how many were tried; stops at the first that breaks something and says where it is kept.
-# LISCO_FUZZER_SANITIZERS=address,undefined watches over memory as well, and takes several times as long. Needs clang.
+# run.sh BODY RUNS [SEED]: runs that many inputs (default seed: 1) on engine, stream, readers or packets, beginning with
+# those of test/fuzz/corpus. Prints their number; stops at the first that fails and prints its file.
+# LISCO_FUZZER_SANITIZERS=address,undefined checks memory as well, and takes several times as long. Needs clang.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 . "$root/cmake/script_tools.sh"
@@ -18,7 +18,7 @@ build_quietly "$root" "$build" --target "lisco_fuzz_$body" -- -DCMAKE_BUILD_TYPE
 found=$build/found/$body
 log=$build/$body.$seed.log
 mkdir -p "$found"
-# Threads that wait must not take the processor from those that work; inputs may be long from the beginning on.
+# Waiting threads yield the processor; inputs may be long from the beginning on.
 if ! OMP_WAIT_POLICY=passive KMP_BLOCKTIME=0 "$build/test/fuzz/lisco_fuzz_$body" -runs="$runs" -seed="$seed" \
   -entropic=0 -len_control=0 -timeout=60 -rss_limit_mb=4096 -print_final_stats=1 -artifact_prefix="$build/$body-" \
   "$found" "$root/test/fuzz/corpus/$body" >"$log" 2>&1; then

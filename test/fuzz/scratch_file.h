@@ -12,7 +12,7 @@
 
 namespace lisco_test {
 
-/// A file of this process, in memory where that is possible; gone with it.
+/// A file of this process, in memory where possible; removed with the object.
 class ScratchFile {
  public:
   explicit ScratchFile(const std::string& ending) {

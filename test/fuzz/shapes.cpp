@@ -52,14 +52,14 @@ void Shape::read(Input& input, float unit, std::size_t lasers, std::size_t most_
                                              14, 15, 16, 17, 31, 32, 33, 47, 48, 63, 64, 128, 255, 509, -1, -2};
   constexpr std::array<double, 12> kOffsets{0, 0, 0, 0, 0.25, -0.5, 0.74, -0.76, 1, -3, 17, 256};
   const double step = 2 * kPi / static_cast<double>(steps);
-  cells_.assign(lasers * kMostColumns, kEmpty);
+  cells_.assign(lasers * kMaxColumns, kEmpty);
   points_.clear();
   places_.clear();
   lasers_ = lasers;
   const double start = static_cast<double>(input.byte()) * (kPi / 128);
   std::size_t column = 0;
   columns_ = 1;
-  while (input.left() >= 4 && points_.size() < kMostPoints) {
+  while (input.left() >= 4 && points_.size() < kMaxPoints) {
     const unsigned where = input.byte();
     const unsigned how = input.byte();
     const unsigned range = input.byte();
@@ -67,7 +67,7 @@ void Shape::read(Input& input, float unit, std::size_t lasers, std::size_t most_
     const std::size_t laser = where % 8 % lasers;
     const std::int64_t next = static_cast<std::int64_t>(column) + kColumnSteps[where / 8];
     column = static_cast<std::size_t>(std::clamp<std::int64_t>(next, 0, static_cast<std::int64_t>(most_columns) - 1));
-    std::uint8_t& cell = cells_[laser * kMostColumns + column];
+    std::uint8_t& cell = cells_[laser * kMaxColumns + column];
     if (cell != kEmpty) continue;
     Point point{};
     const auto along = [unit](unsigned number) { return (static_cast<float>(number) - 128.0F) * unit / 2.0F; };
@@ -122,7 +122,7 @@ EndlessStream endlessStreamFrom(Input& input) {
   constexpr std::array<double, 8> kStarts{0, -3, 1000.5, 0.125, 1e9, 3.4e10 + 0.125, 999999990000, -1e12};
   constexpr std::array<double, 8> kColumnsPerTurn{8, 12, 16, 20, 32, 32, 64, 128};
   constexpr std::array<double, 16> kSteps{0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 2, 3, 4, 16, 40, 200};
-  // Distances from the sensor never equal the tolerance, at which what a column can reach leaps.
+  // Distances from the sensor never equal the tolerance, where the reach of a return jumps.
   parameters.tolerance = 0.125F * static_cast<float>(1 + input.below(16));
   parameters.stagger = lisco::EndlessParameters::kMaxStagger * static_cast<double>(input.byte()) / 256;
   const unsigned flags = input.byte();
@@ -133,8 +133,8 @@ EndlessStream endlessStreamFrom(Input& input) {
   double position = kStarts[flags / 32 % 8];
   const double per_turn = input.oneOf(kColumnsPerTurn);
   std::uint32_t number = 0;
-  constexpr std::size_t kMostPoints = 64;
-  while (input.left() >= 3 && number < kMostPoints) {
+  constexpr std::size_t kMaxPoints = 64;
+  while (input.left() >= 3 && number < kMaxPoints) {
     const unsigned where = input.byte();
     const unsigned range = input.byte();
     const unsigned how = input.byte();

@@ -17,29 +17,29 @@
 
 namespace lisco_test {
 
-/// A scan of few returns in a grid of cells. Distances often equal the tolerance, or nearly.
+/// A scan of few returns in a grid of cells. Many distances are at or near the tolerance.
 class Shape {
  public:
-  static constexpr std::size_t kMostLasers = 8;
-  static constexpr std::size_t kMostColumns = 1280;
-  static constexpr std::size_t kMostPoints = 64;
+  static constexpr std::size_t kMaxLasers = 8;
+  static constexpr std::size_t kMaxColumns = 1280;
+  static constexpr std::size_t kMaxPoints = 64;
 
-  /// \param unit what the tolerance is, or nearly
-  /// \param most_columns up to kMostColumns
+  /// \param unit the tolerance, or nearly
+  /// \param max_columns up to kMaxColumns
   /// \param steps of a turn
-  void read(Input& input, float unit, std::size_t lasers, std::size_t most_columns, std::size_t steps,
+  void read(Input& input, float unit, std::size_t lasers, std::size_t max_columns, std::size_t steps,
             const lisco::SensorHints& hints);
 
   std::size_t lasers() const { return lasers_; }
   std::size_t columns() const { return columns_; }
   /// The return's source index is its number among the points.
   lisco::Return at(std::size_t laser, std::size_t column) const {
-    const std::uint8_t number = cells_[laser * kMostColumns + column];
+    const std::uint8_t number = cells_[laser * kMaxColumns + column];
     if (number == kEmpty) return lisco::kNoReturn;
     const Point& point = points_[number];
     return {point.x, point.y, point.z, number};
   }
-  /// Those of columns first..end-1; the others are no returns.
+  /// The points of columns first..end-1; the others are no returns.
   const std::vector<Point>& pointsIn(std::size_t first, std::size_t end);
   std::size_t pointCount() const { return points_.size(); }
   std::size_t laserOf(std::size_t point) const { return places_[point].laser; }
@@ -57,13 +57,13 @@ class Shape {
   std::vector<Place> places_;
 };
 
-/// Any tolerance; most often one around which distances lie.
+/// Any tolerance; most often one near the distances.
 float toleranceFrom(Input& input, float unit);
 
-/// A stream whose returns are either where their columns look, or clearly astray.
+/// A stream whose returns are either at the azimuth of their columns, or clearly outliers.
 EndlessStream endlessStreamFrom(Input& input);
 
-/// Whether these are the clusters of the points, whatever their order.
+/// Whether these are the clusters of the points, in any order.
 /// \param subcluster_of of each point
 /// \param size_of callable as std::size_t (std::uint32_t subcluster)
 template <typename SizeOf>

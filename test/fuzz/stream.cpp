@@ -20,8 +20,8 @@ namespace lisco_test {
 namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
-constexpr std::size_t kMostPoints = 96;  // of one clusterer since its beginning
-constexpr std::size_t kMostLasers = 6;
+constexpr std::size_t kMaxPoints = 96;  // of one clusterer since its beginning
+constexpr std::size_t kMaxLasers = 6;
 
 /// \throws Finding unless the call throws an Error
 template <typename Error, typename Call>
@@ -40,7 +40,7 @@ float coordinateFrom(Input& input) {
   return (static_cast<float>(how) - 128.0F) / 8.0F;
 }
 
-/// The returns given since the beginning, and cells that hold them.
+/// The returns added since the beginning, and cells that hold them.
 struct Given {
   struct Place {
     std::size_t laser, column;
@@ -61,7 +61,7 @@ struct Given {
     cells.clear();
     for (std::size_t laser = 0; laser < lasers; ++laser) {
       cells.push_back(lisco::kNoReturn);
-      if (input.chance() || points.size() == kMostPoints) continue;
+      if (input.chance() || points.size() == kMaxPoints) continue;
       const Point point{coordinateFrom(input), coordinateFrom(input), coordinateFrom(input)};
       cells.back() = {point.x, point.y, point.z, static_cast<std::uint32_t>(points.size())};
       points.push_back(point);
@@ -70,7 +70,7 @@ struct Given {
     ++columns;
   }
 
-  /// Those of columns first..end-1; the others are no returns.
+  /// The points of columns first..end-1; the others are no returns.
   std::vector<Point> pointsIn(std::size_t first, std::size_t end) const {
     std::vector<Point> some = points;
     for (std::size_t i = 0; i < some.size(); ++i)
@@ -98,7 +98,7 @@ std::vector<std::uint32_t> holdExact(Clusterer& clusterer, const std::vector<Poi
   return subcluster_of;
 }
 
-/// A clusterer, and what it should know.
+/// A clusterer and its expected state.
 class Rotations {
  public:
   void act(Input& input) {
@@ -116,14 +116,14 @@ class Rotations {
       case 3:
         return addColumns(input, what / 8);
       case 4:
-        return look();
+        return query();
       default:
         return addColumn(input);
     }
   }
 
   void end() {
-    if (begun_) look();
+    if (begun_) query();
   }
 
  private:
@@ -137,11 +137,12 @@ class Rotations {
     parameters.sensor.elevation_step = (flags & 16U) != 0 ? input.rawFloat() : 0.3F;
     if ((flags & 32U) != 0) parameters.sensor.roughness = input.rawFloat();
     if ((flags & 64U) != 0) parameters.sensor.far_distance = input.rawFloat();
-    if ((flags & 128U) != 0) parameters.sensor.origin = {input.rawFloat(), coordinateFrom(input), coordinateFrom(input)};
+    if ((flags & 128U) != 0)
+      parameters.sensor.origin = {input.rawFloat(), coordinateFrom(input), coordinateFrom(input)};
     parameters.block_columns = input.byte();
     const unsigned more = input.byte();
     parameters.threads = more % 4;
-    parameters.lasers = more / 4 % 2 != 0 ? kMostLasers : 0;
+    parameters.lasers = more / 4 % 2 != 0 ? kMaxLasers : 0;
     parameters.expected_returns = more / 8;
     clusterer_->begin(parameters);
     parameters_ = parameters;
@@ -150,22 +151,22 @@ class Rotations {
   }
 
   void addColumn(Input& input) {
-    const std::size_t lasers = input.below(kMostLasers + 2);
+    const std::size_t lasers = input.below(kMaxLasers + 2);
     if (!begun_)
       return holdThrows<std::logic_error>([&] { clusterer_->addColumn(nullptr, 0); }, "a column before begin ()");
-    if (lasers > kMostLasers && parameters_.lasers != 0) {
-      std::array<lisco::Return, kMostLasers + 1> cells{};
+    if (lasers > kMaxLasers && parameters_.lasers != 0) {
+      std::array<lisco::Return, kMaxLasers + 1> cells{};
       return holdThrows<std::invalid_argument>([&] { clusterer_->addColumn(cells.data(), lasers); }, "too many cells");
     }
     given_.addColumn(input, lasers);
     clusterer_->addColumn(given_.cells.data(), lasers);
   }
 
-  /// Adds some columns at once, of which the first ones hold something.
+  /// Adds some columns at once, the first of which hold returns.
   void addColumns(Input& input, unsigned how) {
     constexpr std::array<std::size_t, 8> kCounts{0, 1, 2, 15, 16, 64, 100, 1400};
     const std::size_t count = kCounts[how % 8];
-    const std::size_t lasers = how / 8 % 4 == 0 ? input.below(kMostLasers + 1) : kMostLasers;
+    const std::size_t lasers = how / 8 % 4 == 0 ? input.below(kMaxLasers + 1) : kMaxLasers;
     if (!begun_ || given_.columns + count > 6000) return;
     columns_.clear();
     for (std::size_t column = 0; column < std::min<std::size_t>(count, 4); ++column) {
@@ -178,14 +179,14 @@ class Rotations {
     });
   }
 
-  void look() {
+  void query() {
     clusterer_->update();
     if (!begun_) return;
     const std::vector<std::uint32_t> subcluster_of = holdExact(*clusterer_, given_.points, parameters_.tolerance);
     for (std::size_t i = 0; i < given_.points.size(); ++i)
       hold(clusterer_->subclusterAt(given_.places[i].laser, given_.places[i].column) == subcluster_of[i],
            "the subcluster at a place");
-    hold(clusterer_->subclusterAt(kMostLasers + 3, 0) == kNone, "the subcluster of a laser that is none");
+    hold(clusterer_->subclusterAt(kMaxLasers + 3, 0) == kNone, "the subcluster of an unknown laser");
     hold(clusterer_->subclusterAt(0, given_.columns) == kNone, "the subcluster of a column to come");
   }
 
@@ -222,7 +223,7 @@ class Windows {
     const unsigned sizes = input.byte();
     parameters.hop_columns = sizes % 8 == 7 ? 65 : sizes % 8;
     parameters.window_columns = parameters.hop_columns * (sizes / 8 % 16) + sizes / 128;
-    parameters.lasers = kMostLasers;
+    parameters.lasers = kMaxLasers;
     const std::size_t hop = parameters.hop_columns;
     if (hop == 0 || parameters.window_columns < hop || parameters.window_columns % hop != 0)
       return holdThrows<std::invalid_argument>([&] { clusterer_.begin(parameters); }, "a window that is none");
@@ -233,11 +234,11 @@ class Windows {
   }
 
   void addColumn(Input& input) {
-    const std::size_t lasers = input.below(kMostLasers + 2);
+    const std::size_t lasers = input.below(kMaxLasers + 2);
     if (parameters_.hop_columns == 0)
       return holdThrows<std::logic_error>([&] { clusterer_.addColumn(nullptr, 0); }, "a column before begin ()");
-    if (lasers > kMostLasers) {
-      std::array<lisco::Return, kMostLasers + 1> cells{};
+    if (lasers > kMaxLasers) {
+      std::array<lisco::Return, kMaxLasers + 1> cells{};
       return holdThrows<std::invalid_argument>([&] { clusterer_.addColumn(cells.data(), lasers); }, "too many cells");
     }
     given_.addColumn(input, lasers);
@@ -260,7 +261,7 @@ class Windows {
   std::size_t end_of_window_ = 0, columns_of_window_ = 0;
 };
 
-/// Each return is delivered once, and not later than at the end.
+/// Each return is delivered once, by finish () at the latest.
 class Endless {
  public:
   void act(Input& input) {
@@ -289,7 +290,7 @@ class Endless {
     parameters.tolerance = toleranceFrom(input, 0.5F);
     const unsigned flags = input.byte();
     parameters.clockwise = (flags & 1U) != 0;
-    parameters.lasers = kMostLasers;
+    parameters.lasers = kMaxLasers;
     parameters.columns_per_turn = (flags & 2U) != 0 ? 24 : 0;
     if ((flags & 4U) != 0) parameters.start_azimuth = static_cast<double>(coordinateFrom(input));
     if ((flags & 8U) != 0) parameters.stagger = static_cast<double>(input.rawFloat());
@@ -338,12 +339,12 @@ class Endless {
                                             0.010, 0.5,   0.875, 1,      1.125,  2,       3.25,    -0.125};
     const double position = how / 16 == 15 && input.chance() ? static_cast<double>(input.rawFloat())
                                                              : position_.value_or(0) + kSteps[how / 16];
-    const std::size_t lasers = input.below(kMostLasers + 2);
+    const std::size_t lasers = input.below(kMaxLasers + 2);
     if (!begun_)
       return holdThrows<std::logic_error>([&] { clusterer_.addColumn(nullptr, 0, position); },
                                           "a column before begin ()");
-    if (lasers > kMostLasers || !(std::fabs(position) <= 1e12) || (position_ && position < *position_)) {
-      std::array<lisco::Return, kMostLasers + 1> cells{};
+    if (lasers > kMaxLasers || !(std::fabs(position) <= 1e12) || (position_ && position < *position_)) {
+      std::array<lisco::Return, kMaxLasers + 1> cells{};
       return holdThrows<std::invalid_argument>([&] { clusterer_.addColumn(cells.data(), lasers, position); },
                                                "a column that is wrong");
     }
@@ -359,7 +360,7 @@ class Endless {
       return holdThrows<std::logic_error>([&] { clusterer_.addColumn(nullptr, 0); }, "a column without a position");
     const double position = clusterer_.nextPosition();
     if (std::fabs(position) > 1e12) return;
-    const std::size_t lasers = input.below(kMostLasers + 1);
+    const std::size_t lasers = input.below(kMaxLasers + 1);
     makeColumn(input, lasers);
     position_ = position;
     clusterer_.addColumn(given_.cells.data(), lasers);

@@ -1,32 +1,27 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The sizes of the public types and the symbols that the libraries give are those of abi_list.txt. Not listed: the
-# states behind the public classes' pointers, lambdas, and what libstdc++ makes of its templates. A name of
-# many point types is listed once, with the number of its symbols (two for a constructor).
-# A difference breaks programs that were linked before, unless only symbols are added: raise the minor version then, and
-# write the list anew: cmake --build <build> --target lisco_abi_list
+# The sizes of the public types and the symbols of the libraries are those of abi_list.txt. Not listed: the states
+# behind the public classes' pointers, lambdas, and libstdc++'s instances of templates. A name of many point types is
+# listed once, with the number of its symbols (two for a constructor).
+# A difference breaks programs that were linked before, unless only symbols are added: raise the minor version, and
+# rewrite the list: cmake --build <build> --target lisco_abi_list
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK_DIR})
 file(MAKE_DIRECTORY ${WORK_DIR})
 
-set(libraries ${PREFIX}/${LIBRARY_DIR})
-set(ENV{PKG_CONFIG_PATH} ${libraries}/pkgconfig:${PCL_LIBRARY_DIR}/pkgconfig)
-run(pkg-config --cflags --libs lisco)
-separate_arguments(options UNIX_COMMAND "${output}")
-run(${CXX_COMPILER} ${SOURCE_DIR}/abi/sizes.cpp -o ${WORK_DIR}/sizes ${options} -Wl,-rpath,${libraries})
+use_shared_libraries()
+run(${CXX_COMPILER} ${SOURCE_DIR}/abi/sizes.cpp -o ${WORK_DIR}/sizes ${options})
 run(${WORK_DIR}/sizes)
 set(list "${output}")
 
 foreach(library lisco_core lisco)
-  run(nm -DC --defined-only --format=posix ${libraries}/lib${library}.so)
-  string(STRIP "${output}" output)
-  string(REGEX REPLACE "\n" ";" lines "${output}")
-  list(TRANSFORM lines REPLACE " [A-Za-z] [0-9a-f]+( [0-9a-f]+)?$" "")
+  read_symbols(${library})
+  list(TRANSFORM symbols REPLACE " [A-Za-z] [0-9a-f]+( [0-9a-f]+)?$" "")
   set(ours "^((typeinfo name|typeinfo|vtable) for |void |bool )?(lisco::|pcl::(detail::)?Lisco|pcl::[a-z]+Lisco)")
-  list(FILTER lines INCLUDE REGEX "${ours}")
+  list(FILTER symbols INCLUDE REGEX "${ours}")
   set(hidden "::(Rotation|Window|Stream|State)(::|$)|pcl::detail::Lisco(ReceivedColumns|ColumnStore)")
-  list(FILTER lines EXCLUDE REGEX "lambda|${hidden}")
+  list(FILTER symbols EXCLUDE REGEX "lambda|${hidden}")
   set(names)
-  foreach(line IN LISTS lines)
+  foreach(line IN LISTS symbols)
     string(REPLACE "pcl::PointIndices" "pcl::Indices_" line "${line}")
     if(line MATCHES "<(pcl::(Interest)?Point[A-Za-z]*)>")
       string(REGEX REPLACE "${CMAKE_MATCH_1}([^A-Za-z])" "PointT\\1" line "${line}")
@@ -59,6 +54,6 @@ file(READ ${file} expected)
 if(NOT list STREQUAL expected)
   file(WRITE ${WORK_DIR}/abi_list.txt "${list}")
   execute_process(COMMAND diff -U0 ${file} ${WORK_DIR}/abi_list.txt OUTPUT_VARIABLE difference)
-  message(FATAL_ERROR "The binary interface is not that of ${file}:\n${difference}"
-    "If that is meant: cmake --build <build> --target lisco_abi_list")
+  message(FATAL_ERROR "The binary interface differs from ${file}:\n${difference}"
+    "If that is intended: cmake --build <build> --target lisco_abi_list")
 endif()

@@ -7,7 +7,7 @@ build(${SOURCE_DIR}/consumer ${WORK_DIR}/build -DCMAKE_PREFIX_PATH=${PREFIX})
 run(${WORK_DIR}/build/with_pcl)
 run(${WORK_DIR}/build/without_pcl)
 
-# Where there is no PCL, and for a shared library nothing else either.
+# Without PCL, and for a shared library without any other package.
 set(absent -DCMAKE_DISABLE_FIND_PACKAGE_PCL=ON -DCMAKE_DISABLE_FIND_PACKAGE_OpenMP=ON)
 if(TYPE STREQUAL SHARED_LIBRARY)
   list(APPEND absent -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON)
@@ -15,7 +15,7 @@ endif()
 build(${SOURCE_DIR}/consumer ${WORK_DIR}/build_core -DCMAKE_PREFIX_PATH=${PREFIX} -DCOMPONENTS=core ${absent})
 run(${WORK_DIR}/build_core/without_pcl)
 
-# pkg-config, whose flags name the standard too
+# By pkg-config, whose flags set the standard.
 file(GLOB_RECURSE files ${PREFIX}/*.pc)
 list(GET files 0 file)
 get_filename_component(folder ${file} DIRECTORY)
@@ -33,7 +33,7 @@ foreach(pair with_pcl:lisco without_pcl:lisco-core)
   separate_arguments(link_options UNIX_COMMAND "${output}")
   if(package STREQUAL lisco-core AND "${compile_options}${link_options}" MATCHES "pcl|hwy" AND
      TYPE STREQUAL SHARED_LIBRARY)
-    message(FATAL_ERROR "lisco-core asks for more than itself: ${compile_options} ${link_options}")
+    message(FATAL_ERROR "lisco-core requires other packages: ${compile_options} ${link_options}")
   endif()
   run(${CXX_COMPILER} -std=c++14 ${flags} ${compile_options} ${SOURCE_DIR}/consumer/${program}.cpp
     -o ${WORK_DIR}/${program} ${link_options})

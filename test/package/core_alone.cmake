@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The engine alone, within another project and installed, where there is no PCL.
+# The engine alone, within another project and installed, without PCL.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK_DIR})
 set(WITHOUT_PCL -DCMAKE_DISABLE_FIND_PACKAGE_PCL=ON -DLISCO_BUILD_PCL=OFF)

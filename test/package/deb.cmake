@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Makes Debian packages; looks at what they say, installs them into an empty folder, runs the programs there, removes them.
+# Makes Debian packages, checks their fields, installs them into an empty folder, runs the programs there, and removes
+# them.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK_DIR})
 file(MAKE_DIRECTORY ${WORK_DIR})
@@ -22,21 +23,21 @@ foreach(package IN LISTS packages)
   expect("${output}" "^${VERSION}(-|\n)" "version of ${package}")
   run(dpkg-deb -f ${file} Depends)
   foreach(needed IN LISTS depends_${package})
-    expect(", ${output}" ", ${needed}" "what ${package} depends on")
+    expect(", ${output}" ", ${needed}" "dependencies of ${package}")
   endforeach()
   if(output MATCHES "vtk|qt5" AND NOT package STREQUAL lisco-tools)
-    message(FATAL_ERROR "${package} depends on what is none of its business: ${output}")
+    message(FATAL_ERROR "${package} has unexpected dependencies: ${output}")
   endif()
 endforeach()
 
-# A system of its own, in which nothing else is installed.
+# A system in which nothing else is installed.
 set(root ${WORK_DIR}/root)
 set(admin ${WORK_DIR}/admin)
 file(MAKE_DIRECTORY ${root} ${admin}/info ${admin}/updates ${admin}/triggers)
 file(TOUCH ${admin}/status ${admin}/available)
 set(dpkg dpkg --instdir=${root} --admindir=${admin} --log=${WORK_DIR}/dpkg.log
   --force-depends --force-not-root --force-bad-path --force-script-chrootless --no-triggers)
-file(WRITE ${WORK_DIR}/bin/ldconfig "#!/bin/sh\n")  # which the packages call; not for the machine this runs on
+file(WRITE ${WORK_DIR}/bin/ldconfig "#!/bin/sh\n")  # called by the packages; keeps the machine unchanged
 run(chmod +x ${WORK_DIR}/bin/ldconfig)
 set(ENV{PATH} "${WORK_DIR}/bin:$ENV{PATH}:/usr/sbin:/sbin")
 run(${dpkg} --install ${files})

@@ -1,15 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# A program that was compiled before a private field was added to the states of the PCL classes runs with the
-# classes that have it. The field comes first, so that all others move.
+# A program that was compiled before a private field was added to the states of the PCL classes runs with the larger
+# states. The field comes first, so that all others move.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK_DIR})
 file(MAKE_DIRECTORY ${WORK_DIR})
 
-set(libraries ${PREFIX}/${LIBRARY_DIR})
-set(ENV{PKG_CONFIG_PATH} ${libraries}/pkgconfig:${PCL_LIBRARY_DIR}/pkgconfig)
-run(pkg-config --cflags --libs lisco)
-separate_arguments(options UNIX_COMMAND "${output}")
-list(APPEND options -Wl,-rpath,${libraries})
+use_shared_libraries()
 run(${CXX_COMPILER} ${SOURCE_DIR}/abi/host.cpp -o ${WORK_DIR}/host ${options})
 run(${WORK_DIR}/host)
 set(expected "${output}")
@@ -40,6 +36,6 @@ if(NOT output STREQUAL expected)
 endif()
 string(REGEX MATCHALL "larger state" announced "${errors}")
 list(LENGTH announced count)
-if(count LESS 6)  # three extractions, a stream, windows, an endless stream; copies do not tell
+if(count LESS 6)  # three extractions, a stream, windows, an endless stream; copies print nothing
   message(FATAL_ERROR "only ${count} larger states were made:\n${errors}")
 endif()

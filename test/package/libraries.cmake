@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Installed programs and libraries load all they need, and what they link of PCL from PCL_LIBRARY_DIR. (What PCL's
-# libraries link in turn is found by their own RPATH.)
+# Installed programs and libraries load all libraries they need, those of PCL from PCL_LIBRARY_DIR. (Libraries that
+# PCL's libraries link are found by the RPATH of these.)
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
-set(ENV{LD_LIBRARY_PATH} ${PREFIX}/${LIBRARY_DIR})  # for programs that are to be installed in /usr
+set(ENV{LD_LIBRARY_PATH} ${PREFIX}/${LIBRARY_DIR})  # for programs made to be installed in /usr
 list(TRANSFORM PROGRAMS PREPEND ${PREFIX}/bin/)
 if(TYPE STREQUAL SHARED_LIBRARY)
   list(APPEND PROGRAMS ${PREFIX}/${LIBRARY_DIR}/liblisco.so)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Static libraries built and installed by OTHER_COMPILER, used by CXX_COMPILER, whose OpenMP runtime is another one.
-# Debug, which compiles faster and links the same.
+# Static libraries built and installed by OTHER_COMPILER, used by CXX_COMPILER, which has another OpenMP runtime.
+# Debug, which compiles faster and links the same libraries.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK_DIR})
 run(${CMAKE_COMMAND} -S ${PROJECT_DIR} -B ${WORK_DIR}/build -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Debug

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Configures Lisco with a PCL that is in a folder of its own: what is installed gets that folder as a RPATH.
+# Configures Lisco with a PCL outside the system's folders: installed files get its folder as a RPATH.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK_DIR})
 
-# The folder: links to the PCL that is there. CMake makes no RPATH of folders within the project, as the build folder
-# may be.
+# The folder, with links to the PCL of the system. CMake adds no RPATH for folders within the project, where the build
+# folder may lie.
 run(mktemp -d)
 string(STRIP "${output}" pcl)
 get_filename_component(root ${PCL_DIR}/../../../.. ABSOLUTE)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The headers that users include, compiled as C++14: one error names the standard, and the compilation ends there.
+# The public headers, compiled as C++14: one error names the standard and ends the compilation.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK_DIR})
 foreach(header pcl/segmentation/lisco_cluster_extraction.h pcl/segmentation/lisco_stream_extraction.h

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Builds Lisco within another project, where it adds nothing but two static libraries; then installs these, and uses them.
+# Builds Lisco within another project, where it adds only two static libraries; then installs and uses these.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK_DIR})
 build(${SOURCE_DIR}/subproject ${WORK_DIR}/build -DFETCHCONTENT_SOURCE_DIR_LISCO=${PROJECT_DIR})
@@ -7,12 +7,12 @@ run(${WORK_DIR}/build/with_pcl)
 run(${WORK_DIR}/build/without_pcl)
 file(GLOB_RECURSE made ${WORK_DIR}/build/*lisco*.so ${WORK_DIR}/build/*lisco_cluster ${WORK_DIR}/build/*_tests)
 if(made)
-  message(FATAL_ERROR "not asked for: ${made}")
+  message(FATAL_ERROR "built without a request: ${made}")
 endif()
 run(${CMAKE_COMMAND} --install ${WORK_DIR}/build --config ${CONFIG} --prefix ${WORK_DIR}/prefix)
 file(GLOB installed ${WORK_DIR}/prefix/*)
 if(installed)
-  message(FATAL_ERROR "installed without being asked to: ${installed}")
+  message(FATAL_ERROR "installed without a request: ${installed}")
 endif()
 
 build(${SOURCE_DIR}/subproject ${WORK_DIR}/build -DFETCHCONTENT_SOURCE_DIR_LISCO=${PROJECT_DIR} -DLISCO_INSTALL=ON)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Whatever tells a version tells the one of CMakeLists.txt.
+# Programs, packages, headers and the changelog give the version of CMakeLists.txt.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 string(REPLACE "." "[.]" number ${VERSION})
 
-set(ENV{LD_LIBRARY_PATH} ${PREFIX}/${LIBRARY_DIR})  # for programs that are to be installed in /usr
+set(ENV{LD_LIBRARY_PATH} ${PREFIX}/${LIBRARY_DIR})  # for programs made to be installed in /usr
 foreach(program IN LISTS PROGRAMS)
   run(${PREFIX}/bin/${program} --version)
   expect("${output}" "^${program} ${number}\n$" "${program} --version")

@@ -197,7 +197,7 @@ TEST_F(LiscoCluster, RefusesBadOptionsInOneLine) {
   expectRefusal("walls.pcd --tolerance 0.3 -o file/results", {"file/results", "cannot be written"});
 }
 
-// The result of ground left in, or of a tolerance in millimetres.
+// The usual result of ground left in, or of a tolerance in millimetres.
 TEST_F(LiscoCluster, NotesAClusterOfMoreThanHalfOfTheReturns) {
   write("walls.pcd", twoWalls());
   EXPECT_EQ(run("walls.pcd --tolerance 0.3").out.find("note"), std::string::npos);

@@ -287,7 +287,7 @@ TEST_P(StreamOfCapture, PrintsText) {
 
 // --- Live packets ---------------------------------------------------------------------------------------------------
 
-/// Sends packets to a UDP port of this machine at about the pace of a sensor.
+/// Sends packets to a UDP port of this machine at about the rate of a sensor.
 void sendTo(std::uint16_t port, const std::vector<Bytes>& payloads) {
   const int from = socket(AF_INET, SOCK_DGRAM, 0);
   ASSERT_GE(from, 0);

@@ -34,8 +34,8 @@ struct Case {
   std::size_t rotation;           ///< of the capture's rotations, cut where it begins
   std::uint64_t data, positions;  ///< packets
   bool says_other_model;
-  /// How far a return may lie from the scan's if the turning is measured while decoding, metres. The scan was decoded
-  /// with the median step of the whole capture.
+  /// How far a return may lie from the scan's if the step is measured while decoding, metres. The scan was decoded with
+  /// the median step of the whole capture.
   double tolerance;
 };
 void PrintTo(const Case& c, std::ostream* out) {
@@ -166,8 +166,8 @@ TEST_P(RealCapture, IsForeignToOtherSensors) {
   }
 }
 
-// Over several rotations, against the definition, which compares every return with every other: so only eight
-// of the lasers.
+// Over several rotations, against the definition, which compares all pairs of returns: therefore with eight of the
+// lasers only.
 TEST_P(RealCapture, IsClusteredEndlesslyAsDefined) {
   const lisco_apps::SensorModel model = lisco_apps::makeSensorModel(GetParam().sensor);
   CaptureFile source(file());

@@ -62,7 +62,7 @@ Bytes PacketEncoder::next(const World& world) {
     azimuth = (azimuth + step) % 36000;
     firing_ += firings_per_block_;
   }
-  packet.resize(1200, 0xFF);  // what is left of the VLS-128's dual packets
+  packet.resize(1200, 0xFF);  // the rest of the VLS-128's dual packets
   addLittle(packet, static_cast<std::uint32_t>(std::llround(std::fmod(time_us, 3600e6))));
   time_us += packetPeriodUs();
   packet.push_back(tells_mode_ ? (is_dual_ ? 0x39 : 0x37) : 'H');

@@ -26,10 +26,10 @@ struct Measured {
 class PacketEncoder {
  public:
   /// \param firing counts from 0
-  /// \param second whether the second return is asked for, which only dual mode has
+  /// \param second whether the second return of dual mode is asked for
   using World = std::function<Measured(std::size_t firing, std::size_t laser, bool second)>;
 
-  /// \param name as makeSensorModel() knows it
+  /// \param name one of makeSensorModel()'s
   explicit PacketEncoder(const std::string& name, bool is_dual = false);
 
   Bytes next(const World& world);
@@ -50,7 +50,7 @@ class PacketEncoder {
   std::size_t firing_ = 0;
 };
 
-/// A world in which all lasers measure the same.
+/// Measurements that are equal for all lasers.
 PacketEncoder::World constantWorld(Measured measured);
 
 lisco_apps::Packet asPacket(const Bytes& payload, std::int64_t time_us = 0);

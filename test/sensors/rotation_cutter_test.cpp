@@ -84,7 +84,7 @@ TEST(RotationCutter, AllowsMissingColumns) {
     double angle = direction * 100;
     for (int i = 0; i < 2000; ++i) {
       const double before = angle;
-      // After some columns, which establish the direction of turning.
+      // The first columns establish the direction of turning.
       angle += direction * (i > 20 && random.chance(0.01) ? random.between(0, 349) : 0.2);
       const bool starts = i == 0 || rotationAt(angle, 0, direction) != rotationAt(before, 0, direction);
       EXPECT_EQ(cutter.startsRotation(wrapped(angle)), starts)
@@ -101,7 +101,7 @@ TEST(RotationCutter, StartsARotationAfterABreak) {
     EXPECT_TRUE(cutter.startsRotation(wrapped(2 * direction), true));
     EXPECT_FALSE(cutter.startsRotation(wrapped(200 * direction)));
     EXPECT_FALSE(cutter.startsRotation(wrapped(359 * direction)));
-    EXPECT_TRUE(cutter.startsRotation(0)) << "the cut stays where it is";
+    EXPECT_TRUE(cutter.startsRotation(0)) << "the cut does not move";
   }
 }
 

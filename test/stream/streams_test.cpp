@@ -131,7 +131,7 @@ TEST(Streams, AcceptIrregularColumns) {
   }
 }
 
-TEST(Streams, OfNoColumnsFindNothing) {
+TEST(Streams, FindNothingWithoutColumns) {
   Decoder decoder(lisco_apps::makeSensorModel("vlp16"));
   ConsistencyChecker witness;
   lisco_apps::RotationStream rotations({}, decoder, witness);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// Passes clouds to the library and takes clouds from it, so that each side frees what the other one has touched. Prints what it
-// found, which must not depend on how it was compiled.
+// Passes clouds to the library and takes clouds from it, so that each side frees memory that the other one has touched.
+// Prints results that are independent of the options it was compiled with.
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -72,12 +72,12 @@ void print(const char* what, const Cloud& cloud) {
 void extract() {
   Clusters clusters;
   pcl::PointCloud<pcl::Label> labels;
-  labels.resize(7);  // ours; to be replaced
+  labels.resize(7);  // the host's; to be replaced
   {
     auto extraction = std::make_unique<pcl::LiscoClusterExtraction<Point>>();
     extraction->setClusterTolerance(0.7);
     for (int i = 0; i < 2; ++i) {
-      extraction->setInputCloud(scan());  // the extraction holds the only pointer to it
+      extraction->setInputCloud(scan());  // the extraction holds the only pointer
       clusters.clear();
       extraction->extract(clusters, labels);
     }
@@ -97,7 +97,7 @@ void extract() {
 
 void stream() {
   Clusters clusters;
-  auto cloud = std::make_shared<Cloud>(3, 5);  // ours; to be replaced
+  auto cloud = std::make_shared<Cloud>(3, 5);  // the host's; to be replaced
   {
     pcl::LiscoStreamExtraction<Point> stream;
     stream.setClusterTolerance(0.7);

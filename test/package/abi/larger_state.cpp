@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// The classes that host.cpp uses, made of sources whose states have one more field, which prints a line. Preloaded,
-// they replace those of the library.
+// The classes that host.cpp uses, with one more field in their states, which prints a line. Preloaded, they replace
+// those of the library.
 #include <cstdio>
 
 namespace {

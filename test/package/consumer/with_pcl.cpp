@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// A user of PCL, who has changed one include and one class name.
+// A program for PCL with one include and one class name changed.
 #include <cstdio>
 #include <memory>
 #include <vector>

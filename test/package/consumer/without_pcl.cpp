@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// A user of the engine alone, who reads a sensor column by column.
+// A program for the engine alone, which reads a sensor column by column.
 #include <cstdint>
 #include <cstdio>
 

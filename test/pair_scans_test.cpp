@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Many pairs in one scan, each just within the tolerance or just beyond it, where windows and segments end.
+// Many pairs in one scan, each just within the tolerance or just beyond it, where masks and segments end.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,11 +14,11 @@
 namespace lisco_test {
 namespace {
 
-/// In parts, so that they can run side by side.
-class WindowScans : public testing::TestWithParam<std::uint64_t> {};
-INSTANTIATE_TEST_SUITE_P(Seeds, WindowScans, testing::Range<std::uint64_t>(1, 5));
+/// In parts that run side by side.
+class PairScans : public testing::TestWithParam<std::uint64_t> {};
+INSTANTIATE_TEST_SUITE_P(Seeds, PairScans, testing::Range<std::uint64_t>(1, 5));
 
-TEST_P(WindowScans, EqualTheOracle) {
+TEST_P(PairScans, EqualTheOracle) {
   lisco::ColumnClusterer clusterer;
   std::size_t joined = 0;
   const std::uint64_t seeds = GetParam() * 10'000'000;
@@ -39,7 +39,7 @@ TEST_P(WindowScans, EqualTheOracle) {
     ASSERT_EQ(difference(right, clustersOf(clusterer)), "");
     for (const Cluster& cluster : right) joined += cluster.members.size() > 1 ? 1 : 0;
   }
-  EXPECT_GT(joined, timesEffort(400 * 10)) << "too few pairs are neighbours to tell anything";
+  EXPECT_GT(joined, timesEffort(400 * 10)) << "too few pairs are neighbours";
   RecordProperty("joined", std::to_string(joined));
 }
 
