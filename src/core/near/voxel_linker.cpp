@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/near/kernels.h"
+#include "core/near/neighbourhood.h"
 
 namespace lisco {
 
@@ -16,32 +17,8 @@ using Fragment = VoxelGrid::Fragment;
 using NearBrick = VoxelGrid::NearBrick;
 
 constexpr std::uint32_t kNone = VoxelGrid::kNone;
-constexpr std::size_t kNeighbourBricks = 27;
-constexpr std::size_t kOwnBrick = kNeighbourBricks / 2;
 /// Bits of a brick's number along an axis; those numbered in float have fewer.
 constexpr unsigned kOrderBits = 21;
-
-/// masks[voxel][i]: those voxels of neighbour brick i whose numbers differ by 2 at most from the voxel's.
-struct Neighbourhood {
-  std::uint64_t all[64][kNeighbourBricks] = {};
-
-  Neighbourhood() {
-    for (int voxel = 0; voxel < 64; ++voxel)
-      for (int dz = -2; dz <= 2; ++dz)
-        for (int dy = -2; dy <= 2; ++dy)
-          for (int dx = -2; dx <= 2; ++dx) {
-            const int x = (voxel & 3) + dx;
-            const int y = (voxel >> 2 & 3) + dy;
-            const int z = (voxel >> 4) + dz;
-            const auto brick = [](int number) -> std::size_t { return number < 0 ? 0 : number > 3 ? 2 : 1; };
-            const std::size_t i = brick(z) * 9 + brick(y) * 3 + brick(x);
-            const std::uint64_t bit = std::uint64_t{1} << ((x & 3) | (y & 3) << 2 | (z & 3) << 4);
-            all[voxel][i] |= bit;
-          }
-  }
-};
-
-const Neighbourhood kNeighbourhood;
 
 /// Finds the bricks around one that are in use and wanted.
 /// \param wanted callable as bool (const Brick&)
@@ -49,7 +26,7 @@ template <typename Wanted>
 std::size_t findNear(const VoxelGrid& grid, const VoxelGrid::Key& key, NearBrick* near, Wanted&& wanted) {
   constexpr std::uint32_t kMask = VoxelGrid::kBrickMask;
   std::size_t count = 0;
-  for (std::size_t i = 0; i < kNeighbourBricks; ++i) {
+  for (std::size_t i = 0; i < kNearBricks; ++i) {
     const auto step = [](std::size_t which) { return static_cast<std::uint32_t>(which) - 1U; };
     const std::uint32_t number = grid.findBrick(
         {(key[0] + step(i % 3)) & kMask, (key[1] + step(i / 3 % 3)) & kMask, (key[2] + step(i / 9)) & kMask});
@@ -65,7 +42,7 @@ template <typename Visit>
 void forEachAround(const VoxelGrid& grid, std::size_t voxel, const NearBrick* near, std::size_t count,
                    std::uint64_t in_own_brick, Visit&& visit) {
   for (std::size_t i = 0; i < count; ++i) {
-    std::uint64_t around = near[i].occupied & kNeighbourhood.all[voxel][near[i].mask];
+    std::uint64_t around = near[i].occupied & kNeighbourhood.of[voxel][near[i].mask];
     if (near[i].mask == kOwnBrick) around &= in_own_brick;
     for (; around != 0; around &= around - 1) {
       const std::uint64_t before = (around & -around) - 1;
@@ -122,7 +99,7 @@ std::uint32_t commonRoot(VoxelGrid& grid, const Brick& brick, DisjointSets& subc
 /// Links the new cliques of a brick with all cliques around them; each pair of new ones once. Bricks of one common
 /// root, which most are, are skipped as a whole.
 void linkNew(VoxelGrid& grid, const Brick& brick, DisjointSets& subclusters) {
-  NearBrick near[kNeighbourBricks];
+  NearBrick near[kNearBricks];
   const std::size_t count = findNear(grid, brick.key, near, [&](const Brick& other) {
     if (brick.root == kNone || other.root == kNone) return true;
     return subclusters.find(brick.root) != subclusters.find(other.root);
@@ -154,7 +131,7 @@ void linkBrick(VoxelGrid& grid, const Brick& brick, const NearBrick* near, std::
 }
 
 void linkBrickTo(VoxelGrid& grid, const Brick& brick, VoxelGrid& other, VoxelLinker::Part part, PairVisitor& visitor) {
-  NearBrick near[kNeighbourBricks];
+  NearBrick near[kNearBricks];
   std::size_t count = 0;
   bool searched = false;
   grid.forEachClique(brick, [&](std::size_t voxel, std::uint32_t number) {
@@ -218,7 +195,7 @@ void VoxelLinker::linkInOrder(VoxelGrid& grid, DisjointSets& subclusters) {
                                        number(0, 1, 1)};
   constexpr std::size_t kFirstMask[kRows] = {15, 18, 21, 24};
   std::size_t cursors[kRows] = {};
-  NearBrick near[kNeighbourBricks];
+  NearBrick near[kNearBricks];
   for (std::size_t i = 0; i < ordered_.size(); ++i) {
     const OrderedBrick& own = ordered_[i];
     std::size_t count = 0;

@@ -185,8 +185,8 @@ class LiscoReceivedColumns {
   const lisco::Return* add(const PointT* points, std::size_t count, double position = 0) {
     begun = false;
     max_rows_ = std::max(max_rows_, count);
+    named_column_.resize(count);  // may throw: before the column is stored
     std::uint32_t name = store.add(points, count, position);
-    named_column_.resize(count);
     for (std::size_t row = 0; row < count; ++row)
       named_column_[row] = {points[row].x, points[row].y, points[row].z, name++};
     return (named_column_.data());
