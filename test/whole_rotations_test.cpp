@@ -166,6 +166,23 @@ TEST_P(WholeRotations, EqualTheOracleInThreads) {
   tryRecordings(1'000'000, 100, GetParam(), true);
 }
 
+// Single columns wait to be read in blocks: a whole rotation that follows does not overtake them.
+TEST(WholeRotations, KeepTheirPlaceBehindSomeColumns) {
+  for (const std::size_t columns_before : {1, 15, 16, 63, 64, 65, 100}) {
+    Recording recording;
+    recording.scan = Scan(columns_before + kSortedColumns, 1);
+    for (std::size_t column = 0; column < recording.scan.columns; ++column)
+      recording.scan.set(0, column, {10, 2 * static_cast<float>(column), 0});
+    lisco::ColumnClusterer clusterer;
+    lisco::Parameters parameters;
+    parameters.tolerance = 1;
+    Feeder feeder(clusterer, recording, parameters);
+    for (std::size_t i = 0; i < columns_before; ++i) feeder.add(1);
+    feeder.add(kSortedColumns);
+    feeder.expectExact();
+  }
+}
+
 // As they come from filters: no order, no sensor, and tolerances by which pairs change sides.
 TEST(WholeRotations, OfAnyScanEqualTheOracle) {
   lisco::ColumnClusterer clusterer;

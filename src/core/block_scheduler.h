@@ -54,6 +54,9 @@ class BlockScheduler {
  public:
   void begin(std::size_t block_columns);
 
+  /// Whether columns were taken or skipped since begin ().
+  bool hasColumns() const { return columns_read_ > 0 || !isEmpty() || pending_.columns() > 0; }
+
   /// Number of columns until the block is complete.
   std::size_t columnsLeft() const { return block_columns_ - staged_.columns(); }
   bool isEmpty() const { return staged_.columns() == 0; }
