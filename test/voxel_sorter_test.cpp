@@ -356,7 +356,7 @@ void cutIntoRuns(Random& random, Cloud& cloud) {
 }
 
 void cutIntoParts(Random& random, Cloud& cloud) {
-  const std::size_t parts = random.chance(0.3) ? 1 : 1 + random.below(kMaxParts);
+  const std::size_t parts = random.chance(0.5) ? 1 : 1 + random.below(kMaxParts);
   const bool by_words = random.chance(0.3);
   for (std::size_t i = 1; i < parts; ++i) {
     const std::size_t end = random.below(cloud.points.size() + 1);
@@ -372,7 +372,7 @@ class VoxelSorterClouds : public testing::TestWithParam<Kind> {};
 TEST_P(VoxelSorterClouds, AreLinkedAsByBruteForce) {
   lisco::VoxelSorter sorter;
   std::uint64_t sorted = 0;
-  const std::uint64_t count = timesEffort(500);
+  const std::uint64_t count = timesEffort(300);
   for (std::uint64_t seed = 1; seed <= count; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
@@ -412,21 +412,18 @@ Cloud cloudOf(const std::vector<Point>& points, float tolerance, std::vector<std
 
 TEST(VoxelSorter, JoinsOnlyBelowTheTolerance) {
   lisco::VoxelSorter sorter;
-  for (const std::string& name : levels()) {
-    const SimdLevel level(name);
+  const auto expectForAll = [&](const std::vector<std::size_t>& part_ends) {
     for (const float distance : {0.5F, std::nextafter(0.5F, 0.0F), std::nextafter(0.5F, 1.0F)})
       for (const Point& by : {Point{distance, 0, 0}, Point{0, distance, 0}, Point{0, 0, distance}})
-        for (const std::vector<std::size_t>& ends : {std::vector<std::size_t>{2}, {1, 2}, {0, 1, 1, 2, 2}})
-          for (const Point& third : {Point{0, 0, 0}, Point{9, 0, 0}, Point{0, -9, 0}, Point{0, 0, 9}}) {
-            std::vector<Point> points{{0, 0, 0}, by};
-            std::vector<std::size_t> part_ends = ends;
-            if (isValid(third)) {  // so that this axis is the major one
-              points.push_back(third);
-              part_ends.push_back(3);
-            }
-            EXPECT_TRUE(expectTrueSets(sorter, cloudOf(points, 0.5F, part_ends)));
-          }
+        for (const Point& third : {by, Point{9, 0, 0}, Point{0, -9, 0}, Point{0, 0, 9}})  // decides the major axis
+          EXPECT_TRUE(expectTrueSets(sorter, cloudOf({{0, 0, 0}, by, third}, 0.5F, part_ends)));
+  };
+  for (const std::string& name : levels()) {
+    const SimdLevel level(name);
+    expectForAll({3});
   }
+  expectForAll({1, 3});
+  expectForAll({0, 1, 1, 2, 3});
 }
 
 TEST(VoxelSorter, DoesNothingWithoutReturnsOrTolerance) {
@@ -466,7 +463,8 @@ TEST(VoxelSorter, LinksAllVoxelsAround) {
       const float near = at(11, 0.5);
       const float far = at(20, 0.5);
       const std::array<Point, 3> ends{{{near, near, far}, {near, far, near}, {far, near, near}}};
-      const Cloud cloud = cloudOf({{0, 0, 0}, one, other, ends[voxel % 3]}, tolerance, {by % 5, 4});
+      const Cloud cloud =
+          cloudOf({{0, 0, 0}, one, other, ends[voxel % 3]}, tolerance, {voxel % 8 == 7 ? by % 5 : 0, 4});
       EXPECT_TRUE(expectTrueSets(sorter, cloud)) << "voxel " << voxel << ", by " << by;
       if (HasFailure()) return;
     }
@@ -485,6 +483,39 @@ TEST(VoxelSorter, LinksSlabsWithEachOther) {
       for (std::size_t part = 1; part <= parts; ++part) part_ends.push_back(400 * part / parts);
       EXPECT_TRUE(expectTrueSets(sorter, cloudOf(points, 1.0F, part_ends)));
     }
+}
+
+// Neighbours of random sets in all slabs: threads join the same sets at the same time.
+TEST(VoxelSorter, LosesNoJoinOfAnotherThread) {
+  constexpr std::size_t kSets = 4000;
+  lisco::VoxelSorter sorter;
+  lisco::DisjointSets right;
+  lisco::DisjointSets subclusters;
+  for (std::uint64_t seed = 1; seed <= timesEffort(100); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    for (lisco::DisjointSets* sets : {&right, &subclusters}) {
+      sets->reset(kSets);
+      for (std::uint32_t i = 0; i < kSets; ++i) sets->create(i);
+    }
+    const std::size_t count = 2 + seed % 3;
+    std::vector<lisco::NearReturns> parts(count);
+    for (std::size_t pair = 0; pair < kSets; ++pair) {
+      std::vector<lisco::NearReturn>& returns = parts[pair % count].returns;
+      const auto a = static_cast<std::uint32_t>(random.below(kSets));
+      const auto b = static_cast<std::uint32_t>(random.below(kSets));
+      returns.push_back({0, 3 * static_cast<float>(pair), 0, a});
+      returns.push_back({0.9F, 3 * static_cast<float>(pair), 0, b});
+      right.merge(a, b);
+    }
+    std::vector<const lisco::NearReturns*> pointers;
+    for (lisco::NearReturns& part : parts) {
+      part.count = part.returns.size();
+      pointers.push_back(&part);
+    }
+    ASSERT_TRUE(sorter.link(pointers, lisco::Tolerance(1), subclusters));
+    for (std::uint32_t i = 0; i < kSets; ++i) ASSERT_EQ(subclusters.find(i), right.find(i)) << "element " << i;
+  }
 }
 
 }  // namespace
