@@ -37,7 +37,7 @@ class RandomScans : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(RandomScans, EqualTheOracle) {
   forSeeds(GetParam() * 10'000'000, 3000, [](Random& random, lisco::ColumnClusterer& clusterer) {
-    const Scan scan = randomScan(random);
+    const Scan scan = sometimesWide(random, randomScan(random));
     expectExact(clusterer, scan, criticalTolerance(random, scan));
   });
 }
@@ -46,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, RandomScans, testing::Range<std::uint64_t>(1, 5)
 // Large enough for many sectors, and masks of several lasers.
 TEST(LargerScans, EqualTheOracle) {
   forSeeds(80'000'000, 60, [](Random& random, lisco::ColumnClusterer& clusterer) {
-    const Scan scan = randomScan(random, 3000);
+    const Scan scan = sometimesWide(random, randomScan(random, 3000));
     expectExact(clusterer, scan, criticalTolerance(random, scan));
     expectExact(clusterer, scan, 10.0F * criticalTolerance(random, scan));
   });
@@ -55,7 +55,7 @@ TEST(LargerScans, EqualTheOracle) {
 TEST(AdversarialScans, SeparateALatticeAtExactlyTheTolerance) {
   forSeeds(100'000'000, 1000, [](Random& random, lisco::ColumnClusterer& clusterer) {
     float spacing = 0.0F;
-    const Scan scan = latticeScan(random, spacing);
+    const Scan scan = sometimesWide(random, latticeScan(random, spacing));
     // At the spacing only equal points are neighbours; one ulp above, the whole lattice is connected.
     expectExact(clusterer, scan, spacing);
     expectExact(clusterer, scan, std::nextafter(spacing, kInfinity));
@@ -65,7 +65,7 @@ TEST(AdversarialScans, SeparateALatticeAtExactlyTheTolerance) {
 
 TEST(AdversarialScans, EqualTheOracleWhereFloatsEnd) {
   forSeeds(200'000'000, 1000, [](Random& random, lisco::ColumnClusterer& clusterer) {
-    const Scan scan = extremeScan(random);
+    const Scan scan = sometimesWide(random, extremeScan(random));
     expectExact(clusterer, scan, criticalTolerance(random, scan));
     const std::array<float, 8> tolerances{1e-44F, 1e-22F, 1e-20F, 1e-3F, 1e10F, 1.8e19F, 1e30F, kInfinity};
     expectExact(clusterer, scan, random.oneOf(tolerances));
@@ -74,7 +74,7 @@ TEST(AdversarialScans, EqualTheOracleWhereFloatsEnd) {
 
 TEST(AdversarialScans, EqualTheOracleAtAnyTolerance) {
   forSeeds(300'000'000, 60, [](Random& random, lisco::ColumnClusterer& clusterer) {
-    const Scan scan = randomScan(random);
+    const Scan scan = sometimesWide(random, randomScan(random));
     for (const float tolerance : {0.0F, -0.0F, -0.5F, kNan, kInfinity, -kInfinity, 1e-30F, 1e30F, 1e-20F, 3e38F})
       expectExact(clusterer, scan, tolerance);
   });
@@ -82,7 +82,7 @@ TEST(AdversarialScans, EqualTheOracleAtAnyTolerance) {
 
 TEST(AdversarialScans, MayHaveManyReturnsNearerThanTheTolerance) {
   forSeeds(400'000'000, 200, [](Random& random, lisco::ColumnClusterer& clusterer) {
-    Scan scan(1 + random.below(40), 1 + random.below(6));
+    Scan scan(random.chance(0.25) ? 256 : 1 + random.below(40), 1 + random.below(6));
     const double tolerance = random.between(0.1, 1.0);
     for (lisco::Return& cell : scan.cells) {
       // Most lie around the sensor; the others at a few tolerances, where the mask must still cover them.
@@ -98,7 +98,7 @@ TEST(AdversarialScans, MayHaveManyReturnsNearerThanTheTolerance) {
 // Two rings of points above the sensor, around the vertical: any azimuth lies within the mask.
 TEST(AdversarialScans, MaySurroundTheZenith) {
   forSeeds(500'000'000, 200, [](Random& random, lisco::ColumnClusterer& clusterer) {
-    Scan scan(1 + random.below(40), 2);
+    Scan scan(random.chance(0.25) ? 256 : 1 + random.below(40), 2);
     const double height = random.magnitude(0.1, 50.0) * (random.chance(0.5) ? 1.0 : -1.0);
     const double radius = random.magnitude(1e-6, 1.0);
     for (std::size_t i = 0; i < scan.cells.size(); ++i) {
@@ -115,7 +115,7 @@ TEST(AdversarialScans, MaySurroundTheZenith) {
 // The same return many times: cliques of equal boxes, and distances of zero.
 TEST(AdversarialScans, MayRepeatReturns) {
   forSeeds(600'000'000, 200, [](Random& random, lisco::ColumnClusterer& clusterer) {
-    Scan scan = randomScan(random);
+    Scan scan = sometimesWide(random, randomScan(random));
     for (lisco::Return& cell : scan.cells)
       if (random.chance(0.7)) {
         const lisco::Return& other = random.oneOf(scan.cells);
@@ -141,7 +141,7 @@ TEST(AdversarialScans, JoinTwoSheetsByOneBridge) {
       lisco::Return& bridge = scan.at(2 + random.below(2), random.below(40));
       bridge.x = static_cast<float>(5.0 + 0.9999 * spacing);
     }
-    expectExact(clusterer, scan, static_cast<float>(spacing));
+    expectExact(clusterer, sometimesWide(random, scan), static_cast<float>(spacing));
   });
 }
 

@@ -38,7 +38,7 @@ TEST(LabelClusters, AreTheTrueClustersLargestFirst) {
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
-    const Scan scan = randomScan(random);
+    const Scan scan = sometimesWide(random, randomScan(random));
     const std::vector<Point> points = pointsOf(scan);
     lisco::LabelParameters parameters;
     parameters.tolerance = criticalTolerance(random, scan);

@@ -206,6 +206,31 @@ Scan largeScan(Random& random) {
   return scan;
 }
 
+Scan widened(Random& random, const Scan& scan, std::size_t columns) {
+  Scan wide(std::max(columns, scan.columns), scan.lasers);
+  std::size_t empty = wide.columns - scan.columns;
+  std::size_t to = random.chance(0.3) ? random.below(empty + 1) : wide.columns;
+  const bool is_scattered = to == wide.columns;
+  if (is_scattered) to = 0;
+  for (std::size_t from = 0; from < scan.columns; ++from, ++to) {
+    while (is_scattered && random.below(wide.columns - to) < empty) {
+      ++to;
+      --empty;
+    }
+    for (std::size_t laser = 0; laser < scan.lasers; ++laser) {
+      const lisco::Return& cell = scan.at(laser, from);
+      wide.set(laser, to, {cell.x, cell.y, cell.z});
+    }
+  }
+  return wide;
+}
+
+Scan sometimesWide(Random& random, const Scan& scan) {
+  constexpr std::size_t kSortedColumns = 256;
+  if (!random.chance(0.25)) return scan;
+  return widened(random, scan, kSortedColumns + (random.chance(0.5) ? 0 : random.below(100)));
+}
+
 float criticalTolerance(Random& random, const Scan& scan) {
   std::vector<Point> valid = scan.points();
   valid.erase(std::remove_if(valid.begin(), valid.end(), [](const Point& p) { return !isValid(p); }), valid.end());

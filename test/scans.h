@@ -42,6 +42,13 @@ Scan extremeScan(Random& random);
 /// A rotation of at least as many cells as several threads need, of which few or most are returns.
 Scan largeScan(Random& random);
 
+/// The scan's columns in their order among empty ones, anywhere or one after the other.
+/// \param columns in all, at least the scan's
+Scan widened(Random& random, const Scan& scan, std::size_t columns);
+
+/// In one of four cases the scan widened to 256 columns and more: added at once, their returns are sorted.
+Scan sometimesWide(Random& random, const Scan& scan);
+
 /// A tolerance near some distances of the scan, often within one ulp; positive and finite.
 float criticalTolerance(Random& random, const Scan& scan);
 

@@ -110,7 +110,7 @@ void ColumnClusterer::Rotation::receive(std::size_t columns, std::size_t lasers,
   if (columns == 0) return;
   usable_ = false;
   if (partition_count_ == 0) divide(columns, lasers, cells);
-  if (scheduler_.isUnused() && (columns >= kWorthSorting || partition_count_ > 1)) {
+  if (!scheduler_.hasColumns() && (columns >= kWorthSorting || partition_count_ > 1)) {
     receiveAtOnce(columns, lasers, cells);
   } else {
     stopCollecting();

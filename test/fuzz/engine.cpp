@@ -77,7 +77,29 @@ void holdExactUpTo(lisco::ColumnClusterer& clusterer, Shape& shape, std::size_t 
   }
 }
 
-void clusterScan(Input& input, float unit) {
+/// Adds columns, with at most one look in between.
+void feed(lisco::ColumnClusterer& clusterer, Shape& shape, std::size_t columns, unsigned portions, float tolerance) {
+  constexpr std::array<std::size_t, 8> kPortions{10000, 10000, 64, 65, 17, 7, 1, 260};
+  const std::size_t portion = kPortions[portions % 8];
+  const std::size_t look_at = portions / 8 * 4;  // and there
+  bool looked = (portions / 8) % 2 == 0;
+  for (std::size_t first = 0; first < columns;) {
+    const std::size_t count = std::min(portion, columns - first);
+    clusterer.addColumns(count, shape.lasers(),
+                         [&](std::size_t laser, std::size_t column) { return shape.at(laser, first + column); });
+    first += count;
+    if (looked || first < look_at || first >= columns) continue;
+    looked = true;
+    holdExactUpTo(clusterer, shape, first, tolerance);
+  }
+  holdExactUpTo(clusterer, shape, columns, tolerance);
+}
+
+/// So many columns at once are sorted.
+constexpr std::size_t kSortedColumns = 256;
+
+/// \param is_wide whether empty columns follow, so that there are enough
+void clusterScan(Input& input, float unit, bool is_wide) {
   constexpr std::array<int, 8> kSteps{512, 512, 512, 0, 0, 600, 600, 2048};
   constexpr std::array<float, 5> kElevationSteps{0.5F, 0.3F, 0.1F, 0.02F, 0.002F};
   constexpr std::array<std::size_t, 8> kBlocks{64, 64, 64, 16, 16, 3, 1, 40};
@@ -108,27 +130,38 @@ void clusterScan(Input& input, float unit) {
   if (!turns_as_told) shape_hints.clockwise = !shape_hints.clockwise;
   shape.read(input, unit, lasers, max_columns, parameters.sensor.steps_per_turn == 600 ? 600 : 512, shape_hints);
   std::size_t columns = shape.columns();
-  // Enough cells for several threads.
+  if (is_wide) columns = std::max(columns, kSortedColumns);
+  // So many cells that threads share them.
   if (parameters.threads > 1 && lasers == Shape::kMaxLasers && parameters.block_columns == 64) columns = 1040;
 
   const std::size_t which = steps / 8 % 4 == 3 ? steps / 32 % 4 : parameters.sensor.steps_per_turn == 0 ? 0 : 1;
   lisco::ColumnClusterer& clusterer =
       parameters.sensor.steps_per_turn == 2048 ? clusterers[3] : clusterers[which < 3 ? which : 2];
   clusterer.begin(parameters);
-  constexpr std::array<std::size_t, 8> kPortions{10000, 10000, 64, 65, 17, 7, 1, 200};
-  const std::size_t portion = kPortions[portions % 8];
-  const std::size_t query_at = portions / 8 * 4;  // columns
-  bool queried = (portions / 8) % 2 == 0;
-  for (std::size_t first = 0; first < columns;) {
-    const std::size_t count = std::min(portion, columns - first);
-    clusterer.addColumns(count, lasers,
-                         [&](std::size_t laser, std::size_t column) { return shape.at(laser, first + column); });
-    first += count;
-    if (queried || first < query_at || first >= columns) continue;
-    queried = true;
-    holdExactUpTo(clusterer, shape, first, parameters.tolerance);
-  }
-  holdExactUpTo(clusterer, shape, columns, parameters.tolerance);
+  feed(clusterer, shape, columns, portions, parameters.tolerance);
+}
+
+void clusterRecording(Input& input, float unit) {
+  static std::array<lisco::ColumnClusterer, 2> clusterers;
+  static Shape shape;
+  constexpr std::array<float, 4> kElevationSteps{0.3F, 0.1F, 0.02F, 0.002F};
+  lisco::Parameters parameters;
+  const unsigned flags = input.byte();
+  const std::size_t steps = (flags & 1U) != 0 ? 600 : 512;
+  parameters.sensor.clockwise = (flags & 2U) != 0;
+  parameters.sensor.steps_per_turn = (flags & 12U) == 0 ? 0 : static_cast<int>(steps);
+  parameters.sensor.elevation_step = kElevationSteps[flags / 16 % 4];
+  parameters.threads = 1 + flags / 64;
+  const std::size_t lasers = 1 + input.below(Shape::kMaxLasers);
+  parameters.tolerance = toleranceFrom(input, unit);
+  useLevel(input);
+  const unsigned portions = input.byte();
+  shape.readRecording(input, unit, lasers, steps, parameters.sensor);
+  if (portions < 192) shape.widen(kSortedColumns);
+  if (parameters.threads > 1 && shape.lasers() == Shape::kMaxLasers) shape.widen(1040);
+  lisco::ColumnClusterer& clusterer = clusterers[parameters.threads > 1 ? 1 : 0];
+  clusterer.begin(parameters);
+  feed(clusterer, shape, shape.columns(), portions, parameters.tolerance);
 }
 
 void clusterWindows(Input& input, float unit) {
@@ -189,7 +222,7 @@ void fuzzEngine(const std::uint8_t* data, std::size_t size) {
     case 7:
       return clusterEndlessly(input);
     default:
-      return clusterScan(input, unit);
+      return what / 64 == 3 ? clusterRecording(input, unit) : clusterScan(input, unit, what / 64 == 2);
   }
 }
 

@@ -46,19 +46,15 @@ float toleranceFrom(Input& input, float unit) {
   }
 }
 
-void Shape::read(Input& input, float unit, std::size_t lasers, std::size_t most_columns, std::size_t steps,
+void Shape::read(Input& input, float unit, std::size_t lasers, std::size_t max_columns, std::size_t steps,
                  const lisco::SensorHints& hints) {
   constexpr std::array<int, 32> kColumnSteps{0,  0,  0,  0,  1,  1,  1,  1,  1,  2,  2,  3,   4,   5,   8,  13,
                                              14, 15, 16, 17, 31, 32, 33, 47, 48, 63, 64, 128, 255, 509, -1, -2};
   constexpr std::array<double, 12> kOffsets{0, 0, 0, 0, 0.25, -0.5, 0.74, -0.76, 1, -3, 17, 256};
   const double step = 2 * kPi / static_cast<double>(steps);
-  cells_.assign(lasers * kMaxColumns, kEmpty);
-  points_.clear();
-  places_.clear();
-  lasers_ = lasers;
+  resize(lasers, kMaxColumns);
   const double start = static_cast<double>(input.byte()) * (kPi / 128);
   std::size_t column = 0;
-  columns_ = 1;
   while (input.left() >= 4 && points_.size() < kMaxPoints) {
     const unsigned where = input.byte();
     const unsigned how = input.byte();
@@ -66,9 +62,8 @@ void Shape::read(Input& input, float unit, std::size_t lasers, std::size_t most_
     const unsigned height = input.byte();
     const std::size_t laser = where % 8 % lasers;
     const std::int64_t next = static_cast<std::int64_t>(column) + kColumnSteps[where / 8];
-    column = static_cast<std::size_t>(std::clamp<std::int64_t>(next, 0, static_cast<std::int64_t>(most_columns) - 1));
-    std::uint8_t& cell = cells_[laser * kMaxColumns + column];
-    if (cell != kEmpty) continue;
+    column = static_cast<std::size_t>(std::clamp<std::int64_t>(next, 0, static_cast<std::int64_t>(max_columns) - 1));
+    if (cells_[laser * stride_ + column] != kEmpty) continue;
     Point point{};
     const auto along = [unit](unsigned number) { return (static_cast<float>(number) - 128.0F) * unit / 2.0F; };
     if (how % 16 < kOffsets.size()) {
@@ -102,11 +97,86 @@ void Shape::read(Input& input, float unit, std::size_t lasers, std::size_t most_
       point = some[height % 8];
       if (height % 8 == 7) point = {input.rawFloat(), input.rawFloat(), input.rawFloat()};
     }
-    cell = static_cast<std::uint8_t>(points_.size());
-    points_.push_back(point);
-    places_.push_back({laser, column});
-    columns_ = std::max(columns_, column + 1);
+    put(point, laser, column);
   }
+}
+
+void Shape::readRecording(Input& input, float unit, std::size_t lasers, std::size_t steps,
+                          const lisco::SensorHints& hints) {
+  enum class Layout { kOrganized, kFirings, kRings, kShuffled };
+  constexpr std::array<Layout, 4> kLayouts{Layout::kOrganized, Layout::kFirings, Layout::kRings, Layout::kShuffled};
+  constexpr std::array<std::size_t, 8> kSteps{0, 0, 1, 1, 2, 3, 17, 64};
+  constexpr std::size_t kTurns = 3;
+  constexpr std::size_t kWide = 512;
+  struct Firing {
+    std::size_t laser, column;
+    Point point;
+  };
+  static std::vector<Firing> firings;
+  firings.clear();
+  const unsigned flags = input.byte();
+  const Layout layout = kLayouts[flags % 4];
+  const bool is_dual = (flags & 4U) != 0;
+  const bool is_moving = (flags & 8U) != 0;
+  const bool has_gaps = (flags & 16U) != 0;
+  const double map = (flags & 32U) != 0 ? 1.0 : 0.0;
+  const unsigned order = input.byte();
+  const auto wide = static_cast<double>(unit);
+  std::size_t firing = 0;
+  while (input.left() >= 3 && firings.size() < kMaxPoints) {
+    const unsigned where = input.byte();
+    const unsigned range = input.byte();
+    const unsigned how = input.byte();
+    const std::size_t laser = where % 8 % lasers;
+    firing += where / 64 == 3 ? steps : kSteps[where / 8 % 8];  // the same direction a turn later
+    firing = std::min(firing, kTurns * steps - 1);
+    double rho = wide * (range < 128 ? range * 0.25 : std::exp2((range - 128) / 8.0));
+    rho *= 1 + (static_cast<double>(how / 16) - 8) / 4096;
+    const double offset = (static_cast<double>(how % 4) - 1) * 0.25;
+    const double turned = 2 * kPi * (static_cast<double>(firing) + offset) / static_cast<double>(steps);
+    const double azimuth = hints.clockwise ? -turned : turned;
+    const double slope = 0.25 - 0.0625 * static_cast<double>(laser);
+    const double moved = is_moving ? wide * static_cast<double>(firing) / 64 : 0;
+    firings.push_back(
+        {laser,
+         is_dual ? 2 * firing + how / 4 % 2 : firing,
+         {static_cast<float>(rho * std::cos(azimuth) + moved + map * 5e5 * wide),
+          static_cast<float>(rho * std::sin(azimuth) + map * 5.4e6 * wide), static_cast<float>(rho * slope)}});
+  }
+  if (layout == Layout::kOrganized) {
+    resize(lasers, std::max(kTurns * steps * (is_dual ? 2 : 1), kMaxColumns));
+    for (const Firing& one : firings) put(one.point, one.laser, one.column);
+    return;
+  }
+  const auto before = [&](const Firing& a, const Firing& b) {
+    const auto shuffled = [&](const Firing& one) { return (one.column * 8 + one.laser) * (2 * order + 1) % 257; };
+    return layout == Layout::kFirings ? a.column < b.column
+           : layout == Layout::kRings ? a.laser < b.laser
+                                      : shuffled(a) < shuffled(b);
+  };
+  std::stable_sort(firings.begin(), firings.end(), before);
+  resize(1, kMaxColumns);
+  const std::size_t spacing = has_gaps ? kWide / kMaxPoints : 1;
+  for (std::size_t i = 0; i < firings.size(); ++i) put(firings[i].point, 0, spacing * i);
+}
+
+void Shape::resize(std::size_t lasers, std::size_t columns) {
+  cells_.assign(lasers * columns, kEmpty);
+  points_.clear();
+  places_.clear();
+  lasers_ = lasers;
+  columns_ = 1;
+  stride_ = columns;
+}
+
+bool Shape::put(const Point& point, std::size_t laser, std::size_t column) {
+  std::uint8_t& cell = cells_[laser * stride_ + column];
+  if (cell != kEmpty) return false;
+  cell = static_cast<std::uint8_t>(points_.size());
+  points_.push_back(point);
+  places_.push_back({laser, column});
+  columns_ = std::max(columns_, column + 1);
+  return true;
 }
 
 const std::vector<Point>& Shape::pointsIn(std::size_t first, std::size_t end) {

@@ -3,6 +3,7 @@
 // Small scans and streams, made of bytes.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -30,11 +31,19 @@ class Shape {
   void read(Input& input, float unit, std::size_t lasers, std::size_t max_columns, std::size_t steps,
             const lisco::SensorHints& hints);
 
+  /// What a recording may hold: two returns of a firing, several turns, other orders than columns, coordinates of maps.
+  /// Returns often lie in the same direction as others.
+  /// \param lasers of the sensor; unorganized clouds have one
+  void readRecording(Input& input, float unit, std::size_t lasers, std::size_t steps, const lisco::SensorHints& hints);
+
+  /// Adds empty columns up to some.
+  void widen(std::size_t columns) { columns_ = std::clamp(columns, columns_, stride_); }
+
   std::size_t lasers() const { return lasers_; }
   std::size_t columns() const { return columns_; }
   /// The return's source index is its number among the points.
   lisco::Return at(std::size_t laser, std::size_t column) const {
-    const std::uint8_t number = cells_[laser * kMaxColumns + column];
+    const std::uint8_t number = cells_[laser * stride_ + column];
     if (number == kEmpty) return lisco::kNoReturn;
     const Point& point = points_[number];
     return {point.x, point.y, point.z, number};
@@ -51,7 +60,12 @@ class Shape {
     std::size_t laser, column;
   };
 
+  void resize(std::size_t lasers, std::size_t columns);
+  /// False if the cell is taken.
+  bool put(const Point& point, std::size_t laser, std::size_t column);
+
   std::size_t lasers_ = 0, columns_ = 0;
+  std::size_t stride_ = 0;  ///< columns there may be
   std::vector<std::uint8_t> cells_;
   std::vector<Point> points_, some_;
   std::vector<Place> places_;
