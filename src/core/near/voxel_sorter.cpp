@@ -55,7 +55,7 @@ HWY_INLINE void numberValues(const float* values, double corner, double per_metr
 std::size_t cutPart(const VoxelNumbering& numbering, unsigned number_bits, const FragmentList::Part& part,
                     std::uint64_t* starts, std::uint64_t* items) {
   std::uint32_t numbers[3][kBatch];
-  float coordinates[3][kBatch] = {};
+  float coordinates[3][kBatch];
   const unsigned major_shift = numbering.minor_bits + numbering.middle_bits;
   std::uint64_t last_key = ~std::uint64_t{0};
   std::uint32_t last_element = 0;
@@ -68,6 +68,8 @@ std::size_t cutPart(const VoxelNumbering& numbering, unsigned number_bits, const
       coordinates[1][i] = returns[i].y;
       coordinates[2][i] = returns[i].z;
     }
+    for (std::size_t axis = 0; axis < 3; ++axis)  // numbers that fit, of no return
+      std::fill(coordinates[axis] + size, coordinates[axis] + kBatch, static_cast<float>(numbering.corner[axis]));
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t axis = numbering.axis[i];
       numberValues(coordinates[axis], numbering.corner[axis], numbering.per_metre, numbers[i]);
@@ -92,7 +94,7 @@ std::size_t cutPart(const VoxelNumbering& numbering, unsigned number_bits, const
     starts[batch / kBatch] = starts_here;
   }
   const std::size_t end = part.near->count;
-  if (end % kBatch == 0) starts[end / kBatch] = 0;
+  if (end % kBatch == 0) starts[end / kBatch] = 0;  // a word that no batch has written
   starts[end / kBatch] |= std::uint64_t{1} << end % kBatch;
   return count;
 }
