@@ -115,11 +115,11 @@ bool parse(int argc, char** argv, Options& options) {
   return true;
 }
 
-/// The rivals, with the memory they keep from case to case.
-struct Rivals {
+/// What is measured, with the memory they keep from case to case.
+struct Methods {
   Baseline pcl, grid, lisco;
 
-  Rivals() {
+  Methods() {
     for (Baseline& baseline : allBaselines()) {
       if (baseline.key == "grid")
         grid = std::move(baseline);
@@ -155,19 +155,19 @@ bool agree(const Result& result, const Problem& problem, const Baseline& referen
   return difference.identical;
 }
 
-void measure(const Problem& problem, const Options& options, const Rivals& rivals, PclBudget& budget, Result& result) {
+void measure(const Problem& problem, const Options& options, const Methods& methods, PclBudget& budget, Result& result) {
   Clusters by_lisco, by_grid;
-  const double lisco_ms = millisecondsOf([&] { rivals.lisco.extract(problem, by_lisco); });
-  const double grid_ms = millisecondsOf([&] { rivals.grid.extract(problem, by_grid); });
+  const double lisco_ms = millisecondsOf([&] { methods.lisco.extract(problem, by_lisco); });
+  const double grid_ms = millisecondsOf([&] { methods.grid.extract(problem, by_grid); });
   result.clusters = by_grid.size();
-  result.identical = agree(result, problem, rivals.grid, by_grid, rivals.lisco, by_lisco);
+  result.identical = agree(result, problem, methods.grid, by_grid, methods.lisco, by_lisco);
   if (options.pcl_runs > 0 && budget.allows(result.tolerance)) {
     std::vector<double> times;
     for (unsigned run = 0; run < options.pcl_runs; ++run) {
       Clusters by_pcl;
-      times.push_back(millisecondsOf([&] { rivals.pcl.extract(problem, by_pcl); }));
+      times.push_back(millisecondsOf([&] { methods.pcl.extract(problem, by_pcl); }));
       if (run == 0)
-        result.identical = agree(result, problem, rivals.pcl, by_pcl, rivals.lisco, by_lisco) && result.identical;
+        result.identical = agree(result, problem, methods.pcl, by_pcl, methods.lisco, by_lisco) && result.identical;
     }
     result.pcl_ms = median(times);
     budget.spend(result.tolerance, result.pcl_ms);
@@ -180,7 +180,7 @@ void measure(const Problem& problem, const Options& options, const Rivals& rival
                       },
                       tried_ms, options.runs};
   };
-  const std::vector<Times> times = timeInTurn({contestant(rivals.grid, grid_ms), contestant(rivals.lisco, lisco_ms)},
+  const std::vector<Times> times = timeInTurn({contestant(methods.grid, grid_ms), contestant(methods.lisco, lisco_ms)},
                                               Clock::kThread, [](std::size_t, std::size_t) {});
   result.grid = times[0];
   result.lisco = times[1];
@@ -202,7 +202,7 @@ void printCase(const Result& result) {
   std::fflush(stdout);
 }
 
-void measureRecording(const Recording& recording, const Options& options, const Rivals& rivals,
+void measureRecording(const Recording& recording, const Options& options, const Methods& methods,
                       std::vector<Result>& results) {
   Problem problem;
   problem.cloud = recording.make();
@@ -221,7 +221,7 @@ void measureRecording(const Recording& recording, const Options& options, const 
     result.form = recording.form;
     result.tolerance = tolerance;
     result.returns = returns->size();
-    measure(problem, options, rivals, budget, result);
+    measure(problem, options, methods, budget, result);
     if (!options.summary) printCase(result);
     results.push_back(std::move(result));
   }
@@ -309,11 +309,11 @@ int run(const Options& options) {
   if (!options.summary)
     std::printf("%-51s %8s %5s %8s %9s %9s %9s %10s %10s\n", "  scan                 form", "returns", "eps",
                 "clusters", "PCL", "grid", "Lisco", "grid/Lisco", "PCL/Lisco");
-  const Rivals rivals;
+  const Methods methods;
   std::vector<Result> results;
   for (const Recording& recording : allRecordings(options.data))
     if ((options.set == 0 || recording.set == options.set) && recording.name().find(options.cloud) != std::string::npos)
-      measureRecording(recording, options, rivals, results);
+      measureRecording(recording, options, methods, results);
   if (results.empty()) throw std::runtime_error("no case is left to measure");
   printSets(results);
   if (!options.json.empty()) writeOwnFile(options.json, jsonOf(results), kSignature);

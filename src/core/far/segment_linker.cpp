@@ -112,7 +112,7 @@ void searchOne(const RangeImage& image, const RangeImage::Unplaced& point, Disjo
       if (image.rows[row].isEmpty() || image.lowest[row] > elevation + around ||
           image.highest[row] < elevation - around)
         continue;
-      // Bins behind the last one do no harm.
+      // Bins behind the last one are free.
       for (std::size_t cell = image.at(row, from); cell <= image.at(row, to); cell += kLanes) {
         const FloatMask near = areNeighbours(hn::Sub(hn::LoadU(kFloats, &image.x[cell]), x),
                                              hn::Sub(hn::LoadU(kFloats, &image.y[cell]), y),

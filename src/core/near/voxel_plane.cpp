@@ -209,7 +209,7 @@ void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
     std::uint32_t root = subclusters.find(near->element);
     plane.first_point[voxel] = static_cast<std::uint32_t>(points);
     do {
-      // Unordered clouds: returns, then their sets, come from anywhere in memory.
+      // In unordered clouds, returns and their sets are scattered in memory.
       const std::size_t left = count + following - i;
       if (left > kPrefetch) __builtin_prefetch(returnOf(items[i + kPrefetch]));
       if (left > kPrefetch / 2) subclusters.prefetch(returnOf(items[i + kPrefetch / 2])->element);
