@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/near/constants.h"
 #include "core/neighbour.h"
 #include "core/ring_block.h"
 
@@ -22,7 +23,6 @@ struct PointSpan {
   const float* z;
   std::size_t count;
 };
-inline constexpr std::size_t kReadBehind = 16;
 
 /// Numbers the voxels of some returns in float.
 /// \param which bit i: return i

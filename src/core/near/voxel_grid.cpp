@@ -5,15 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/near/constants.h"
 #include "core/near/kernels.h"
 
 namespace lisco {
 
 namespace {
 
-/// Side of a voxel over eps, a little less than 1 / sqrt (3). Rounding moves a return by less than an eighth of a
-/// voxel, so that neighbours, which are 1.7323 sides apart at most, lie in voxels whose numbers differ by 2 at most.
-constexpr double kSide = 0.9999 / 1.7320508075688772;
 /// 2^51: up to here, voxel numbers computed in double are exact enough.
 constexpr double kMaxNumber = 2251799813685248.0;
 constexpr std::size_t kMinSlots = 256;
@@ -33,7 +31,7 @@ bool sameKey(const std::array<std::uint32_t, 3>& a, const std::array<std::uint32
 
 void VoxelGrid::prepare(const Tolerance& new_tolerance) {
   tolerance = new_tolerance;
-  voxels_per_metre_ = 1.0 / (kSide * std::max(tolerance.reach(), 1e-22));
+  voxels_per_metre_ = 1.0 / (kVoxelSide * std::max(tolerance.reach(), 1e-22));
   in_float_range_ = voxels_per_metre_ > 1e-30 && voxels_per_metre_ < 1e30;
   points_ = 0;
   fragments.clear();

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/near/constants.h"
 #include "core/near/neighbourhood.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -180,8 +181,6 @@ namespace {
 
 HWY_EXPORT(linkWithin);
 HWY_EXPORT(linkAcross);
-
-constexpr std::size_t kPrefetch = 32;  // fragments ahead
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/disjoint_sets.h"
+#include "core/near/constants.h"
 #include "core/near/near_returns.h"
 #include "core/neighbour.h"
 
@@ -74,9 +75,6 @@ struct VoxelPlane {
     if (x.size() >= count + kReadBehind) return;
     for (auto* coordinate : {&x, &y, &z}) coordinate->resize(count + count / 4 + kReadBehind);
   }
-
- private:
-  static constexpr std::size_t kReadBehind = 16;  ///< floats, by vectors
 };
 
 /// What linking planes needs to know of the voxels' keys.

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/near/constants.h"
 #include "core/parallel.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -110,15 +111,6 @@ namespace {
 HWY_EXPORT(boundReturns);
 HWY_EXPORT(cutPart);
 
-/// Side of a voxel over eps, a little less than 1 / sqrt (3): more than rounding takes.
-constexpr double kSide = 0.9999 / 1.7320508075688772;
-/// Metres: between these, squares in float neither vanish nor overflow, and the returns of a voxel are neighbours.
-constexpr double kMinTolerance = 1e-18;
-constexpr double kMaxTolerance = 1e18;
-/// Of a voxel's number: converted by signed instructions of 32 bits.
-constexpr double kMaxNumber = 2147480000.0;
-constexpr unsigned kDigitBits = 11;  ///< of the radix sort: a histogram fits into the first-level cache
-
 unsigned bitsFor(std::uint64_t values) {
   unsigned bits = 1;
   while (values >> bits != 0) ++bits;
@@ -150,8 +142,8 @@ bool VoxelSorter::link(const std::vector<const NearReturns*>& parts, const Toler
 
 /// Chooses the axes and the bits of the keys.
 bool VoxelSorter::number(const Tolerance& tolerance) {
-  if (tolerance.reach() < kMinTolerance || tolerance.reach() > kMaxTolerance) return false;
-  numbering_.per_metre = 1 / (kSide * tolerance.reach());
+  if (tolerance.reach() < kMinSortedTolerance || tolerance.reach() > kMaxSortedTolerance) return false;
+  numbering_.per_metre = 1 / (kVoxelSide * tolerance.reach());
   double bricks[3];
   Box all{};
   for (const FragmentList::Part& part : fragments_.parts) {
@@ -164,7 +156,7 @@ bool VoxelSorter::number(const Tolerance& tolerance) {
     numbering_.corner[axis] = static_cast<double>(all.lo[axis]);
     const double voxels =
         (static_cast<double>(all.hi[axis]) - static_cast<double>(all.lo[axis])) * numbering_.per_metre;
-    if (!(voxels < kMaxNumber)) return false;
+    if (!(voxels < kMaxVoxelNumber)) return false;
     bricks[axis] = voxels / 4;
   }
   numbering_.axis[0] = 0;

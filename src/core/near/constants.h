@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstddef>
+
+namespace lisco {
+
+// Constants of the voxels. "measured" means by benchmarks/suite.sh recordings.
+
+/// Side of a voxel over eps, a little less than 1 / sqrt (3): the returns of a voxel are neighbours, and neighbours lie
+/// in voxels whose numbers differ by 2 at most, whatever rounding does (doc/algorithm.md).
+inline constexpr double kVoxelSide = 0.9999 / 1.7320508075688772;
+
+/// Floats that are read behind the last point, by vectors.
+inline constexpr std::size_t kReadBehind = 16;
+
+// --- Sorting --------------------------------------------------------------------------------------------------------
+
+/// Metres: between these, squares in float neither vanish nor overflow.
+inline constexpr double kMinSortedTolerance = 1e-18;
+inline constexpr double kMaxSortedTolerance = 1e18;
+/// Of a voxel's number along an axis: converted by signed instructions of 32 bits.
+inline constexpr double kMaxVoxelNumber = 2147480000.0;
+/// Of the radix sort: a histogram of 8 KiB fits into the first-level cache.
+inline constexpr unsigned kDigitBits = 11;
+/// Fragments between a prefetch and its use: measured on shuffled clouds, flat from 16 to 64.
+inline constexpr std::size_t kPrefetch = 32;
+
+}  // namespace lisco
