@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// How long a stream's user waits: for a column to be taken, for the clusters after the last one, for an endless stream's
-// clusters, for the next window.
+// How long a stream's user waits: for a column to be taken, for the clusters after the last one, for an endless
+// stream's clusters, for the next window.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -291,8 +291,8 @@ class ColumnsTable {
   }
 
  private:
-  /// Feeds the rotations again and again without an end, in virtual time: a column comes when the sensor fires it, or when
-  /// the one before has been taken.
+  /// Feeds the rotations again and again without an end, in virtual time: a column comes when the sensor fires it, or
+  /// when the one before has been taken.
   static bool feedEndlessly(const Case& one, unsigned runs, std::vector<double>& columns,
                             std::vector<double>& deliveries) {
     const Rotation& first = one.rotations.front();

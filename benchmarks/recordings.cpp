@@ -155,7 +155,8 @@ bool agree(const Result& result, const Problem& problem, const Baseline& referen
   return difference.identical;
 }
 
-void measure(const Problem& problem, const Options& options, const Methods& methods, PclBudget& budget, Result& result) {
+void measure(const Problem& problem, const Options& options, const Methods& methods, PclBudget& budget,
+             Result& result) {
   Clusters by_lisco, by_grid;
   const double lisco_ms = millisecondsOf([&] { methods.lisco.extract(problem, by_lisco); });
   const double grid_ms = millisecondsOf([&] { methods.grid.extract(problem, by_grid); });
