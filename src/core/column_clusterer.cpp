@@ -163,11 +163,12 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
 /// Reads the first columns. If linking far returns takes longer than sorting, all returns of the rotation are near.
 /// \return the columns read
 std::size_t ColumnClusterer::Rotation::tryFar(std::size_t columns, std::size_t lasers, const CellSource& cells) {
-  if (partition_count_ == 1) parts_.assign(1, {0, columns});
-  if (partition_count_ > 1)
+  if (partition_count_ > 1) {
     preparePart(0);
-  else
-    partitions_[0].collectNear();  // prepared by begin ()
+  } else {
+    parts_.assign(1, {0, columns});
+    partitions_[0].collectNear();  // prepared when it was taken into use
+  }
   const std::size_t tried = std::min(kTriedColumns, parts_[0].end);
   if (!partitions_[0].hasFar()) return 0;
   readPart(0, 0, tried, lasers, cells);

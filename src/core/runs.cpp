@@ -32,15 +32,14 @@ void Runs::add(const RingBlock& block, RingBlockInfo& info, std::size_t laser, s
       info.run[i] = element;
       runs[number++] = {first_cell + static_cast<std::uint32_t>(i), 1, 0};
     });
-    blocks.push_back({static_cast<std::uint32_t>(laser), first_column, first_cell, first_run, number - first_run});
-    return;
+  } else {
+    forEachChain(info.starts, info.returns, [&](std::size_t begin, std::size_t end) {
+      const std::uint32_t element = first_element + number;
+      subclusters.create(element);
+      std::fill(info.run + begin, info.run + end, element);
+      runs[number++] = {first_cell + static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin), 0};
+    });
   }
-  forEachChain(info.starts, info.returns, [&](std::size_t begin, std::size_t end) {
-    const std::uint32_t element = first_element + number;
-    subclusters.create(element);
-    std::fill(info.run + begin, info.run + end, element);
-    runs[number++] = {first_cell + static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin), 0};
-  });
   blocks.push_back({static_cast<std::uint32_t>(laser), first_column, first_cell, first_run, number - first_run});
 }
 

@@ -197,9 +197,10 @@ void VoxelSorter::divide() {
   const std::size_t parts = fragments_.parts.size();
   slabs_.assign(1, {0, part_sizes_[0]});
   if (parts == 1) return;
-  constexpr std::size_t kGroups = 1024;  // of planes
+  constexpr unsigned kGroupBits = 10;
+  constexpr std::size_t kGroups = std::size_t{1} << kGroupBits;  // of planes
   const unsigned plane_bits = numbering_.bits + number_bits_ - plane_shift_;
-  const unsigned shift = plane_shift_ + (plane_bits > 10 ? plane_bits - 10 : 0);
+  const unsigned shift = plane_shift_ + (plane_bits > kGroupBits ? plane_bits - kGroupBits : 0);
   histogram_.assign(parts * kGroups, 0);
   inParallel(parts, [&](std::size_t part) {
     const std::uint64_t* const items = &items_[fragments_.parts[part].first];
