@@ -43,8 +43,7 @@ constexpr std::uint16_t kDefaultPort = 2368;  // of Velodyne's sensors
 struct Options {
   fs::path capture;                   ///< empty: live
   std::optional<std::uint16_t> port;  ///< of a capture: only packets to it
-  std::string sensor;
-  fs::path calibration;
+  DecoderOptions decoder;
   bool endless = false;
   StreamOptions stream;
   bool realtime = false;
@@ -96,20 +95,20 @@ bool parse(int argc, char** argv, Options& options) {
       "Exit code 0; 2 on wrong usage, if no packet is one of the sensor's, or if the capture breaks off (after\n"
       "the packets before it have been clustered).\n\n"
       "Options");
-  const std::string sensors = boost::join(sensorModelNames(), ", ");
+  const std::string sensors = boost::join(sensorNames(), ", ");
   std::vector<std::string> inputs;
   std::string port;
   ClusterOptions clustering;
   // clang-format off
   shown.add_options()
-    ("sensor", po::value<std::string>(&options.sensor)->value_name("NAME"), sensors.c_str());
+    ("sensor", po::value<std::string>(&options.decoder.sensor)->value_name("NAME"), sensors.c_str());
   clustering.addTo(shown);
   shown.add_options()
     ("port", po::value<std::string>(&port)->value_name("N")->implicit_value(std::to_string(kDefaultPort)),
      "UDP port to receive from (without a number: 2368; 0: any that is free); with a capture, take only packets to it")
     ("mode", textOption("NAME", [&](const std::string& text) { options.endless = isEndless(text); }),
      "rotation or endless (default rotation)")
-    ("calibration", textOption("FILE", [&](const std::string& text) { options.calibration = text; }),
+    ("calibration", textOption("FILE", [&](const std::string& text) { options.decoder.calibration = text; }),
      "the calibration (db.xml) of the hdl64e, each of which has its own")
     ("rotations", countOption("--rotations", options.stream.rotations, 1), "end after N rotations")
     ("realtime", po::bool_switch(&options.realtime),
@@ -132,7 +131,7 @@ bool parse(int argc, char** argv, Options& options) {
   if (given.count("port") != 0)
     options.port = static_cast<std::uint16_t>(countOf(port, "--port", 0, std::numeric_limits<std::uint16_t>::max()));
   if (options.realtime && options.capture.empty()) throw std::runtime_error("--realtime is for captures only");
-  if (options.sensor.empty()) throw std::runtime_error("--sensor is missing (" + sensors + "); see --help");
+  if (options.decoder.sensor.empty()) throw std::runtime_error("--sensor is missing (" + sensors + "); see --help");
 
   clustering.check();
   options.stream.tolerance = static_cast<float>(clustering.tolerance);
@@ -220,15 +219,14 @@ Clock::time_point receivedAt(const Packet& packet, bool is_live) {
   return now - std::max(Clock::duration::zero(), std::chrono::duration_cast<Clock::duration>(since_1970 - arrival));
 }
 
-/// Measures the step from column to column on the whole capture, which is more exact than while decoding. Does nothing
-/// for live packets and for pipes, which can be read only once.
-void measureStep(const Options& options, Decoder& decoder) {
+/// Prepares the decoder by the whole capture. Does nothing for live packets and for pipes, which can be read only once.
+void prepare(const Options& options, Decoder& decoder) {
   std::error_code unknown;
   const fs::file_type type = fs::status(options.capture, unknown).type();
   if (options.capture.empty() || type == fs::file_type::fifo || type == fs::file_type::character) return;
   CaptureFile capture(options.capture, options.port);
   UntilInterrupted source(capture);
-  if (const double step = stepIn(source, decoder.model()); step > 0) decoder.setStep(step);
+  decoder.prepare(source);
 }
 
 /// Clusters packets until the source ends, a signal comes, or the stream has the wanted rotations.
@@ -257,9 +255,10 @@ void takePackets(const Input& input, Decoder& decoder, OtherSensors& others, Str
 }
 
 int run(const Options& options) {
-  Decoder decoder(makeSensorModel(options.sensor, options.calibration));
+  const std::unique_ptr<Decoder> made = makeDecoder(options.decoder);
+  Decoder& decoder = *made;
   listenToSignals();
-  measureStep(options, decoder);
+  prepare(options, decoder);
   std::optional<LabelledClouds> clouds;
   if (!options.output.empty()) clouds.emplace(options.output);
   Report report(options.json ? Report::Format::kJson : Report::Format::kText, clouds ? &*clouds : nullptr);

@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "sensors/capture_file.h"
-#include "sensors/decoder.h"
 #include "sensors/rotation_cutter.h"
+#include "sensors/velodyne_decoder.h"
 
 namespace lisco_benchmarks {
 namespace {
@@ -30,11 +30,11 @@ Cloud::Ptr organized(const std::vector<Cell>& cells, std::size_t lasers) {
 
 std::vector<Cloud::Ptr> readRotations(const std::filesystem::path& file, const std::string& model_name,
                                       std::size_t most, double overlap) {
-  const SensorModel model = makeSensorModel(model_name);
+  const VelodyneModel model = makeVelodyneModel(model_name);
   CaptureFile first_pass(file);
   const double step = stepIn(first_pass, model);
   CaptureFile capture(file);
-  Decoder decoder(model);
+  VelodyneDecoder decoder(model);
   decoder.setStep(step);
   RotationCutter cutter;
   const std::size_t lasers = model.lasers.size();

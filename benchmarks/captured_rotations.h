@@ -12,7 +12,7 @@
 namespace lisco_benchmarks {
 
 /// The whole rotations of a capture, the first ones, organized: a row per laser from top to bottom.
-/// \param model as makeSensorModel takes it
+/// \param model as makeVelodyneModel takes it
 /// \param most the number of rotations
 /// \param overlap first columns of the next rotation that follow each, as a share of its own columns
 /// \throws std::runtime_error with one line if the file cannot be read or holds no whole rotation

@@ -32,7 +32,7 @@
 #include "lisco/endless_clusterer.h"
 #include "lisco/sensor_hints.h"
 #include "lisco/window_clusterer.h"
-#include "sensors/sensor_model.h"
+#include "sensors/velodyne_model.h"
 
 namespace {
 
@@ -132,7 +132,7 @@ std::string modelOf(const Options& options, const std::string& name) {
 double columnPeriodOf(const std::string& model) {
   if (model == "os1") return 1e6 / (20 * 1024);
   if (model == "hdl64e") return 48.0;  // its calibration file is of no use for that
-  return makeSensorModel(model).firing_period_us;
+  return makeVelodyneModel(model).firing_period_us;
 }
 
 /// A rotation as its columns come.

@@ -2,127 +2,117 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
-#include "packet_order.h"
+#include "io/text.h"
 #include "packet_source.h"
-#include "sensor_model.h"
 
 namespace lisco_apps {
 
-/// The measurement of one laser, in the sensor's frame (x forward, y left, z up), metres. All NaN without a return.
+/// The measurement of one laser, in the sensor's frame (see Decoder), metres. All NaN without a return.
 struct Cell {
   float x, y, z;
-  float intensity;  ///< 0..255
+  float intensity;  ///< as the sensor counts it, >= 0
 };
 
 /// One firing of all lasers.
 struct Column {
-  const std::vector<Cell>& cells;  ///< from the top laser to the bottom one
-  double azimuth;                  ///< of the sensor as its first laser fires: degrees clockwise, 0 <= azimuth < 360
-  double time_us;                  ///< then, by the sensor's clock: microseconds past the hour, may pass the next one
-  bool after_break;                ///< at least a whole turn is missing before it, or an unknown part
+  const std::vector<Cell>& cells;  ///< from the top laser to the bottom one; with two returns each, 2 * laser + return
+  double azimuth;    ///< of the sensor as its first laser fires: degrees clockwise from +x, 0 <= azimuth < 360
+  double time_us;    ///< then, by the sensor's clock: microseconds past the hour, may pass the next one
+  bool after_break;  ///< at least a whole turn is missing before it, or an unknown part, or its number of cells differs
 };
 
-/// Decodes a Velodyne sensor's packets to columns:
+/// Which of the two returns of a laser and firing are given, if a packet carries two.
+enum class ReturnChoice { kStrongest, kLast, kBoth };
+
+/// What a decoder must know of its sensor.
+struct DecoderOptions {
+  std::string sensor;  ///< one of sensorNames ()
+  fs::path calibration;
+  fs::path metadata;
+  ReturnChoice returns = ReturnChoice::kStrongest;
+};
+
+/// Decodes a sensor's packets to columns:
+///   const std::unique_ptr<Decoder> decoder = makeDecoder (options);
 ///   while (source.next (packet) == PacketSource::Arrival::kPacket)
-///     decoder.decode (packet, [] (const Column& column) { ... });
+///     decoder->decode (packet, [] (const Column& column) { ... });
 ///
-/// The lasers of a column fire one after the other while the sensor turns, so each gets its own azimuth, by the turning
-/// from one block to the next: the median of the latest steps, as a single azimuth is rounded. Of dual returns the
-/// stronger is kept, as the sensor does in single mode. Late packets are dropped, see PacketOrder.
-///
-/// PCL's HDLGrabber and VLPGrabber ignore the delays of the lasers (up to 0.23 m in the tests' captures), drop cells
-/// without a return, report no end of a capture, and do not support the VLS-128.
-///
+/// The frame is the sensor's own, z up. Each decoder names its axes. Columns of packets that come late are dropped.
 /// Does not allocate memory from packet to packet. Accepts any bytes.
 class Decoder {
  public:
+  using Visitor = std::function<void(const Column&)>;
+
   enum class Kind {
     kData,
     kLate,      ///< data that came late, and was dropped
-    kPosition,  ///< of the sensor's GPS
-    kForeign,   ///< not this sensor's: by its length, its blocks' flags, or an azimuth of more than 360 degrees
+    kPosition,  ///< of the sensor's GPS or IMU
+    kForeign,   ///< not this sensor's
   };
 
   struct Counts {
-    std::uint64_t data = 0, late = 0, position = 0, foreign = 0;
-    std::uint64_t says_other_model = 0;  ///< data whose factory bytes name another model, which are unreliable
+    std::uint64_t data = 0, late = 0, position = 0, foreign = 0;  ///< packets, each one of these
+    std::uint64_t says_other_model = 0;  ///< data that names another model, which is unreliable
     std::uint64_t dual = 0;              ///< data with two returns per laser
+    std::uint64_t missing = 0;           ///< data that never came, or late
+    std::uint64_t clock_jumps = 0;       ///< the sensor's clock was set, or another recording began
     std::uint64_t columns = 0;
   };
 
-  explicit Decoder(SensorModel model);
+  virtual ~Decoder() = default;
 
   /// Calls visit for each column of the packet, in the order of time.
-  Kind decode(const Packet& packet, const std::function<void(const Column&)>& visit);
+  virtual Kind decode(const Packet& packet, const Visitor& visit) = 0;
 
-  const SensorModel& model() const { return model_; }
+  /// Measures on a whole capture, which is read to its end, what is less exact while decoding.
+  virtual void prepare(PacketSource& /*capture*/) {}
+
+  const std::string& name() const { return name_; }
+  /// Degrees above the horizon, of each laser from top to bottom.
+  const std::vector<double>& elevations() const { return elevations_; }
+  std::size_t lasers() const { return elevations_.size(); }
+  /// Upper bound of the azimuth between a column and its returns of 0.5 m or more, radians, at up to 20 turns a second.
+  double stagger() const { return stagger_; }
   const Counts& counts() const { return counts_; }
-  const PacketOrder& order() const { return order_; }
 
-  /// Degrees that the sensor turns from one block of all lasers to the next; 0 if it does not turn, or before the
-  /// second packet.
-  double step() const { return step_; }
-  /// Sets the step instead of measuring it, for example to stepIn () of the whole capture.
-  void setStep(double degrees);
+  /// Columns and microseconds of a full turn; 0 if unknown, or if the sensor does not turn.
+  virtual double columnsPerTurn() const = 0;
+  virtual double turnUs() const = 0;
+  /// Microseconds from packet to packet, of this sensor in the mode of the last packet.
+  virtual double packetPeriodUs() const = 0;
+  /// Microseconds between the last two packets that were not late; 0 if unknown.
+  virtual double gapUs() const = 0;
+  /// Median time between the first packets, microseconds; 0 before it is known. Far from packetPeriodUs (), the packets
+  /// are another sensor's.
+  virtual double usualGapUs() const = 0;
 
-  /// Columns and microseconds of a full turn, by the mean of the steps between half and twice the median; 0 if the
-  /// sensor does not turn.
-  double columnsPerTurn() const;
-  double turnUs() const { return columnsPerTurn() * model_.firing_period_us; }
-  /// Microseconds from packet to packet in the mode of the last one.
-  double packetPeriodUs() const { return packet_period_us_; }
+ protected:
+  Decoder(std::string name, std::vector<double> elevations, double stagger)
+      : name_(std::move(name)), elevations_(std::move(elevations)), stagger_(stagger) {}
+  Decoder(const Decoder&) = default;
+  Decoder& operator=(const Decoder&) = default;
+
+  Counts counts_;
 
  private:
-  static constexpr std::size_t kBlocks = 12;
-  static constexpr std::size_t kStepLimit = 256;  ///< hundredths of a degree; larger steps have packets missing
-
-  /// How blocks make firings: return r of block k of group g is block g * group + k * part + r * second of the packet.
-  struct Layout {
-    std::size_t groups, group, part, second;
-    bool isDual() const { return second != 0; }
-  };
-  /// Lasers of one azimuth.
-  struct Direction {
-    std::size_t block;  ///< of a firing's blocks
-    double azimuth_offset, delay_us;
-    double cosine = 0, sine = 0;  ///< of the azimuth of the current firing
-  };
-  struct Row {
-    std::size_t direction;
-    std::size_t offset;   ///< of the measurement in its block, bytes
-    double cosine, sine;  ///< of the elevation
-  };
-
-  std::optional<Layout> layoutOf(const std::uint8_t* data) const;
-  bool isLaidOut(const std::uint8_t* data, const Layout& layout) const;
-  void measureStep(const std::uint8_t* data, const Layout& layout);
-  double blockPeriodUs() const { return static_cast<double>(model_.firings) * model_.firing_period_us; }
-  double azimuthLater(double azimuth, double delay_us) const { return azimuth + step_ * delay_us / blockPeriodUs(); }
-  void decodeFiring(const std::uint8_t* group, const Layout& layout, std::size_t firing);
-
-  SensorModel model_;
-  std::vector<Direction> directions_;
-  std::vector<Row> rows_;  ///< as the model's lasers
-  std::vector<Cell> cells_;
-  Counts counts_;
-  PacketOrder order_;
-  double packet_period_us_;
-  double step_ = 0;
-  double mean_step_ = 0;
-  bool step_is_set_ = false;
-  std::optional<unsigned> last_azimuth_;
-  std::array<std::uint32_t, kStepLimit> steps_{};  ///< histogram by hundredths of a degree
-  std::uint32_t step_count_ = 0;
+  std::string name_;
+  std::vector<double> elevations_;
+  double stagger_;
 };
 
-/// Decoder::step () of all packets of a capture, which is read to its end.
-double stepIn(PacketSource& capture, const SensorModel& model);
+/// The sensors that makeDecoder () accepts.
+std::vector<std::string> sensorNames();
+
+/// \throws std::runtime_error with one line if the sensor is unknown, or if a file it needs is missing, malformed, or
+///         given to a sensor that has none
+std::unique_ptr<Decoder> makeDecoder(const DecoderOptions& options);
 
 }  // namespace lisco_apps

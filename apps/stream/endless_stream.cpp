@@ -8,25 +8,6 @@
 #include <utility>
 
 namespace lisco_apps {
-namespace {
-
-/// Upper bound of the azimuth between a return and its column, radians: by the laser's place, by the delay of its
-/// firing, and by a margin.
-double staggerOf(const SensorModel& model) {
-  constexpr double kMaxSpeed = 360 * 20e-6;  // degrees per microsecond: 20 turns a second
-  constexpr double kJitter = 1;              // degrees by which an azimuth may step back
-  constexpr double kMinRange = 0.5;          // metres, of returns of lasers beside the axis
-  double bound = 0;
-  for (const Laser& laser : model.lasers) {
-    const double beside = std::asin(std::min(1., std::fabs(laser.side) / kMinRange));
-    const double offset = std::fabs(laser.azimuth_offset) + kMaxSpeed * laser.delay_us;
-    bound = std::max(bound, (offset + kJitter) * kRadiansPerDegree + beside);
-  }
-  return bound;
-}
-
-}  // namespace
-
 EndlessStream::EndlessStream(const StreamOptions& options, const Decoder& decoder, Listener& listener)
     : Stream(options, decoder, listener) {
   lisco::EndlessParameters parameters;
@@ -34,8 +15,7 @@ EndlessStream::EndlessStream(const StreamOptions& options, const Decoder& decode
   parameters.min_size = options.min_size;
   parameters.max_size = options.max_size;
   parameters.clockwise = true;  // as azimuths count, from +x
-  parameters.stagger = std::min(staggerOf(decoder.model()), lisco::EndlessParameters::kMaxStagger);
-  parameters.lasers = decoder.model().lasers.size();
+  parameters.stagger = std::min(decoder.stagger(), lisco::EndlessParameters::kMaxStagger);
   parameters.block_columns = kBlock;
   clusterer_.begin(parameters, [this](const lisco::EndlessCluster& cluster) { deliver(cluster); });
 }
@@ -107,7 +87,7 @@ double EndlessStream::positionOf(const Column& column) {
   if (last_time_us_ && decoder_.turnUs() > 0 && !column.after_break) {
     turns = std::remainder(column.time_us - *last_time_us_, kHourUs) / decoder_.turnUs();
   } else if (column.after_break && decoder_.turnUs() > 0) {
-    turns = decoder_.order().gap() / decoder_.turnUs();  // 0 if unknown
+    turns = decoder_.gapUs() / decoder_.turnUs();  // 0 if unknown
   }
   last_time_us_ = column.time_us;
   return position_.next(column.azimuth, turns, column.after_break);

@@ -19,10 +19,11 @@ constexpr double kMaxOtherDeviation = 0.1;    ///< and from that of a proposed o
 template <typename Fits>
 std::vector<std::string> sensorsThat(Fits&& fits) {
   std::vector<std::string> sensors;
-  for (const std::string& name : sensorModelNames()) {
+  for (const std::string& name : sensorNames()) {
     if (name == "hdl64e") continue;
-    Decoder decoder(makeSensorModel(name));
-    if (fits(decoder)) sensors.push_back(name);
+    DecoderOptions options;
+    options.sensor = name;
+    if (fits(*makeDecoder(options))) sensors.push_back(name);
   }
   return sensors;
 }
@@ -42,21 +43,21 @@ void OtherSensors::inspect(const Packet& packet, Decoder::Kind kind, const Decod
 }
 
 std::string OtherSensors::paceWarning(const Decoder& decoder) {
-  const double usual_us = decoder.order().usualGap();
+  const double usual_us = decoder.usualGapUs();
   if (knows_pace_ || usual_us <= 0) return {};
   knows_pace_ = true;
   const double own_us = decoder.packetPeriodUs();
   if (std::fabs(usual_us / own_us - 1) < kMaxOwnDeviation) return {};
   const std::vector<std::string> by_pace = sensorsThat(
       [&](const Decoder& other) { return std::fabs(usual_us / other.packetPeriodUs() - 1) < kMaxOtherDeviation; });
-  return formatted("packets come every %.0f us, but those of a %s every %.0f us", usual_us,
-                   decoder.model().name.c_str(), own_us) +
+  return formatted("packets come every %.0f us, but those of a %s every %.0f us", usual_us, decoder.name().c_str(),
+                   own_us) +
          questionOf(by_pace);
 }
 
 std::string OtherSensors::nothingCame(const PacketSource& source, const Decoder& decoder) const {
   const Decoder::Counts& counts = decoder.counts();
-  std::string text = "no data packet of a " + decoder.model().name + " has come";
+  std::string text = "no data packet of a " + decoder.name() + " has come";
   if (source.packets() + source.foreign() > 0)
     text += formatted(" (%llu position packets, %llu foreign)", static_cast<unsigned long long>(counts.position),
                       static_cast<unsigned long long>(counts.foreign + source.foreign()));

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/text.h"
+#include "sensors/laser.h"
 
 namespace lisco_apps {
 namespace {
@@ -161,7 +162,7 @@ void Report::showStatus(const Decoder& decoder, const Stream& stream) {
   else
     shown_ =
         formatted("%llu rotations, %llu columns, packets: %llu lost, %llu late; %llu clusters, ms: p50 %.2f, p99 %.2f",
-                  number(turns_), number(counts.columns), number(decoder.order().missing()), number(counts.late),
+                  number(turns_), number(counts.columns), number(counts.missing), number(counts.late),
                   number(clusters_), latency.percentileMs(0.5), latency.percentileMs(0.99));
   status_.show(shown_);
 }
@@ -181,18 +182,17 @@ void Report::printStatistics(const PacketSource& source, const Decoder& decoder,
   };
   const Decoder::Counts& counts = decoder.counts();
   const double per_second = decoder.turnUs() > 0 ? 1e6 / decoder.turnUs() : 0;
-  std::string table =
-      formatted("sensor      %s, %zu lasers, %.0f columns a turn, %.2f turns a second\n", decoder.model().name.c_str(),
-                decoder.model().lasers.size(), decoder.columnsPerTurn(), per_second);
+  std::string table = formatted("sensor      %s, %zu lasers, %.0f columns a turn, %.2f turns a second\n",
+                                decoder.name().c_str(), decoder.lasers(), decoder.columnsPerTurn(), per_second);
   table += formatted("packets     %llu data, %llu position, %llu foreign, %llu lost, %llu late\n", number(counts.data),
-                     number(counts.position), number(counts.foreign + source.foreign()),
-                     number(decoder.order().missing()), number(counts.late));
+                     number(counts.position), number(counts.foreign + source.foreign()), number(counts.missing),
+                     number(counts.late));
   if (counts.dual > 0) table += formatted("            %llu with two returns per laser\n", number(counts.dual));
   if (counts.says_other_model > 0)
     table += formatted("            %llu name another model of sensor in their last byte\n",
                        number(counts.says_other_model));
-  if (decoder.order().clockJumps() > 0)
-    table += formatted("            the sensor's clock was set %llu times\n", number(decoder.order().clockJumps()));
+  if (counts.clock_jumps > 0)
+    table += formatted("            the sensor's clock was set %llu times\n", number(counts.clock_jumps));
   table += formatted("rotations   %llu\ncolumns     %llu\nreturns     %llu\nclusters    %llu, of %llu returns\n",
                      number(turns_), number(columns_), number(returns_), number(clusters_), number(in_clusters_));
   const std::optional<std::uint64_t> outliers = stream.outliers();

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lisco/sensor_hints.h"
+#include "sensors/laser.h"
 
 namespace lisco_apps {
 namespace {
@@ -16,9 +17,9 @@ lisco::SensorHints hintsFor(const Decoder& decoder) {
   lisco::SensorHints hints;
   hints.clockwise = true;
   hints.steps_per_turn = static_cast<int>(std::lround(std::min(decoder.columnsPerTurn(), double{kMaxColumns})));
-  const std::vector<Laser>& lasers = decoder.model().lasers;
+  const std::vector<double>& elevations = decoder.elevations();
   std::vector<double> steps;
-  for (std::size_t i = 1; i < lasers.size(); ++i) steps.push_back(lasers[i - 1].elevation - lasers[i].elevation);
+  for (std::size_t i = 1; i < elevations.size(); ++i) steps.push_back(elevations[i - 1] - elevations[i]);
   if (steps.empty()) return hints;
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
@@ -46,7 +47,7 @@ bool RotationStream::add(const Column& column, const Origin& origin) {
 }
 
 /// The expected view of the next rotation, which affects the speed only.
-lisco::Parameters RotationStream::parameters() const {
+lisco::Parameters RotationStream::parametersFor(const Column& first) const {
   lisco::Parameters parameters;
   parameters.sensor = hintsFor(decoder_);
   if (turn_.columns() > 0) {
@@ -60,12 +61,12 @@ lisco::Parameters RotationStream::parameters() const {
     if (estimated.steps_per_turn > 0) parameters.sensor = estimated;
   }
   parameters.tolerance = options_.tolerance;
-  parameters.lasers = decoder_.model().lasers.size();
+  parameters.lasers = first.cells.size();
   return parameters;
 }
 
 void RotationStream::begin(const Column& column) {
-  clusterer_.begin(parameters());
+  clusterer_.begin(parametersFor(column));
   turn_.begin(++rotations_, column.cells.size(), column.azimuth);
   has_begun_ = true;
 }

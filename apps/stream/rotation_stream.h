@@ -24,7 +24,7 @@ class RotationStream : public Stream {
   void begin(const Column& column);
   void end();
   void collect();
-  lisco::Parameters parameters() const;
+  lisco::Parameters parametersFor(const Column& first) const;
 
   lisco::ColumnClusterer clusterer_;
   Turn turn_;

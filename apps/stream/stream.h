@@ -131,7 +131,7 @@ class Stream {
   bool isOver() const { return options_.rotations != 0 && rotations_ == options_.rotations; }
   /// Packets missing since the last call.
   std::uint64_t takeLost() {
-    const std::uint64_t before = std::exchange(missing_before_, decoder_.order().missing());
+    const std::uint64_t before = std::exchange(missing_before_, decoder_.counts().missing);
     return missing_before_ - before;
   }
 

@@ -9,9 +9,9 @@
 #include "input.h"
 #include "scratch_file.h"
 #include "sensors/capture_file.h"
-#include "sensors/decoder.h"
 #include "sensors/rotation_cutter.h"
-#include "sensors/sensor_model.h"
+#include "sensors/velodyne_decoder.h"
+#include "sensors/velodyne_model.h"
 
 namespace lisco_test {
 namespace {
@@ -19,9 +19,9 @@ namespace {
 constexpr std::size_t kDataBytes = 1206;
 
 /// The sensors; the HDL-64E with a plausible calibration.
-const std::array<lisco_apps::SensorModel, 4>& models() {
-  static const std::array<lisco_apps::SensorModel, 4> all = [] {
-    lisco_apps::SensorModel hdl64e{"hdl64e", {}, {0xEEFF, 0xDDFF}, 1, 48., 0.002, {}};
+const std::array<lisco_apps::VelodyneModel, 4>& models() {
+  static const std::array<lisco_apps::VelodyneModel, 4> all = [] {
+    lisco_apps::VelodyneModel hdl64e{"hdl64e", {}, {0xEEFF, 0xDDFF}, 1, 48., 0.002, {}};
     for (std::size_t i = 0; i < 64; ++i) {
       lisco_apps::Laser laser;
       laser.number = i;
@@ -32,15 +32,15 @@ const std::array<lisco_apps::SensorModel, 4>& models() {
       laser.side = i % 2 == 0 ? 0.026 : -0.026;
       hdl64e.lasers.push_back(laser);
     }
-    return std::array<lisco_apps::SensorModel, 4>{lisco_apps::makeSensorModel("vlp16"),
-                                                  lisco_apps::makeSensorModel("hdl32e"),
-                                                  lisco_apps::makeSensorModel("vls128"), hdl64e};
+    return std::array<lisco_apps::VelodyneModel, 4>{lisco_apps::makeVelodyneModel("vlp16"),
+                                                    lisco_apps::makeVelodyneModel("hdl32e"),
+                                                    lisco_apps::makeVelodyneModel("vls128"), hdl64e};
   }();
   return all;
 }
 
 /// A packet with the layout of the sensor's and random content.
-void makePacket(Input& input, const lisco_apps::SensorModel& model, std::vector<std::uint8_t>& packet) {
+void makePacket(Input& input, const lisco_apps::VelodyneModel& model, std::vector<std::uint8_t>& packet) {
   packet.assign(kDataBytes, 0);
   const unsigned how = input.byte();
   const auto put16 = [&](std::size_t at, unsigned value) {
@@ -68,8 +68,8 @@ void makePacket(Input& input, const lisco_apps::SensorModel& model, std::vector<
     packet[(input.byte() << 8 | input.byte()) % kDataBytes] = static_cast<std::uint8_t>(input.byte());
 }
 
-void decodePackets(Input& input, const lisco_apps::SensorModel& model) {
-  lisco_apps::Decoder decoder(model);
+void decodePackets(Input& input, const lisco_apps::VelodyneModel& model) {
+  lisco_apps::VelodyneDecoder decoder(model);
   lisco_apps::RotationCutter cutter;
   std::vector<std::uint8_t> bytes;
   std::uint64_t packets = 0;
@@ -99,8 +99,8 @@ void decodePackets(Input& input, const lisco_apps::SensorModel& model) {
       }
       cutter.startsRotation(column.azimuth, column.after_break);
     });
-    hold((kind == lisco_apps::Decoder::Kind::kPosition) == (bytes.size() == 512), "a packet of the GPS");
-    const lisco_apps::Decoder::Counts& counts = decoder.counts();
+    hold((kind == lisco_apps::VelodyneDecoder::Kind::kPosition) == (bytes.size() == 512), "a packet of the GPS");
+    const lisco_apps::VelodyneDecoder::Counts& counts = decoder.counts();
     hold(counts.data + counts.late + counts.position + counts.foreign == packets, "the number of packets");
     hold(counts.columns == columns, "the number of columns");
     hold(decoder.step() >= 0 && decoder.step() < 2.56, "an implausible step");

@@ -16,8 +16,8 @@
 
 #include "endless_streams.h"
 #include "sensors/capture_file.h"
-#include "sensors/decoder.h"
 #include "sensors/rotation_cutter.h"
+#include "sensors/velodyne_decoder.h"
 
 namespace lisco_test {
 namespace {
@@ -26,8 +26,8 @@ namespace fs = std::filesystem;
 using lisco_apps::CaptureFile;
 using lisco_apps::Cell;
 using lisco_apps::Column;
-using lisco_apps::Decoder;
 using lisco_apps::Packet;
+using lisco_apps::VelodyneDecoder;
 
 struct Case {
   const char *capture, *sensor, *scan;
@@ -88,7 +88,7 @@ class RealCapture : public testing::TestWithParam<Case> {
 
   /// Gives all columns, with the number of their rotation, to visit (column, rotation).
   template <typename Visit>
-  void decodeAll(Decoder& decoder, Visit&& visit) const {
+  void decodeAll(VelodyneDecoder& decoder, Visit&& visit) const {
     CaptureFile source(file());
     lisco_apps::RotationCutter cutter;
     std::size_t rotations = 0;
@@ -104,7 +104,7 @@ class RealCapture : public testing::TestWithParam<Case> {
 
   /// Compares the rotation of the scan with the scan: the same cells without returns, the same intensities.
   /// \return largest difference of a coordinate, metres
-  double differenceFromScan(Decoder& decoder) const {
+  double differenceFromScan(VelodyneDecoder& decoder) const {
     const Scan scan = readPcd(dataFolder() / "scans" / (std::string(GetParam().scan) + ".pcd"));
     double most = 0;
     std::size_t width = 0, unlike = 0, differing = 0, returns = 0;
@@ -135,9 +135,9 @@ INSTANTIATE_TEST_SUITE_P(Captures, RealCapture, testing::ValuesIn(kCases),
                          [](const auto& test) { return std::string(test.param.scan); });
 
 TEST_P(RealCapture, GivesTheReturnsOfTheScan) {
-  Decoder decoder(lisco_apps::makeSensorModel(GetParam().sensor));
+  VelodyneDecoder decoder(lisco_apps::makeVelodyneModel(GetParam().sensor));
   EXPECT_LE(differenceFromScan(decoder), GetParam().tolerance);
-  const Decoder::Counts& counts = decoder.counts();
+  const VelodyneDecoder::Counts& counts = decoder.counts();
   EXPECT_EQ(counts.data, GetParam().data);
   EXPECT_EQ(counts.position, GetParam().positions);
   EXPECT_EQ(counts.foreign + counts.late + counts.dual, 0U);
@@ -146,9 +146,9 @@ TEST_P(RealCapture, GivesTheReturnsOfTheScan) {
 }
 
 TEST_P(RealCapture, GivesExactReturnsByTheStepOfTheWholeCapture) {
-  const lisco_apps::SensorModel model = lisco_apps::makeSensorModel(GetParam().sensor);
+  const lisco_apps::VelodyneModel model = lisco_apps::makeVelodyneModel(GetParam().sensor);
   CaptureFile source(file());
-  Decoder decoder(model);
+  VelodyneDecoder decoder(model);
   decoder.setStep(lisco_apps::stepIn(source, model));
   EXPECT_LE(differenceFromScan(decoder), 1e-9);
 }
@@ -156,7 +156,7 @@ TEST_P(RealCapture, GivesExactReturnsByTheStepOfTheWholeCapture) {
 TEST_P(RealCapture, IsForeignToOtherSensors) {
   for (const std::string other : {"vlp16", "hdl32e", "vls128"}) {
     if (other == GetParam().sensor) continue;
-    Decoder decoder(lisco_apps::makeSensorModel(other));
+    VelodyneDecoder decoder(lisco_apps::makeVelodyneModel(other));
     decodeAll(decoder, [](const Column&, std::size_t) {});
     if (other == "vls128" || GetParam().sensor == std::string("vls128")) {
       EXPECT_EQ(decoder.counts().foreign, GetParam().data);
@@ -169,9 +169,9 @@ TEST_P(RealCapture, IsForeignToOtherSensors) {
 // Over several rotations, against the definition, which compares all pairs of returns: therefore with eight of the
 // lasers only.
 TEST_P(RealCapture, IsClusteredEndlesslyAsDefined) {
-  const lisco_apps::SensorModel model = lisco_apps::makeSensorModel(GetParam().sensor);
+  const lisco_apps::VelodyneModel model = lisco_apps::makeVelodyneModel(GetParam().sensor);
   CaptureFile source(file());
-  Decoder decoder(model);
+  VelodyneDecoder decoder(model);
   decoder.setStep(lisco_apps::stepIn(source, model));
   const std::size_t one_in = model.lasers.size() / 8;
   EndlessStream stream;

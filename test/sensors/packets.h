@@ -29,7 +29,7 @@ class PacketEncoder {
   /// \param second whether the second return of dual mode is asked for
   using World = std::function<Measured(std::size_t firing, std::size_t laser, bool second)>;
 
-  /// \param name one of makeSensorModel()'s
+  /// \param name one of makeVelodyneModel()'s
   explicit PacketEncoder(const std::string& name, bool is_dual = false);
 
   Bytes next(const World& world);

@@ -9,7 +9,7 @@
 #include "calibration.h"
 #include "packets.h"
 #include "random.h"
-#include "sensors/decoder.h"
+#include "sensors/velodyne_decoder.h"
 #include "temporary_folder.h"
 
 namespace lisco_test {
@@ -34,7 +34,7 @@ TEST_F(PclGrabber, ComputesTheSameOfACalibration) {
   const std::string xml = calibrationXml(usualCalibration);
   writeFile(file, Bytes(xml.begin(), xml.end()));
   const Grabber grabber(file);
-  lisco_apps::Decoder decoder(lisco_apps::makeSensorModel("hdl64e", file));
+  lisco_apps::VelodyneDecoder decoder(lisco_apps::makeVelodyneModel("hdl64e", file));
   PacketEncoder encoder("hdl64e");
   Random random(8);
   std::vector<std::vector<Measured>> sent;

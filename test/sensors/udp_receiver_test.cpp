@@ -13,7 +13,7 @@
 
 #include "packets.h"
 #include "random.h"
-#include "sensors/decoder.h"
+#include "sensors/velodyne_decoder.h"
 #include "temporary_folder.h"
 
 namespace lisco_test {
@@ -21,10 +21,10 @@ namespace {
 
 using lisco_apps::Cell;
 using lisco_apps::Column;
-using lisco_apps::Decoder;
-using lisco_apps::makeSensorModel;
+using lisco_apps::makeVelodyneModel;
 using lisco_apps::Packet;
 using lisco_apps::UdpReceiver;
+using lisco_apps::VelodyneDecoder;
 using Arrival = lisco_apps::PacketSource::Arrival;
 using Clock = std::chrono::steady_clock;
 
@@ -56,7 +56,7 @@ TEST(UdpReceiver, GivesPackets) {
 
 TEST(UdpReceiver, GivesTheColumnsSent) {
   UdpReceiver receiver(0);
-  Decoder live(makeSensorModel("vls128")), direct(makeSensorModel("vls128"));
+  VelodyneDecoder live(makeVelodyneModel("vls128")), direct(makeVelodyneModel("vls128"));
   std::vector<float> came, sent;
   const auto saveIn = [](std::vector<float>& cells) {
     return [&cells](const Column& column) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "random.h"
+#include "sensors/velodyne_decoder.h"
 #include "stream/endless_stream.h"
 #include "stream/rotation_stream.h"
 
@@ -18,12 +19,12 @@ namespace {
 
 using lisco_apps::Cell;
 using lisco_apps::Column;
-using lisco_apps::Decoder;
 using lisco_apps::DeliveredCluster;
 using lisco_apps::FoundCluster;
 using lisco_apps::Stream;
 using lisco_apps::StreamOptions;
 using lisco_apps::Turn;
+using lisco_apps::VelodyneDecoder;
 
 /// Checks that the results of a stream agree with each other.
 class ConsistencyChecker : public lisco_apps::Listener {
@@ -105,7 +106,7 @@ TEST(Streams, AcceptIrregularColumns) {
     options.tolerance = tolerance;
     options.min_size = 1;
     options.ground_z = 0.05F;
-    Decoder decoder(lisco_apps::makeSensorModel("vlp16"));
+    VelodyneDecoder decoder(lisco_apps::makeVelodyneModel("vlp16"));
     decoder.setStep(0.8);
     constexpr std::size_t kColumns = 30000;
 
@@ -132,7 +133,7 @@ TEST(Streams, AcceptIrregularColumns) {
 }
 
 TEST(Streams, FindNothingWithoutColumns) {
-  Decoder decoder(lisco_apps::makeSensorModel("vlp16"));
+  VelodyneDecoder decoder(lisco_apps::makeVelodyneModel("vlp16"));
   ConsistencyChecker witness;
   lisco_apps::RotationStream rotations({}, decoder, witness);
   lisco_apps::EndlessStream endless({}, decoder, witness);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "sensors/decoder.h"
+#include "sensors/velodyne_decoder.h"
 
 #include <cmath>
 #include <string>
@@ -16,9 +16,9 @@ namespace {
 
 using lisco_apps::Cell;
 using lisco_apps::Column;
-using lisco_apps::Decoder;
-using lisco_apps::makeSensorModel;
-using Kind = Decoder::Kind;
+using lisco_apps::makeVelodyneModel;
+using lisco_apps::VelodyneDecoder;
+using Kind = VelodyneDecoder::Kind;
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -29,12 +29,12 @@ struct SavedColumn {
   bool after_break;
 };
 
-Kind decode(Decoder& decoder, const Bytes& payload, std::vector<SavedColumn>& columns) {
+Kind decode(VelodyneDecoder& decoder, const Bytes& payload, std::vector<SavedColumn>& columns) {
   return decoder.decode(asPacket(payload), [&](const Column& column) {
     columns.push_back({column.cells, column.azimuth, column.time_us, column.after_break});
   });
 }
-std::vector<SavedColumn> columnsOf(Decoder& decoder, const Bytes& payload) {
+std::vector<SavedColumn> columnsOf(VelodyneDecoder& decoder, const Bytes& payload) {
   std::vector<SavedColumn> columns;
   EXPECT_EQ(decode(decoder, payload, columns), Kind::kData);
   return columns;
@@ -60,22 +60,22 @@ class DecoderTest : public InTemporaryFolder {
     writeFile(folder_ / "db.xml", Bytes(xml.begin(), xml.end()));
     return folder_ / "db.xml";
   }
-  Decoder decoderOf(const std::string& name) const {
-    return Decoder(makeSensorModel(
+  VelodyneDecoder decoderOf(const std::string& name) const {
+    return VelodyneDecoder(makeVelodyneModel(
         name, name == "hdl64e" ? calibration(calibrationXml(usualCalibration)) : std::filesystem::path()));
   }
 };
 
 class EachSensor : public DecoderTest, public testing::WithParamInterface<const char*> {
  protected:
-  Decoder decoder() const { return decoderOf(GetParam()); }
+  VelodyneDecoder decoder() const { return decoderOf(GetParam()); }
 };
 INSTANTIATE_TEST_SUITE_P(Sensors, EachSensor, testing::Values("vlp16", "hdl32e", "hdl64e", "vls128"),
                          [](const auto& test) { return std::string(test.param); });
 
 TEST_P(EachSensor, GivesAColumnForEachFiring) {
   for (const bool is_dual : {false, true}) {
-    Decoder decoder = this->decoder();
+    VelodyneDecoder decoder = this->decoder();
     PacketEncoder encoder(GetParam(), is_dual);
     std::vector<SavedColumn> columns;
     constexpr int kPackets = 40;
@@ -98,7 +98,7 @@ TEST_P(EachSensor, GivesAColumnForEachFiring) {
         EXPECT_TRUE(row == 0 || cell.z < column.cells[row - 1].z) << "not from top to bottom";
       }
     }
-    const Decoder::Counts& counts = decoder.counts();
+    const VelodyneDecoder::Counts& counts = decoder.counts();
     EXPECT_EQ(counts.data, 40U);
     EXPECT_EQ(counts.dual, is_dual ? 40U : 0U);
     EXPECT_EQ(counts.columns, columns.size());
@@ -112,7 +112,7 @@ TEST_P(EachSensor, GivesAColumnForEachFiring) {
 }
 
 TEST_P(EachSensor, PutsEachMeasurementIntoItsCell) {
-  Decoder decoder = this->decoder();
+  VelodyneDecoder decoder = this->decoder();
   PacketEncoder encoder(GetParam());
   // One laser alone returns in each firing.
   const std::vector<lisco_apps::Laser>& lasers = decoder.model().lasers;
@@ -133,7 +133,7 @@ TEST_P(EachSensor, PutsEachMeasurementIntoItsCell) {
 }
 
 TEST_P(EachSensor, WrapsTheAzimuth) {
-  Decoder decoder = this->decoder();
+  VelodyneDecoder decoder = this->decoder();
   PacketEncoder encoder(GetParam());
   encoder.step = 23;
   encoder.azimuth = 36000 - 23 * 30;
@@ -152,7 +152,7 @@ TEST_P(EachSensor, WrapsTheAzimuth) {
 }
 
 TEST_P(EachSensor, KeepsTheStrongerOfTwoReturns) {
-  Decoder decoder = this->decoder();
+  VelodyneDecoder decoder = this->decoder();
   PacketEncoder encoder(GetParam(), true);
   const auto only = [&](Measured first, Measured second) {
     std::vector<SavedColumn> columns = columnsOf(
@@ -167,7 +167,7 @@ TEST_P(EachSensor, KeepsTheStrongerOfTwoReturns) {
 }
 
 TEST_P(EachSensor, CountsForeignPackets) {
-  Decoder decoder = this->decoder();
+  VelodyneDecoder decoder = this->decoder();
   PacketEncoder encoder(GetParam());
   const Bytes good = encoder.next(constantWorld({5000, 1}));
   std::vector<SavedColumn> columns;
@@ -196,7 +196,7 @@ TEST_P(EachSensor, CountsForeignPackets) {
 TEST_P(EachSensor, DetectsPacketsOfAnotherSensor) {
   for (const std::string other : {"vlp16", "hdl32e", "hdl64e", "vls128"}) {
     if (other == GetParam()) continue;
-    Decoder decoder = this->decoder();
+    VelodyneDecoder decoder = this->decoder();
     PacketEncoder encoder(other);
     std::vector<SavedColumn> columns;
     for (int i = 0; i < 20; ++i) decode(decoder, encoder.next(constantWorld({5000, 1})), columns);
@@ -212,7 +212,7 @@ TEST_P(EachSensor, DetectsPacketsOfAnotherSensor) {
 }
 
 TEST_P(EachSensor, DropsLatePackets) {
-  Decoder decoder = this->decoder();
+  VelodyneDecoder decoder = this->decoder();
   PacketEncoder encoder(GetParam());
   std::vector<Bytes> payloads;
   for (int i = 0; i < 10; ++i) payloads.push_back(encoder.next(constantWorld({5000, 1})));
@@ -225,7 +225,7 @@ TEST_P(EachSensor, DropsLatePackets) {
 }
 
 TEST_P(EachSensor, MarksABreak) {
-  Decoder decoder = this->decoder();
+  VelodyneDecoder decoder = this->decoder();
   PacketEncoder encoder(GetParam());
   columnsOf(decoder, encoder.next(constantWorld({5000, 1})));
   for (const double seconds : {0.7, 100.}) {  // more than a turn; more than can be counted
@@ -239,7 +239,7 @@ TEST_P(EachSensor, MarksABreak) {
 TEST_P(EachSensor, AcceptsAnyBytes) {
   constexpr std::uint64_t kSeed = 3;
   Random random(kSeed);
-  Decoder decoder = this->decoder();
+  VelodyneDecoder decoder = this->decoder();
   for (int run = 0; run < 3000; ++run) {
     PacketEncoder encoder(GetParam(), random.chance(0.5));
     Bytes payload = encoder.next([&](std::size_t, std::size_t, bool) {
@@ -263,7 +263,7 @@ TEST_P(EachSensor, AcceptsAnyBytes) {
 }
 
 TEST_F(DecoderTest, UsesTheSensorsAxes) {
-  Decoder decoder(makeSensorModel("vlp16"));
+  VelodyneDecoder decoder(makeVelodyneModel("vlp16"));
   PacketEncoder encoder("vlp16");
   // The laser 15 degrees up is the last one of a firing.
   const double side = 10 * std::cos(15 * kPi / 180), up = 10 * std::sin(15 * kPi / 180);
@@ -288,7 +288,7 @@ TEST_F(DecoderTest, AppliesTheDelaysOfLasers) {
     double share;  ///< of a step from one laser to the next
   } cases[] = {{"vlp16", 2.304 / 110.592}, {"hdl32e", 1.152 / 46.08}};
   for (const auto& c : cases) {
-    Decoder decoder(makeSensorModel(c.name));
+    VelodyneDecoder decoder(makeVelodyneModel(c.name));
     PacketEncoder encoder(c.name);
     encoder.step = 40;
     const SavedColumn column = columnsOf(decoder, encoder.next(constantWorld({5000, 1}))).front();
@@ -299,7 +299,7 @@ TEST_F(DecoderTest, AppliesTheDelaysOfLasers) {
 }
 
 TEST_F(DecoderTest, FollowsChangesOfSpeed) {
-  Decoder decoder(makeSensorModel("hdl32e"));
+  VelodyneDecoder decoder(makeVelodyneModel("hdl32e"));
   PacketEncoder encoder("hdl32e");
   std::vector<SavedColumn> columns;
   for (const unsigned step : {20U, 40U, 10U, 0U}) {
@@ -313,7 +313,7 @@ TEST_F(DecoderTest, FollowsChangesOfSpeed) {
 }
 
 TEST_F(DecoderTest, AcceptsWrongFactoryBytes) {
-  Decoder decoder(makeSensorModel("vlp16"));
+  VelodyneDecoder decoder(makeVelodyneModel("vlp16"));
   PacketEncoder encoder("vlp16");
   encoder.model_byte = 0x21;
   EXPECT_EQ(columnsOf(decoder, encoder.next(constantWorld({5000, 1}))).size(), 24U);
@@ -326,20 +326,20 @@ TEST_F(DecoderTest, AcceptsWrongFactoryBytes) {
 }
 
 TEST_F(DecoderTest, RefusesUnknownSensorsAndBadCalibrations) {
-  EXPECT_EQ(refusalOf([] { makeSensorModel("os1"); }),
+  EXPECT_EQ(refusalOf([] { makeVelodyneModel("os1"); }),
             "there is no sensor 'os1': it is one of vlp16, hdl32e, hdl64e, vls128");
-  EXPECT_EQ(refusalOf([] { makeSensorModel("hdl64e"); }),
+  EXPECT_EQ(refusalOf([] { makeVelodyneModel("hdl64e"); }),
             "the hdl64e needs its calibration file: each of these sensors has its own; give it by --calibration");
-  EXPECT_EQ(refusalOf([] { makeSensorModel("vlp16", "db.xml"); }),
+  EXPECT_EQ(refusalOf([] { makeVelodyneModel("vlp16", "db.xml"); }),
             "a calibration file is for the hdl64e only, not for the vlp16");
 
   const auto refusal = [&](const std::string& xml) {
-    const std::string said = refusalOf([&] { makeSensorModel("hdl64e", calibration(xml)); });
+    const std::string said = refusalOf([&] { makeVelodyneModel("hdl64e", calibration(xml)); });
     EXPECT_EQ(said.find((folder_ / "db.xml").string() + ": "), 0U) << said;
     EXPECT_EQ(said.find('\n'), std::string::npos) << said;
     return said.substr((folder_ / "db.xml: ").string().size());
   };
-  EXPECT_EQ(refusalOf([&] { makeSensorModel("hdl64e", folder_ / "missing.xml"); }),
+  EXPECT_EQ(refusalOf([&] { makeVelodyneModel("hdl64e", folder_ / "missing.xml"); }),
             (folder_ / "missing.xml").string() + ": is no calibration file: cannot open file");
   const std::string good = calibrationXml(usualCalibration);
   EXPECT_NE(refusal("").find("is no calibration file"), std::string::npos);
@@ -367,11 +367,11 @@ TEST_F(DecoderTest, RefusesUnknownSensorsAndBadCalibrations) {
 
 TEST_F(DecoderTest, DropsNegativeDistances) {
   // A correction may make a distance negative.
-  Decoder decoder(makeSensorModel("hdl64e", calibration(calibrationXml([](int laser) {
-                                    auto values = usualCalibration(laser);
-                                    values["distCorrection_"] = -100;
-                                    return values;
-                                  }))));
+  VelodyneDecoder decoder(makeVelodyneModel("hdl64e", calibration(calibrationXml([](int laser) {
+                                              auto values = usualCalibration(laser);
+                                              values["distCorrection_"] = -100;
+                                              return values;
+                                            }))));
   PacketEncoder encoder("hdl64e");
   const SavedColumn near = columnsOf(decoder, encoder.next(constantWorld({499, 1}))).front();
   for (const Cell& cell : near.cells) EXPECT_TRUE(isNoReturn(cell));

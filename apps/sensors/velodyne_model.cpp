@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "sensor_model.h"
+#include "velodyne_model.h"
 
 #include <algorithm>
 #include <array>
@@ -52,7 +52,7 @@ std::vector<Laser> lasersAt(const std::array<double, kCount>& elevations, double
   return lasers;
 }
 
-SensorModel modelOf(const std::string& name, const fs::path& calibration_file) {
+VelodyneModel modelOf(const std::string& name, const fs::path& calibration_file) {
   if (name == "vlp16") return {name, lasersAt(kVlp16, 2.304), {kUpperBlock}, 2, 55.296, 0.002, {0x22}};
   if (name == "hdl32e") return {name, lasersAt(kHdl32e, 1.152), {kUpperBlock}, 1, 46.08, 0.002, {0x21}};
   if (name == "hdl64e") {
@@ -64,26 +64,26 @@ SensorModel modelOf(const std::string& name, const fs::path& calibration_file) {
   }
   if (name == "vls128") {
     // All lasers take their block's azimuth, as in most drivers. The period is measured.
-    SensorModel model{name,  lasersAt(kVls128, 0.), {kUpperBlock, kLowerBlock, kThirdBlock, kFourthBlock}, 1, 55.2,
-                      0.004, {0x63, 0xA1}};
+    VelodyneModel model{name,  lasersAt(kVls128, 0.), {kUpperBlock, kLowerBlock, kThirdBlock, kFourthBlock}, 1, 55.2,
+                        0.004, {0x63, 0xA1}};
     for (Laser& laser : model.lasers) laser.azimuth_offset = kVls128Directions[laser.number % 8];
     return model;
   }
-  throw std::runtime_error("there is no sensor '" + name + "': it is one of " + boost::join(sensorModelNames(), ", "));
+  throw std::runtime_error("there is no sensor '" + name + "': it is one of " +
+                           boost::join(velodyneModelNames(), ", "));
 }
 
 }  // namespace
 
-std::vector<std::string> sensorModelNames() {
+std::vector<std::string> velodyneModelNames() {
   return {"vlp16", "hdl32e", "hdl64e", "vls128"};
 }
 
-SensorModel makeSensorModel(const std::string& name, const fs::path& calibration_file) {
-  SensorModel model = modelOf(name, calibration_file);
+VelodyneModel makeVelodyneModel(const std::string& name, const fs::path& calibration_file) {
+  VelodyneModel model = modelOf(name, calibration_file);
   if (name != "hdl64e" && !calibration_file.empty())
     throw std::runtime_error("a calibration file is for the hdl64e only, not for the " + name);
-  std::stable_sort(model.lasers.begin(), model.lasers.end(),
-                   [](const Laser& a, const Laser& b) { return a.elevation > b.elevation; });
+  sortByElevation(model.lasers);
   return model;
 }
 

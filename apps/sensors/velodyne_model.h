@@ -8,26 +8,14 @@
 #include <vector>
 
 #include "io/text.h"
+#include "laser.h"
 
 namespace lisco_apps {
-
-inline constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.;
-
-/// One laser, and its place in the sensor.
-struct Laser {
-  std::size_t number = 0;      ///< index among the measurements of a firing
-  double elevation = 0;        ///< degrees above the horizon
-  double azimuth_offset = 0;   ///< degrees clockwise from the azimuth of its block
-  double delay_us = 0;         ///< of its firing, since the azimuth of its block was taken
-  double distance_offset = 0;  ///< metres, added to the measured distance
-  double height = 0;           ///< metres above the origin
-  double side = 0;             ///< metres to the left of the origin, seen along the ray
-};
 
 /// A rotating Velodyne sensor and its data packets: 1206 bytes, little-endian, of 12 blocks of 100 bytes (flag,
 /// azimuth in hundredths of a degree, 32 times distance and intensity), the time of the first firing in microseconds
 /// past the hour, and two factory bytes: the mode of returns and the model.
-struct SensorModel {
+struct VelodyneModel {
   std::string name;
   std::vector<Laser> lasers;                ///< from top to bottom
   std::vector<std::uint16_t> flags;         ///< of the blocks that hold one firing of all lasers
@@ -37,8 +25,8 @@ struct SensorModel {
   std::vector<std::uint8_t> factory_bytes;  ///< values of the last byte; empty if it does not name the model
 };
 
-/// The names that makeSensorModel () accepts.
-std::vector<std::string> sensorModelNames();
+/// The names that makeVelodyneModel () accepts.
+std::vector<std::string> velodyneModelNames();
 
 /// A sensor by its manual:
 /// - vlp16: VLP-16 (Puck), 16 lasers, +-15 degrees
@@ -48,7 +36,7 @@ std::vector<std::string> sensorModelNames();
 /// \param calibration_file of the hdl64e, see readCalibration ()
 /// \throws std::runtime_error with one line if the name is unknown, if the hdl64e comes without a calibration or
 ///         another sensor with one, or if readCalibration () throws
-SensorModel makeSensorModel(const std::string& name, const fs::path& calibration_file = {});
+VelodyneModel makeVelodyneModel(const std::string& name, const fs::path& calibration_file = {});
 
 /// The HDL-64E's lasers in the order of their numbers, from the XML file that Velodyne delivers with each sensor
 /// (db.xml) and that PCL's HDLGrabber reads: angles in degrees, lengths in centimetres.

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "velodyne_decoder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <boost/endian/conversion.hpp>
+
+namespace lisco_apps {
+namespace {
+
+constexpr std::size_t kDataBytes = 1206, kPositionBytes = 512;
+constexpr std::size_t kBlockBytes = 100, kMeasurementsAt = 4, kMeasurementBytes = 3, kLasersPerBlock = 32;
+constexpr std::size_t kTimeAt = 1200, kModeAt = 1204, kModelAt = 1205;
+constexpr unsigned kDualMode = 0x39;
+constexpr unsigned kTurn = 36000;               ///< hundredths of a degree
+constexpr std::uint32_t kMaxSteps = 1U << 16U;  ///< counted, a few seconds; then all counts are halved
+
+double radians(double degrees) {
+  return degrees * kRadiansPerDegree;
+}
+
+constexpr auto& u16 = boost::endian::load_little_u16;
+
+unsigned azimuthOf(const std::uint8_t* block) {
+  return u16(block + 2);
+}
+
+}  // namespace
+
+VelodyneDecoder::VelodyneDecoder(VelodyneModel model)
+    : Decoder(model.name, elevationsOf(model.lasers), staggerOf(model.lasers)),
+      model_(std::move(model)),
+      cells_(model_.lasers.size()),
+      packet_period_us_(static_cast<double>(kBlocks) * blockPeriodUs() / static_cast<double>(model_.flags.size())) {
+  for (const Laser& laser : model_.lasers) {
+    const std::size_t block = laser.number / kLasersPerBlock;
+    auto direction = std::find_if(directions_.begin(), directions_.end(), [&](const Direction& d) {
+      return d.block == block && d.azimuth_offset == laser.azimuth_offset && d.delay_us == laser.delay_us;
+    });
+    if (direction == directions_.end())
+      direction = directions_.insert(direction, {block, laser.azimuth_offset, laser.delay_us});
+    rows_.push_back({static_cast<std::size_t>(direction - directions_.begin()),
+                     kMeasurementsAt + kMeasurementBytes * (laser.number % kLasersPerBlock),
+                     std::cos(radians(laser.elevation)), std::sin(radians(laser.elevation))});
+  }
+}
+
+bool VelodyneDecoder::isLaidOut(const std::uint8_t* data, const Layout& layout) const {
+  for (std::size_t g = 0; g < layout.groups; ++g)
+    for (std::size_t k = 0; k < model_.flags.size(); ++k) {
+      const std::uint8_t* const block = data + kBlockBytes * (g * layout.group + k * layout.part);
+      const std::uint8_t* const second = block + kBlockBytes * layout.second;
+      if (u16(block) != model_.flags[k] || azimuthOf(block) > kTurn) return false;
+      if (u16(second) != u16(block) || azimuthOf(second) != azimuthOf(block)) return false;
+    }
+  return true;
+}
+
+std::optional<VelodyneDecoder::Layout> VelodyneDecoder::layoutOf(const std::uint8_t* data) const {
+  const std::size_t blocks = model_.flags.size();
+  // A second return follows each block, or each firing in packets of the HDL-64E, which do not contain their mode.
+  const bool has_mode = !model_.factory_bytes.empty();
+  const Layout dual = has_mode ? Layout{kBlocks / (2 * blocks), 2 * blocks, 2, 1}
+                               : Layout{kBlocks / (2 * blocks), 2 * blocks, 1, blocks};
+  if ((!has_mode || data[kModeAt] == kDualMode) && isLaidOut(data, dual)) return dual;
+  const Layout single{kBlocks / blocks, blocks, 1, 0};
+  if (isLaidOut(data, single)) return single;
+  return std::nullopt;
+}
+
+void VelodyneDecoder::setStep(double degrees) {
+  step_ = degrees;
+  step_is_set_ = true;
+}
+
+void VelodyneDecoder::measureStep(const std::uint8_t* data, const Layout& layout) {
+  for (std::size_t g = 0; g < layout.groups; ++g) {
+    const unsigned azimuth = azimuthOf(data + kBlockBytes * g * layout.group) % kTurn;
+    const unsigned step = last_azimuth_ ? (azimuth + kTurn - *last_azimuth_) % kTurn : kTurn;
+    last_azimuth_ = azimuth;
+    if (step >= kStepLimit) continue;  // packets are missing before it
+    ++steps_[step];
+    ++step_count_;
+  }
+  if (step_count_ == 0) return;
+  std::size_t median = 0;
+  for (std::uint32_t up_to = steps_[0]; 2 * up_to < step_count_; up_to += steps_[median]) ++median;
+  if (!step_is_set_) step_ = static_cast<double>(median) / 100;
+  // The mean is more exact than the median, which is a multiple of a hundredth of a degree.
+  double sum = 0, counted = 0;
+  for (std::size_t step = median / 2; step < std::min(2 * median, kStepLimit); ++step) {
+    sum += static_cast<double>(step) / 100 * steps_[step];
+    counted += steps_[step];
+  }
+  mean_step_ = counted > 0 ? sum / counted : 0;
+  if (step_count_ < kMaxSteps) return;
+  step_count_ = 0;
+  for (std::uint32_t& count : steps_) step_count_ += count /= 2;
+}
+
+void VelodyneDecoder::decodeFiring(const std::uint8_t* group, const Layout& layout, std::size_t firing) {
+  const double delay_us = static_cast<double>(firing) * model_.firing_period_us;
+  for (Direction& direction : directions_) {
+    const double azimuth =
+        azimuthOf(group + kBlockBytes * direction.block * layout.part) / 100. + direction.azimuth_offset;
+    const double angle = radians(azimuthLater(azimuth, delay_us + direction.delay_us));
+    direction.cosine = std::cos(angle);
+    direction.sine = std::sin(angle);
+  }
+  const std::size_t firing_bytes = kMeasurementBytes * (kLasersPerBlock / model_.firings) * firing;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const Row& row = rows_[i];
+    const Laser& laser = model_.lasers[i];
+    const Direction& direction = directions_[row.direction];
+    const std::uint8_t* measured = group + kBlockBytes * direction.block * layout.part + firing_bytes + row.offset;
+    const std::uint8_t* const second = measured + kBlockBytes * layout.second;
+    if (u16(second) != 0 && (u16(measured) == 0 || second[2] > measured[2])) measured = second;
+
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    cells_[i] = {kNone, kNone, kNone, kNone};
+    if (u16(measured) == 0) continue;
+    const double distance = u16(measured) * model_.distance_unit + laser.distance_offset;
+    if (distance <= 0) continue;
+    const double across = distance * row.cosine;
+    cells_[i] = {static_cast<float>(across * direction.cosine + laser.side * direction.sine),
+                 static_cast<float>(laser.side * direction.cosine - across * direction.sine),
+                 static_cast<float>(distance * row.sine + laser.height), static_cast<float>(measured[2])};
+  }
+}
+
+Decoder::Kind VelodyneDecoder::decode(const Packet& packet, const Visitor& visit) {
+  if (packet.size == kPositionBytes) {
+    ++counts_.position;
+    return Kind::kPosition;
+  }
+  const std::optional<Layout> layout = packet.size == kDataBytes ? layoutOf(packet.data) : std::nullopt;
+  if (!layout) {
+    ++counts_.foreign;
+    return Kind::kForeign;
+  }
+  packet_period_us_ = static_cast<double>(layout->groups) * blockPeriodUs();
+  const PacketOrder::Place place =
+      order_.place(boost::endian::load_little_u32(packet.data + kTimeAt), packet_period_us_);
+  counts_.missing = order_.missing();
+  counts_.clock_jumps = order_.clockJumps();
+  if (place == PacketOrder::Place::kLate) {
+    ++counts_.late;
+    return Kind::kLate;
+  }
+  ++counts_.data;
+  if (layout->isDual()) ++counts_.dual;
+  const std::vector<std::uint8_t>& known = model_.factory_bytes;
+  if (!known.empty() && std::find(known.begin(), known.end(), packet.data[kModelAt]) == known.end())
+    ++counts_.says_other_model;
+
+  measureStep(packet.data, *layout);
+  const bool misses_turn = turnUs() > 0 && order_.gap() - packet_period_us_ >= turnUs();
+  bool after_break = place == PacketOrder::Place::kNewClock || misses_turn;
+  for (std::size_t g = 0; g < layout->groups; ++g)
+    for (std::size_t firing = 0; firing < model_.firings; ++firing) {
+      const std::uint8_t* const group = packet.data + kBlockBytes * g * layout->group;
+      decodeFiring(group, *layout, firing);
+      const double since_block_us = static_cast<double>(firing) * model_.firing_period_us;
+      const double azimuth = azimuthLater(azimuthOf(group) / 100., since_block_us);
+      const double time_us = boost::endian::load_little_u32(packet.data + kTimeAt) +
+                             static_cast<double>(g) * blockPeriodUs() + since_block_us;
+      ++counts_.columns;
+      visit({cells_, std::fmod(azimuth, 360.), time_us, after_break});
+      after_break = false;
+    }
+  return Kind::kData;
+}
+
+double VelodyneDecoder::columnsPerTurn() const {
+  const double step = mean_step_ > 0 ? mean_step_ : step_;
+  return step > 0 ? 360. / step * static_cast<double>(model_.firings) : 0.;
+}
+
+void VelodyneDecoder::prepare(PacketSource& capture) {
+  if (const double step = stepIn(capture, model_); step > 0) setStep(step);
+}
+
+double stepIn(PacketSource& capture, const VelodyneModel& model) {
+  VelodyneDecoder decoder(model);
+  Packet packet;
+  while (capture.next(packet) != PacketSource::Arrival::kEnd) decoder.decode(packet, [](const Column&) {});
+  return decoder.step();
+}
+
+}  // namespace lisco_apps
