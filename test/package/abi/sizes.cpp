@@ -14,6 +14,7 @@
 
 #include "lisco/column_clusterer.h"
 #include "lisco/endless_clusterer.h"
+#include "lisco/ground_filter.h"
 #include "lisco/label_clusters.h"
 #include "lisco/return.h"
 #include "lisco/sensor_hints.h"
@@ -28,6 +29,9 @@ int main() {
   PRINT(lisco::EndlessCluster);
   PRINT(lisco::EndlessClusterer);
   PRINT(lisco::EndlessParameters);
+  PRINT(lisco::GroundFilter);
+  PRINT(lisco::GroundParameters);
+  PRINT(lisco::GroundVisitor);
   PRINT(lisco::LabelParameters);
   PRINT(lisco::Parameters);
   PRINT(lisco::Return);

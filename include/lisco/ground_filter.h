@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include "lisco/cxx17.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+
+#include "lisco/export.h"
+#include "lisco/return.h"
+#include "lisco/sensor_hints.h"
+
+namespace lisco {
+
+/// What the ground filter is told. The z axis points up, to within about 10 degrees.
+struct GroundParameters {
+  /// Of the sensor above the ground beneath it, metres; NaN: estimated from the returns.
+  float sensor_height = std::numeric_limits<float>::quiet_NaN();
+  /// Steepest ground, degrees against the x-y plane of the cloud, 1 to 60.
+  float max_slope = 20.0F;
+  /// Its origin and tilt decide where the ground is looked for; see estimateSensor.
+  SensorHints sensor;
+};
+
+/// Receives the decisions on whole columns. Refers to the callable that it is made of.
+class GroundVisitor {
+ public:
+  /// \param visit callable as void (std::size_t column, const std::uint8_t* ground, std::size_t lasers)
+  template <typename Visit>
+  explicit GroundVisitor(Visit& visit)
+      : context_(std::addressof(visit)),
+        visit_([](const void* context, std::size_t column, const std::uint8_t* ground, std::size_t lasers) {
+          (*static_cast<Visit*>(const_cast<void*>(context)))(column, ground, lasers);
+        }) {}
+
+  /// Visits one column.
+  void operator()(std::size_t column, const std::uint8_t* ground, std::size_t lasers) const {
+    visit_(context_, column, ground, lasers);
+  }
+
+ private:
+  const void* context_;
+  void (*visit_)(const void* context, std::size_t column, const std::uint8_t* ground, std::size_t lasers);
+};
+
+/// Finds the ground in a rotating LiDAR's returns, column by column: which returns lie on the ground is decided from
+/// the columns before, and final after at most kMaxDelay further columns.
+///
+///   lisco::GroundFilter filter;
+///   filter.begin({}, lasers);
+///   const auto decided = [&](std::size_t column, const std::uint8_t* ground, std::size_t lasers) { ... };
+///   while (...) filter.addColumn(returns, lasers, decided);  // ground[l] is 1 if laser l's return is ground, else 0
+///   filter.finish(decided);
+///
+/// Any number of rotations may follow each other without another begin (). The rows of a column may have any order,
+/// lasers may be staggered, the sensor may turn either way. State, memory and the work of a column are bounded.
+/// Nothing is allocated after begin (), nor by a begin () with no more lasers than before. Not thread safe; any number
+/// of instances may work side by side.
+class LISCO_EXPORT GroundFilter {
+ public:
+  GroundFilter();
+  ~GroundFilter();
+  /// A copy goes on from the same column.
+  GroundFilter(const GroundFilter& other);
+  /// The same.
+  GroundFilter& operator=(const GroundFilter& other);
+
+  /// Further columns that may have to arrive before a column's decisions are final.
+  static constexpr std::size_t kMaxDelay = 7;
+
+  /// Starts anew and forgets all columns.
+  /// \param lasers largest number of cells of a column
+  /// \throws std::invalid_argument if the sensor height is infinite, or max_slope is not within 1 to 60
+  void begin(const GroundParameters& parameters, std::size_t lasers);
+
+  /// Adds a column, and visits those whose decisions are final, in their order.
+  /// \param cells cells[l] is what laser l measured; those that are no returns get 0. Coordinates of more than 1e6 m
+  ///        from the sensor are not ground
+  /// \param lasers number of cells, may differ from column to column
+  /// \param visit callable as void (std::size_t column, const std::uint8_t* ground, std::size_t lasers): the column
+  ///        counted from begin (), 1 for each cell on the ground, 0 for the others, and the number of cells as given
+  /// \throws std::logic_error before begin (); std::invalid_argument if there are more cells than begin () was told
+  template <typename Visit>
+  void addColumn(const Return* cells, std::size_t lasers, Visit&& visit) {
+    receive(cells, lasers, GroundVisitor(visit));
+  }
+
+  /// Visits the columns that are not final yet. More columns may follow.
+  template <typename Visit>
+  void finish(Visit&& visit) {
+    decideRest(GroundVisitor(visit));
+  }
+
+  /// Starts anew and decides on whole columns, as an organized cloud holds them. The result is that of addColumn and
+  /// finish, to the bit. To add columns afterwards, begin () again.
+  /// \param cells callable as Return (std::size_t laser, std::size_t column), or block by block as CellSource has it
+  /// \param ground receives columns * lasers bytes, laser by laser: ground[laser * columns + column] is 1 on the
+  ///        ground, else 0
+  /// \throws as begin ()
+  template <typename Cells>
+  void filter(const GroundParameters& parameters, std::size_t columns, std::size_t lasers, Cells&& cells,
+              std::uint8_t* ground) {
+    filterAll(parameters, columns, lasers, CellSource(cells), ground);
+  }
+
+ private:
+  void receive(const Return* cells, std::size_t lasers, const GroundVisitor& visit);
+  void decideRest(const GroundVisitor& visit);
+  void filterAll(const GroundParameters& parameters, std::size_t columns, std::size_t lasers, const CellSource& cells,
+                 std::uint8_t* ground);
+
+  class LISCO_HIDDEN State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lisco
