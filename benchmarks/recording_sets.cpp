@@ -22,6 +22,7 @@
 #include "io/text.h"
 #include "simulation/cases.h"
 #include "simulation/random.h"
+#include "simulation/drive.h"
 #include "simulation/scanner.h"
 #include "simulation/scenes.h"
 #include "simulation/sensor.h"

@@ -9,12 +9,12 @@ namespace lisco_simulation {
 namespace {
 
 /// Adds the four wheels of a car, on the floor, slightly protruding.
-void addWheels(std::vector<Solid>& solids, double front_axle, double rear_axle, double half_width) {
-  constexpr double kRadius = 0.32;
+void addWheels(std::vector<Solid>& solids, double front_axle, double rear_axle, double half_width,
+               double radius = 0.32) {
   for (const double axle : {front_axle, rear_axle})
     for (const double side : {-1.0, 1.0})
-      solids.push_back(Solid::cylinder({axle, side * (half_width - 0.2), kRadius},
-                                       {axle, side * (half_width + 0.02), kRadius}, kRadius));
+      solids.push_back(Solid::cylinder({axle, side * (half_width - 0.2), radius},
+                                       {axle, side * (half_width + 0.02), radius}, radius));
 }
 
 }  // namespace
@@ -128,6 +128,53 @@ Thing tree(Random& random) {
             .ofLeaves(kMeanDepth));
   }
   return {{"tree", solids}, 2 * radius};
+}
+
+Thing broadTree(Random& random) {
+  const double trunk = random.between(0.15, 0.28);
+  const double clear = random.between(2.4, 3.2);
+  const double radius = random.between(2.2, 3.2);
+  const double height = random.between(1.8, 2.6);  // half of the crown's
+  const double middle = clear + height;
+  return {{"tree",
+           {Solid::cylinder({0, 0, 0}, {0, 0, middle}, trunk),
+            Solid::ellipsoid({0, 0, middle}, {radius, radius, height}).ofLeaves(0.6)}},
+          2 * trunk};
+}
+
+Thing wall(Random& random, double length) {
+  const double half = random.between(0.1, 0.15);
+  const double height = random.between(0.9, 2.2);
+  return {{"wall", {Solid::box({-half, -length / 2, 0}, {half, length / 2, height})}}, 2 * half};
+}
+
+Thing lorry(Random& random) {
+  const double half = random.between(7, 9) / 2;
+  const double top = random.between(3.1, 3.7);
+  constexpr double kSide = 1.2;
+  constexpr double kCab = 1.9;
+  std::vector<Solid> solids = {Solid::box({-half, -kSide, 1.1}, {half - kCab - 0.3, kSide, top}),
+                               Solid::box({-half + 0.3, -0.5, 0.8}, {half - kCab, 0.5, 1.1}),
+                               Solid::box({half - kCab, -kSide, 0.5}, {half, kSide, 2.7})};
+  addWheels(solids, half - 1, -half + 1.6, kSide - 0.1, 0.48);
+  return {{"lorry", solids}, 2 * half};
+}
+
+Thing bridge(double span) {
+  constexpr double kClear = 4.7;
+  constexpr double kDeck = 0.9;
+  constexpr double kHalf = 3.5;  // of its width
+  constexpr double kDepth = 12;  // of the piers' feet, in the ground on any terrain
+  const double inner = span / 2;
+  const double outer = inner + 9;
+  std::vector<Solid> solids = {Solid::box({-kHalf, -outer - 1, kClear}, {kHalf, outer + 1, kClear + kDeck})};
+  for (const double side : {-1.0, 1.0}) {
+    solids.push_back(Solid::box({side * kHalf - 0.1, -outer - 1, kClear + kDeck},
+                                {side * kHalf + 0.1, outer + 1, kClear + kDeck + 1}));  // parapets
+    for (const double y : {inner + 0.5, outer})
+      solids.push_back(Solid::box({-kHalf + 0.5, side * y - 0.5, -kDepth}, {kHalf - 0.5, side * y + 0.5, kClear}));
+  }
+  return {{"bridge", solids}, 2 * kHalf};
 }
 
 Thing house(Random& random, double width) {

@@ -33,6 +33,16 @@ Thing tree(Random& random);
 /// A house with its front at x = 0 towards -x, a door, windows and a pitched roof. \param width of the front
 Thing house(Random& random, double width);
 
+/// A tree of an avenue, whose crown begins above head height and reaches over the road.
+Thing broadTree(Random& random);
+/// A free-standing wall along y. \param length metres
+Thing wall(Random& random, double length);
+/// A lorry whose box stands 1.1 m above the ground on its wheels.
+Thing lorry(Random& random);
+/// A bridge along y across a street along x: a level deck 4.7 m above the middle, on four piers. \param span metres
+/// between the inner piers
+Thing bridge(double span);
+
 Thing table(Random& random);
 Thing chair(Random& random);
 /// A bookcase with its back at x = 0, open towards -x, with objects on its boards.

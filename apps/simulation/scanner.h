@@ -66,20 +66,4 @@ Scan scan(const Scene& scene, const Sensor& sensor, const Disturbance& disturban
 /// The scene in the frame of a sensor elsewhere. \param heading radians counterclockwise
 Scene seenFrom(const Scene& scene, const Vector& place, double heading);
 
-/// Of a sensor that drives along a circle, x ahead.
-struct Motion {
-  double speed = 0;           ///< metres per second
-  double turn_rate = 0;       ///< radians per second, counterclockwise
-  double turn_seconds = 0.1;  ///< of one rotation
-
-  /// \param turns since the start
-  double headingAfter(double turns) const { return turn_rate * turn_seconds * turns; }
-  Vector placeAfter(double turns) const;
-};
-
-/// Scans while the sensor moves; the returns are in the frame of the first column (motion-compensated).
-/// \param columns more than the sensor's steps: the scan is longer than a turn
-Scan scanInMotion(const Scene& scene, const Sensor& sensor, const Disturbance& disturbance, const Motion& motion,
-                  std::size_t columns);
-
 }  // namespace lisco_simulation

@@ -17,6 +17,7 @@ struct Sensor {
   std::vector<double> stagger;    ///< of each laser in its column, radians clockwise
   std::size_t steps = 0;          ///< of one rotation
   double max_range = 120;         ///< metres; no returns beyond
+  double range_unit = 0;          ///< metres; ranges are rounded to multiples of it; 0: they are not
 
   std::size_t lasers() const { return elevation.size(); }
 

@@ -81,27 +81,48 @@ Solid Solid::moved(const Vector& by) const {
   return solid;
 }
 
-Interval Solid::along(const Vector& direction) const {
+Solid Solid::sheared(const Vector& slope) const {
+  Solid solid = *this;
+  const auto lifted = [&slope](const Vector& place) {
+    return Vector{place.x, place.y, place.z + slope.x * place.x + slope.y * place.y};
+  };
+  // A normal n of the positions p is n - n.z * slope of the lifted ones.
+  const auto against = [&slope](const Vector& normal) {
+    return Vector{normal.x - normal.z * slope.x, normal.y - normal.z * slope.y, normal.z};
+  };
+  for (Vector& row : solid.rows_) row = against(row);
+  solid.centre_ = lifted(centre_);
+  for (Plane& plane : solid.planes_) {
+    const Vector normal = against(plane.normal);
+    const double scale = 1 / length(normal);
+    plane = {scale * normal, scale * plane.limit};
+  }
+  solid.bounds_ = {lifted(bounds_.centre), (1 + std::hypot(slope.x, slope.y)) * bounds_.radius};
+  return solid;
+}
+
+Interval Solid::along(const Vector& direction, const Vector& from) const {
   Interval inside{-kInfinity, kInfinity};
   for (const Plane& plane : planes_) {
     const double towards = dot(plane.normal, direction);
+    const double limit = plane.limit - dot(plane.normal, from);
     if (towards == 0) {
-      if (plane.limit < 0) return kEmpty;
+      if (limit < 0) return kEmpty;
     } else if (towards > 0) {
-      inside.leave = std::min(inside.leave, plane.limit / towards);
+      inside.leave = std::min(inside.leave, limit / towards);
     } else {
-      inside.enter = std::max(inside.enter, plane.limit / towards);
+      inside.enter = std::max(inside.enter, limit / towards);
     }
   }
   if (inside.enter > inside.leave || rows_.empty()) return inside;
 
-  // |A (t direction - centre)|^2 <= 1, that is a t^2 - 2 b t + c <= 0.
+  // |A (from + t direction - centre)|^2 <= 1, that is a t^2 - 2 b t + c <= 0.
   double a = 0;
   double b = 0;
   double c = -1;
   for (const Vector& row : rows_) {
     const double along_row = dot(row, direction);
-    const double centre = dot(row, centre_);
+    const double centre = dot(row, centre_ - from);
     a += along_row * along_row;
     b += along_row * centre;
     c += centre * centre;

@@ -48,8 +48,11 @@ class Solid {
   Solid rotated(double angle) const;
   Solid moved(const Vector& by) const;
 
-  /// The part inside of the ray from (0, 0, 0). \param direction of length 1
-  Interval along(const Vector& direction) const;
+  /// Lifted by x * slope.x + y * slope.y: upright edges stay upright, level ones follow a slope.
+  Solid sheared(const Vector& slope) const;
+
+  /// The part inside of the ray from a position. \param direction of length 1
+  Interval along(const Vector& direction, const Vector& from = {}) const;
 
   /// Whether a position is inside, or outside by at most about `margin` metres.
   bool contains(const Vector& place, double margin = 0) const;

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "drive_files.h"
+
+#include <cmath>
+#include <vector>
+
+#include "io/output_file.h"
+
+namespace lisco_apps {
+namespace {
+
+using namespace lisco_simulation;
+
+constexpr const char* kPrefix = "rotation_";
+constexpr const char* kEnding = ".pcd";
+constexpr const char* kPoses = "poses.csv";
+constexpr const char* kObjects = "objects.csv";
+
+double degrees(double radians) {
+  return radians * 180 / kPi;
+}
+
+void count(const Scan& scan, DriveCounts& counts) {
+  for (const Cell& cell : scan.cells) {
+    if (std::isnan(cell.x)) continue;
+    ++counts.returns;
+    if (cell.object == 0) ++counts.ground;
+  }
+}
+
+std::string objectsOf(const World& world) {
+  std::string text = "label,kind,x,y,z,yaw_degrees,speed_x,speed_y\n";
+  std::size_t number = 0;
+  for (const Body& body : world.bodies) {
+    const Vector place = standingAfter(body, 0, world.ground).place;
+    text += formatted("%zu,%s,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f\n", ++number, body.kind.c_str(), place.x, place.y, place.z,
+                      degrees(body.heading), body.velocity.x, body.velocity.y);
+  }
+  if (!world.carrier.empty()) text += formatted("%zu,sensor car,,,,,,\n", number + 1);
+  return text;
+}
+
+}  // namespace
+
+std::string pcdOf(const Scan& scan, const std::string& comment) {
+  static_assert(sizeof(Cell) == 16, "cells are written as they are");
+  std::string content = pcdHeader(comment, "x y z label", "F F F U", scan.steps, scan.lasers);
+  content.append(reinterpret_cast<const char*>(scan.cells.data()), scan.cells.size() * sizeof(Cell));
+  return content;
+}
+
+DriveCounts writeRotation(Drive& drive, const std::string& comment, const fs::path& file) {
+  const Scan scan = drive.columns(0, drive.sensor().steps);
+  DriveCounts counts;
+  count(scan, counts);
+  writeOwnFile(file, pcdOf(scan, comment), kSignature);
+  return counts;
+}
+
+DriveCounts writeDrive(Drive& drive, std::size_t rotations, const std::string& comment, const fs::path& folder) {
+  const std::size_t steps = drive.sensor().steps;
+  std::vector<std::string> names = {kPoses, kObjects};
+  for (std::size_t rotation = 1; rotation <= rotations; ++rotation)
+    names.push_back(formatted("%s%06zu%s", kPrefix, rotation, kEnding));
+  DriveCounts counts;
+  const auto make = [&](const fs::path& aside) {
+    writeOwnFile(aside / kObjects, objectsOf(drive.world()), "label,");
+    std::string poses = "rotation,column,seconds,x,y,z,roll_degrees,pitch_degrees,yaw_degrees\n";
+    for (std::size_t rotation = 0; rotation < rotations; ++rotation) {
+      const Scan scan = drive.columns(rotation * steps, steps);
+      count(scan, counts);
+      writeOwnFile(aside / names[2 + rotation], pcdOf(scan, comment), kSignature);
+      for (std::size_t column = 0; column < steps; ++column) {
+        const Pose pose = drive.poseOf(rotation * steps + column);
+        poses += formatted("%zu,%zu,%.6f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f\n", rotation + 1, column,
+                           drive.secondsOf(rotation * steps + column), pose.place.x, pose.place.y, pose.place.z,
+                           degrees(pose.roll), degrees(pose.pitch), degrees(pose.yaw));
+      }
+    }
+    writeOwnFile(aside / kPoses, poses, "rotation,");
+  };
+  const auto tidy = [&] {
+    const std::vector<fs::path> clouds = filesIn(folder, kPrefix, kEnding);
+    for (const fs::path& cloud : clouds) checkMayWrite(cloud, kSignature);
+    for (const fs::path& cloud : clouds) fs::remove(cloud);
+  };
+  writeOwnFolder(folder, names, make, tidy);
+  return counts;
+}
+
+}  // namespace lisco_apps

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "street.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "objects.h"
+#include "random.h"
+
+namespace lisco_simulation {
+namespace {
+
+constexpr double kEnds = 75;        // metres of street behind the start and beyond the end
+constexpr double kFreeWay = 2.5;    // metres
+constexpr double kWalking = 1.3;    // metres per second
+constexpr double kCarWidth = 1.84;  // metres
+
+Body bodyOf(Thing thing, double width, Footing footing, const Vector& at, double heading) {
+  return {thing.object.kind, std::move(thing.object.solids), thing.length, width, footing, at, heading, {}};
+}
+
+/// One side of the street.
+class Side {
+ public:
+  /// \param side 1: left, -1: right
+  Side(World& world, Random& random, double side, double begin, double end)
+      : world_(world), random_(random), side_(side), begin_(begin), end_(end) {}
+
+  void add() {
+    const double along = side_ < 0 ? 0 : kPi;  // cars face as the traffic does
+    for (double x = begin_; x < end_; x += random_.between(5.2, 12))
+      add(car(random_), kCarWidth, Footing::kWheels, x, 4.3, along + random_.between(-0.02, 0.02));
+    for (double x = begin_ + random_.between(0, 20); x < end_; x += random_.between(22, 28))
+      add(lampPost(random_), 0.3, Footing::kFounded, x, 6, -side_ * kPi / 2 - kPi / 2);
+    for (double x = begin_ + random_.between(0, 40); x < end_; x += random_.between(30, 50))
+      add(signPost(random_), 0.3, Footing::kFounded, x, 6.3, along);
+    for (double x = begin_ + random_.between(0, 10); x < end_; x += random_.between(6, 16)) {
+      const bool ahead = random_.chance(0.5);
+      Body& person =
+          add(lisco_simulation::person(random_), 0.5, Footing::kFounded, x, random_.between(6.8, 7.6), ahead ? 0 : kPi);
+      person.velocity = {(ahead ? 1 : -1) * kWalking, 0, 0};
+    }
+    for (double x = begin_ + random_.between(0, 10); x < end_; x += random_.between(9, 15))
+      add(broadTree(random_), 0.5, Footing::kFounded, x, 8.2, 0);
+    for (double x = begin_; x < end_;) {
+      const double length = random_.between(6, 14);
+      add(wall(random_, length), length, Footing::kFounded, x + length / 2, 9.3, kPi / 2);
+      x += length + random_.between(3, 15);
+    }
+    for (double x = begin_; x < end_;) {
+      const double width = random_.between(8, 14);
+      add(house(random_, width), width, Footing::kFounded, x + width / 2, 16, side_ * kPi / 2);
+      x += width + random_.between(2, 10);
+    }
+  }
+
+ private:
+  /// \param away from the middle of the road, metres
+  Body& add(Thing thing, double width, Footing footing, double x, double away, double heading) {
+    const double y = kRoadMiddle + side_ * away;
+    world_.bodies.push_back(bodyOf(std::move(thing), width, footing, {x, y, 0}, heading));
+    return world_.bodies.back();
+  }
+
+  World& world_;
+  Random& random_;
+  double side_, begin_, end_;
+};
+
+void addTraffic(World& world, Random& random, double speed) {
+  const auto add = [&](Thing thing, double width, double x, double y, double velocity) {
+    Body body = bodyOf(std::move(thing), width, Footing::kWheels, {x, y, 0}, velocity < 0 ? kPi : 0);
+    body.velocity = {velocity, 0, 0};
+    world.bodies.push_back(std::move(body));
+  };
+  const double oncoming = 2 * kRoadMiddle;
+  add(car(random), kCarWidth, random.between(13, 18), 0, speed + 2);
+  add(car(random), kCarWidth, random.between(-18, -13), 0, std::max(speed - 2, 0.0));
+  add(car(random), kCarWidth, random.between(8, 20), oncoming, -9);
+  add(lorry(random), 2.4, random.between(38, 45), oncoming, -8);
+  add(car(random), kCarWidth, random.between(-30, -20), oncoming, -9);
+}
+
+}  // namespace
+
+World makeStreet(const Terrain& ground, const Motion& motion, double seconds, double height, unsigned seed) {
+  Random random(seed);
+  World world{ground, {}, {}};
+  double begin = 0;
+  double end = 0;
+  const double turns = seconds / motion.turn_seconds;
+  std::vector<Vector> way;
+  const auto samples = static_cast<std::size_t>(std::fabs(motion.speed) * seconds) + 1;
+  for (std::size_t i = 0; i <= samples; ++i) {
+    way.push_back(motion.placeAfter(turns * static_cast<double>(i) / static_cast<double>(samples)));
+    begin = std::min(begin, way.back().x);
+    end = std::max(end, way.back().x);
+  }
+  for (const double side : {1.0, -1.0}) Side(world, random, side, begin - kEnds, end + kEnds).add();
+  world.bodies.push_back(bodyOf(bridge(14), 0, Footing::kLevel, {random.between(35, 50), kRoadMiddle, 0}, 0));
+  const auto isInTheWay = [&](const Body& body) {
+    if (body.footing == Footing::kLevel) return false;
+    return std::any_of(way.begin(), way.end(), [&](const Vector& place) {
+      return std::hypot(place.x - body.at.x, place.y - body.at.y) < kFreeWay;
+    });
+  };
+  world.bodies.erase(std::remove_if(world.bodies.begin(), world.bodies.end(), isInTheWay), world.bodies.end());
+  addTraffic(world, random, motion.speed);
+  if (height >= kCarrierHeight)
+    for (const Solid& solid : sensorCar().object.solids) world.carrier.push_back(solid.moved({0, 0, -height}));
+  return world;
+}
+
+}  // namespace lisco_simulation
