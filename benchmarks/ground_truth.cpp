@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+//
+// Ground filters against the truth of simulated drives: precision, recall and F1 of the ground, and the part of the
+// objects' returns that is lost, per terrain, sensor and filter. Prints Markdown.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pcl/ModelCoefficients.h>
+#include <pcl/common/io.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+#include <pcl/segmentation/approximate_progressive_morphological_filter.h>
+#include <pcl/segmentation/sac_segmentation.h>
+
+#include "io/options.h"
+#include "lisco/ground_filter.h"
+#include "simulation/drive.h"
+#include "simulation/sensor.h"
+#include "simulation/street.h"
+#include "simulation/terrain.h"
+
+namespace {
+
+using namespace lisco_apps;
+using namespace lisco_simulation;
+using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+
+constexpr double kDegree = kPi / 180;
+
+struct Settings {
+  std::vector<std::string> terrains = terrainNames();
+  std::vector<std::string> sensors = lisco_simulation::sensorNames();
+  std::vector<std::string> seeds = {"1", "2", "3"};
+  std::size_t rotations = 2;
+  double slope = 10;    ///< degrees
+  double height = 1.8;  ///< metres
+  double speed = 8;     ///< metres per second
+  double sway = 2;      ///< amplitude of roll and pitch, degrees
+};
+
+/// Decisions on the returns of a rotation, laser by laser: 1 on the ground.
+using Decisions = std::vector<std::uint8_t>;
+
+struct Counts {
+  double true_ground = 0, false_ground = 0, missed_ground = 0, objects = 0;
+
+  void add(const Scan& scan, const Decisions& decided) {
+    for (std::size_t i = 0; i < scan.cells.size(); ++i) {
+      const Cell& cell = scan.cells[i];
+      if (std::isnan(cell.x)) continue;
+      const bool ground = cell.object == 0;
+      if (!ground) ++objects;
+      if (decided[i] != 0)
+        ++(ground ? true_ground : false_ground);
+      else if (ground)
+        ++missed_ground;
+    }
+  }
+  double precision() const { return true_ground > 0 ? true_ground / (true_ground + false_ground) : 0; }
+  double recall() const { return true_ground > 0 ? true_ground / (true_ground + missed_ground) : 0; }
+  double f1() const { return 2 * true_ground / std::max(1.0, 2 * true_ground + false_ground + missed_ground); }
+  double lost() const { return objects > 0 ? false_ground / objects : 0; }
+};
+
+/// The returns of a scan, and the cells they come from.
+struct Returns {
+  Cloud::Ptr cloud = std::make_shared<Cloud>();
+  std::vector<std::size_t> cells;
+
+  explicit Returns(const Scan& scan) {
+    for (std::size_t i = 0; i < scan.cells.size(); ++i) {
+      const Cell& cell = scan.cells[i];
+      if (std::isnan(cell.x)) continue;
+      cloud->emplace_back(cell.x, cell.y, cell.z);
+      cells.push_back(i);
+    }
+  }
+  Decisions decisions(const Scan& scan, const pcl::Indices& ground) const {
+    Decisions decided(scan.cells.size(), 0);
+    for (const auto index : ground) decided[cells[static_cast<std::size_t>(index)]] = 1;
+    return decided;
+  }
+};
+
+/// A filter that decides on one rotation by itself.
+struct Filter {
+  const char* name;
+  std::function<Decisions(const Scan& scan, double height)> decide;
+};
+
+constexpr double kThickness = 0.2;  // metres: how far ground may be from the height or the plane
+
+Decisions byHeight(const Scan& scan, double height) {
+  Decisions decided;
+  for (const Cell& cell : scan.cells) decided.push_back(static_cast<double>(cell.z) < kThickness - height ? 1 : 0);
+  return decided;
+}
+
+Decisions byPlane(const Scan& scan, double /*height*/) {
+  const Returns returns(scan);
+  pcl::SACSegmentation<pcl::PointXYZ> segmentation;
+  segmentation.setModelType(pcl::SACMODEL_PERPENDICULAR_PLANE);  // not the largest wall
+  segmentation.setAxis({0, 0, 1});
+  segmentation.setEpsAngle(20 * kDegree);
+  segmentation.setMethodType(pcl::SAC_RANSAC);
+  segmentation.setMaxIterations(1000);
+  segmentation.setOptimizeCoefficients(true);
+  segmentation.setDistanceThreshold(kThickness);
+  segmentation.setInputCloud(returns.cloud);
+  pcl::PointIndices ground;
+  pcl::ModelCoefficients plane;
+  segmentation.segment(ground, plane);
+  return returns.decisions(scan, ground.indices);
+}
+
+Decisions byMorphology(const Scan& scan, double /*height*/) {
+  const Returns returns(scan);
+  pcl::ApproximateProgressiveMorphologicalFilter<pcl::PointXYZ> filter;  // with its defaults
+  filter.setInputCloud(returns.cloud);
+  pcl::Indices ground;
+  filter.extract(ground);
+  return returns.decisions(scan, ground);
+}
+
+/// Runs the filter over a whole drive, column by column, and counts.
+void addLisco(const std::vector<Scan>& rotations, Counts& counts) {
+  lisco::GroundFilter filter;
+  filter.begin({}, rotations.front().lasers);
+  std::vector<Decisions> decided;
+  for (const Scan& scan : rotations) decided.emplace_back(scan.cells.size(), std::uint8_t{0});
+  const std::size_t steps = rotations.front().steps;
+  const auto visit = [&](std::size_t column, const std::uint8_t* ground, std::size_t lasers) {
+    for (std::size_t laser = 0; laser < lasers; ++laser)
+      decided[column / steps][laser * steps + column % steps] = ground[laser];
+  };
+  std::vector<lisco::Return> cells(rotations.front().lasers);
+  for (const Scan& scan : rotations)
+    for (std::size_t step = 0; step < steps; ++step) {
+      for (std::size_t laser = 0; laser < scan.lasers; ++laser) {
+        const Cell& cell = scan.at(laser, step);
+        cells[laser] = {cell.x, cell.y, cell.z, 0};
+      }
+      filter.addColumn(cells.data(), scan.lasers, visit);
+    }
+  filter.finish(visit);
+  for (std::size_t i = 0; i < rotations.size(); ++i) counts.add(rotations[i], decided[i]);
+}
+
+std::vector<Scan> rotationsOf(const Settings& settings, const std::string& terrain, const std::string& sensor_name,
+                              unsigned seed) {
+  Motion motion;
+  motion.speed = settings.speed;
+  motion.roll = settings.sway * kDegree;
+  motion.pitch = settings.sway * kDegree;
+  Disturbance disturbance;
+  disturbance.seed = seed;
+  const double seconds = static_cast<double>(settings.rotations) * motion.turn_seconds;
+  const Terrain ground = makeTerrain(terrain, settings.slope * kDegree, seed);
+  const Sensor sensor = lisco_simulation::makeSensor(sensor_name);
+  Drive drive(makeStreet(ground, motion, seconds, settings.height, seed), sensor, disturbance, motion, settings.height);
+  std::vector<Scan> rotations;
+  for (std::size_t i = 0; i < settings.rotations; ++i)
+    rotations.push_back(drive.columns(i * sensor.steps, sensor.steps));
+  return rotations;
+}
+
+std::string cellsOf(const Counts& counts) {
+  return formatted("%5.1f | %5.1f | %5.1f | %4.1f", 100 * counts.precision(), 100 * counts.recall(), 100 * counts.f1(),
+                   100 * counts.lost());
+}
+
+/// The least and the mean of a column of the table.
+struct Summary {
+  double sum_f1 = 0, least_f1 = 2, most_lost = 0, sum_lost = 0;
+  int count = 0;
+
+  void add(const Counts& counts) {
+    sum_f1 += counts.f1();
+    least_f1 = std::min(least_f1, counts.f1());
+    most_lost = std::max(most_lost, counts.lost());
+    sum_lost += counts.lost();
+    ++count;
+  }
+};
+
+int run(const Settings& settings, bool only_lisco) {
+  const std::vector<Filter> rivals =
+      only_lisco ? std::vector<Filter>{}
+                 : std::vector<Filter>{{"height", byHeight}, {"plane", byPlane}, {"morphological", byMorphology}};
+  std::vector<std::string> names;
+  for (const Filter& rival : rivals) names.emplace_back(rival.name);
+  names.emplace_back("Lisco");
+  std::printf("| terrain | sensor |");
+  for (const std::string& name : names) std::printf(" %s: P | R | F1 | lost |", name.c_str());
+  std::printf("\n|---|---|");
+  for (std::size_t i = 0; i < names.size(); ++i) std::printf("--:|--:|--:|--:|");
+  std::printf("\n");
+  std::vector<Summary> summaries(names.size());
+  for (const std::string& terrain : settings.terrains)
+    for (const std::string& sensor : settings.sensors) {
+      std::vector<Counts> counts(names.size());
+      for (const std::string& seed : settings.seeds) {
+        const std::vector<Scan> rotations = rotationsOf(settings, terrain, sensor, countOf(seed, "--seeds", 0));
+        for (std::size_t i = 0; i < rivals.size(); ++i)
+          for (const Scan& scan : rotations) counts[i].add(scan, rivals[i].decide(scan, settings.height));
+        addLisco(rotations, counts.back());
+      }
+      std::printf("| %s | %s |", terrain.c_str(), sensor.c_str());
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        summaries[i].add(counts[i]);
+        std::printf(" %s |", cellsOf(counts[i]).c_str());
+      }
+      std::printf("\n");
+      std::fflush(stdout);
+    }
+  std::printf("\n");
+  for (std::size_t i = 0; i < names.size(); ++i)
+    std::printf(
+        "%s: F1 %.1f %% in the mean, %.1f %% at least; %.1f %% of the objects' returns lost in the mean, %.1f %% at "
+        "most\n",
+        names[i].c_str(), 100 * summaries[i].sum_f1 / summaries[i].count, 100 * summaries[i].least_f1,
+        100 * summaries[i].sum_lost / summaries[i].count, 100 * summaries[i].most_lost);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  namespace po = boost::program_options;
+  return lisco_apps::runProgram("ground_truth", [&] {
+    Settings settings;
+    bool only_lisco = false;
+    po::options_description options(
+        "Usage: ground_truth [options]\n\n"
+        "Compares ground filters with the truth of simulated drives, and prints a table in Markdown: per filter the\n"
+        "precision P, recall R and F1 of the ground, and the part of the objects' returns that is lost, in per cent");
+    const auto list = [](const char* name, std::vector<std::string>& items) {
+      return textOption(name, [&items](const std::string& text) { items = itemsOf(text); });
+    };
+    // clang-format off
+    options.add_options()
+      ("terrains", list("NAME,...", settings.terrains), "of lisco_simulate (default: all)")
+      ("sensors", list("NAME,...", settings.sensors), "of lisco_simulate (default: all)")
+      ("seeds", list("N,...", settings.seeds), "a drive each (default 1,2,3)")
+      ("rotations", countOption("--rotations", settings.rotations, 1, 1000), "of each drive (default 2)")
+      ("slope", numberOption("DEG", "--slope", settings.slope), "of the terrains with a slope (default 10)")
+      ("height", numberOption("M", "--height", settings.height), "of the sensor above the ground (default 1.8)")
+      ("speed", numberOption("M/S", "--speed", settings.speed), "of the sensor (default 8)")
+      ("sway", numberOption("DEG", "--sway", settings.sway), "amplitude of its roll and pitch (default 2)")
+      ("only-lisco", po::bool_switch(&only_lisco), "leave out the other filters");
+    // clang-format on
+    po::variables_map given;
+    if (!readCommandLine(argc, argv, "ground_truth", options, nullptr, given)) return 0;
+    return run(settings, only_lisco);
+  });
+}
