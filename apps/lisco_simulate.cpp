@@ -68,7 +68,6 @@ struct Options {
   double pitch = 0;
   Motion motion;
   std::size_t rotations = 1;
-  bool pcap = false;
   fs::path output;
 
   bool isFolder() const { return output.extension() != ".pcd"; }
@@ -104,8 +103,7 @@ std::string usageText() {
       "Writes an organized cloud, a row per laser and a column per step, with fields x y z label; the label\n"
       "is the number of the object that was hit, 0 the ground. Cells without return are NaN. Cases have no ground.\n"
       "A drive can be written into a folder: rotation_000001.pcd and so on, each column in the sensor's frame of\n"
-      "its moment; poses.csv, the sensor's pose at each column; objects.csv, the objects by their labels; and with\n"
-      "--pcap, capture.pcap: the sensor's packets of the same returns.\n\n"
+      "its moment; poses.csv, the sensor's pose at each column; objects.csv, the objects by their labels.\n\n"
       "Options";
   return usage;
 }
@@ -117,12 +115,12 @@ void checkRange(const char* option, double value, double least, double most, con
 
 /// Checks the options of drives. \param given the names of all options given
 void checkDrive(const Options& options, const po::variables_map& given) {
-  static constexpr const char* kOfDrives[] = {"slope", "height",      "speed",        "yaw-rate",  "roll",
-                                              "pitch", "roll-period", "pitch-period", "rotations", "pcap"};
+  static constexpr const char* kOfDrives[] = {"slope", "height",      "speed",        "yaw-rate", "roll",
+                                              "pitch", "roll-period", "pitch-period", "rotations"};
   for (const char* const option : kOfDrives)
-    if (options.terrain.empty() && given.count(option) != 0 && !given[option].defaulted())
+    if (given.count("terrain") == 0 && given.count(option) != 0)
       throw std::runtime_error(std::string("--") + option + " needs --terrain");
-  if (options.terrain.empty()) return;
+  if (given.count("terrain") == 0) return;
   checkKnown(options.terrain, terrainNames(), "terrain");
   if (given.count("slope") != 0 && !terrainHasSlope(options.terrain))
     throw std::runtime_error("--slope is of --terrain slope, hill and ramp only");
@@ -173,9 +171,6 @@ bool parse(int argc, char** argv, Options& options) {
      "of the pitch, in seconds (default 1.3)")
     ("rotations", countOption("--rotations", options.rotations, 1, kMaxRotations),
      "of the sensor on the terrain (default 1), of 0.1 s each; several are written into a folder")
-    ("pcap", po::bool_switch(&options.pcap),
-     "adds the packets of a vlp16, hdl32e or vls128 to the folder; lasers, steps and duration of a rotation are then "
-     "those of its packets")
     ("output,o", pathOption("FILE", "--output", options.output),
      "the scan to write (PCD); of a terrain also a folder")
     ("seed", countOption("--seed", options.seed, 0),
@@ -205,11 +200,10 @@ bool parse(int argc, char** argv, Options& options) {
   if (options.output.empty()) throw std::runtime_error("--output is missing; see --help");
   if (options.isFolder() && (options.terrain.empty() || options.output.extension() == ".pcap"))
     throw std::runtime_error("--output must end in .pcd" +
-                             std::string(options.terrain.empty() ? "" : " or be a folder, with --pcap for packets") +
-                             ", not be '" + options.output.string() + "'");
-  if (!options.isFolder() && (options.rotations > 1 || options.pcap))
-    throw std::runtime_error(std::string(options.pcap ? "--pcap" : "--rotations") +
-                             " needs a folder as --output, not '" + options.output.string() + "'");
+                             std::string(options.terrain.empty() ? "" : " or be a folder") + ", not be '" +
+                             options.output.string() + "'");
+  if (!options.isFolder() && options.rotations > 1)
+    throw std::runtime_error("--rotations needs a folder as --output, not '" + options.output.string() + "'");
   options.disturbance.seed = options.seed;
   if (options.disturbance.range_noise < 0) throw std::runtime_error("--noise must not be negative");
   if (options.disturbance.drop_outs < 0 || options.disturbance.drop_outs >= 1)
@@ -240,7 +234,6 @@ std::string argumentsOfDrive(const Options& options) {
             << options.turn_rate << " --roll " << options.roll << " --roll-period " << options.motion.roll_seconds
             << " --pitch " << options.pitch << " --pitch-period " << options.motion.pitch_seconds << " --rotations "
             << options.rotations;
-  if (options.pcap) arguments << " --pcap";
   return arguments.str();
 }
 

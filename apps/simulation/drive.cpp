@@ -25,11 +25,6 @@ std::size_t columnsPerView(const World& world, const Sensor& sensor, const Motio
              : std::max<std::size_t>(1, static_cast<std::size_t>(kViewLength / per_column));
 }
 
-Solid stood(const Solid& solid, const Body& body, const Standing& standing) {
-  if (body.footing == Footing::kFixed) return solid;
-  return solid.rotated(body.heading).sheared(standing.slope).moved(standing.place);
-}
-
 }  // namespace
 
 Standing standingAfter(const Body& body, double seconds, const Terrain& ground) {
@@ -63,6 +58,13 @@ Standing standingAfter(const Body& body, double seconds, const Terrain& ground) 
   return standing;
 }
 
+std::vector<Solid> solidsOf(const Body& body, const Standing& standing) {
+  std::vector<Solid> solids = body.solids;
+  if (body.footing == Footing::kFixed) return solids;
+  for (Solid& solid : solids) solid = solid.rotated(body.heading).sheared(standing.slope).moved(standing.place);
+  return solids;
+}
+
 Drive::Drive(World world, Sensor sensor, const Disturbance& disturbance, const Motion& motion, double height)
     : world_(std::move(world)),
       sensor_(std::move(sensor)),
@@ -75,9 +77,7 @@ Drive::Drive(World world, Sensor sensor, const Disturbance& disturbance, const M
       shifts_(world_.bodies.size()) {
   for (std::size_t i = 0; i < world_.bodies.size(); ++i) {
     const Body& body = world_.bodies[i];
-    if (body.isMoving()) continue;
-    for (const Solid& solid : body.solids)
-      at_rest_[i].push_back(stood(solid, body, standingAfter(body, 0, world_.ground)));
+    if (!body.isMoving()) at_rest_[i] = solidsOf(body, standingAfter(body, 0, world_.ground));
   }
   const auto number = static_cast<std::uint32_t>(world_.bodies.size() + 1);
   for (const Solid& solid : world_.carrier) carrier_.add(solid, number);
@@ -93,9 +93,12 @@ void Drive::lookAround(std::size_t column) {
     std::vector<std::uint32_t> numbers;
     for (std::size_t i = 0; i < world_.bodies.size(); ++i) {
       const Body& body = world_.bodies[i];
-      if (body.isMoving()) standing_[i] = standingAfter(body, secondsOf(first), world_.ground);
-      for (const Solid& solid : body.isMoving() ? body.solids : at_rest_[i])
-        seen_.push_back((body.isMoving() ? stood(solid, body, standing_[i]) : solid).moved(-1 * centre_));
+      std::vector<Solid> moving;
+      if (body.isMoving()) {
+        standing_[i] = standingAfter(body, secondsOf(first), world_.ground);
+        moving = solidsOf(body, standing_[i]);
+      }
+      for (const Solid& solid : body.isMoving() ? moving : at_rest_[i]) seen_.push_back(solid.moved(-1 * centre_));
       numbers.resize(seen_.size(), static_cast<std::uint32_t>(i + 1));
     }
     caster_ = Caster(kSlack);

@@ -43,6 +43,8 @@ struct Standing {
   Vector place, slope;
 };
 Standing standingAfter(const Body& body, double seconds, const Terrain& ground);
+/// The solids of a body that stands there, in the coordinates of the world.
+std::vector<Solid> solidsOf(const Body& body, const Standing& standing);
 
 /// The surroundings of a moving sensor. The coordinates of the world are those of the start: x ahead, y to the left, z
 /// up from the ground of height 0.

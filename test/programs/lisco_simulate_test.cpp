@@ -7,6 +7,7 @@
 #include <cstring>
 #include <map>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -198,11 +199,97 @@ TEST_F(LiscoSimulate, WritesTheWorstCases) {
   expectMadeAgain("near.pcd", "--case");
 }
 
+TEST_F(LiscoSimulate, WritesAScanOnEachTerrain) {
+  for (const char* name : {"plane", "slope", "hill", "road", "ramp", "field"}) {
+    SCOPED_TRACE(name);
+    const Outcome outcome = run(std::string("--terrain ") + name + " --sensor hdl32e --seed 3 --roll 2 -o scan.pcd");
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_EQ(outcome.out.rfind(std::string("terrain ") + name + ": ", 0), 0U) << outcome.out;
+    for (const char* kind : {"car", "lorry", "person", "tree", "wall", "house", "bridge", "sensor car"})
+      EXPECT_NE(outcome.out.find(std::string(" x ") + kind), std::string::npos) << kind << ": " << outcome.out;
+    std::vector<std::uint32_t> objects;
+    const auto cloud = lisco_apps::readCloudFile(folder_ / "scan.pcd", &objects);
+    EXPECT_EQ(cloud->height, 32U);
+    EXPECT_EQ(cloud->width, 2170U);
+    long returns = 0;
+    long ground = 0;
+    for (std::size_t i = 0; i < cloud->size(); ++i) {
+      if (std::isnan((*cloud)[i].x)) continue;
+      ++returns;
+      ground += objects[i] == 0 ? 1 : 0;
+    }
+    EXPECT_GT(ground, 10000);
+    EXPECT_EQ(numberBefore(outcome.out, " in 1 rotation"), returns) << outcome.out;
+    EXPECT_EQ(numberBefore(outcome.out, " of them of the ground"), ground) << outcome.out;
+    expectMadeAgain("scan.pcd", "--terrain");
+  }
+}
+
+TEST_F(LiscoSimulate, WritesADriveIntoAFolder) {
+  const std::string options = "--terrain road --sensor vlp16 --steps 400 --speed 10 --yaw-rate 20 --pitch 3 ";
+  const Outcome outcome = run(options + "--rotations 3 -o sub/drive");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const fs::path drive = folder_ / "sub/drive";
+  EXPECT_NE(outcome.out.find(" in 3 rotations"), std::string::npos) << outcome.out;
+  std::istringstream poses(textOf(drive / "poses.csv"));
+  std::string line;
+  std::getline(poses, line);
+  EXPECT_EQ(line, "rotation,column,seconds,x,y,z,roll_degrees,pitch_degrees,yaw_degrees");
+  int lines = 0;
+  std::string last;
+  while (std::getline(poses, line)) {
+    ++lines;
+    last = line;
+  }
+  EXPECT_EQ(lines, 3 * 400);
+  EXPECT_EQ(last.rfind("3,399,0.29975", 0), 0U) << last;
+  EXPECT_NE(textOf(drive / "objects.csv").find(",sensor car,"), std::string::npos);
+  for (int rotation = 1; rotation <= 3; ++rotation)
+    EXPECT_EQ(lisco_apps::readCloudFile(drive / ("rotation_00000" + std::to_string(rotation) + ".pcd"))->width, 400U);
+  EXPECT_FALSE(textOf(drive / "rotation_000001.pcd") == textOf(drive / "rotation_000002.pcd"));
+
+  // A shorter one replaces it, and a foreign file stops it.
+  ASSERT_EQ(run(options + "--rotations 2 -o sub/drive").status, 0);
+  EXPECT_TRUE(fs::exists(drive / "rotation_000002.pcd"));
+  EXPECT_FALSE(fs::exists(drive / "rotation_000003.pcd"));
+  write("sub/drive/rotation_000009.pcd", "mine");
+  expectRefusal(options + "-o sub/drive", {"rotation_000009.pcd", "not written by this program"});
+  EXPECT_EQ(textOf(drive / "rotation_000009.pcd"), "mine");
+  fs::create_directory(folder_ / "theirs");
+  write("theirs/poses.csv", "mine");
+  expectRefusal(options + "-o theirs", {"poses.csv", "not written by this program"});
+}
+
+TEST_F(LiscoSimulate, RefusesBadDrivesInOneLine) {
+  for (const char* name : {"planes", "1", "Road"})
+    expectRefusal(std::string("-o scan.pcd --terrain=") + name, {"no terrain", "plane", "field"});
+  expectRefusal("--terrain road --scene 1 -o scan.pcd", {"--scene", "--terrain"});
+  expectRefusal("--terrain road --case room -o scan.pcd", {"--case", "--terrain"});
+  expectRefusal("--terrain road --vehicle -o scan.pcd", {"--vehicle"});
+  expectRefusal("--terrain road", {"--output"});
+  expectRefusal("--terrain road -o drive.pcap", {"--output", "drive.pcap"});
+  expectRefusal("--terrain road --rotations 2 -o scan.pcd", {"--rotations", "folder"});
+  expectRefusal("--scene 1 -o folder", {"--output", ".pcd"});
+  expectRefusal("--terrain road --slope 5 -o scan.pcd", {"--slope", "hill"});
+  for (const char* slope : {"-1", "31", "nan", "steep"})
+    expectRefusal(std::string("--terrain slope -o scan.pcd --slope=") + slope, {"--slope"});
+  for (const char* option : {"height", "speed", "yaw-rate", "roll", "pitch", "roll-period", "pitch-period"})
+    for (const char* value : {"1e9", "-1e9", "inf", "x"})
+      expectRefusal(std::string("--terrain road -o scan.pcd --") + option + "=" + value, {option});
+  for (const char* count : {"0", "-1", "1.5", "100001"})
+    expectRefusal(std::string("--terrain road -o drive --rotations=") + count, {"--rotations"});
+  expectRefusal("--terrain road -o drive --rotations 100000 --speed 50", {"longer than", "--rotations"});
+  for (const char* option : {"--slope 5", "--height 2", "--speed 3", "--yaw-rate 1", "--roll 1", "--pitch 1",
+                             "--roll-period 1", "--pitch-period 1", "--rotations 2"})
+    expectRefusal(std::string("--scene 1 -o scan.pcd ") + option, {"needs --terrain"});
+}
+
 TEST_F(LiscoSimulate, PrintsHelpAndVersion) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.status, 0);
   for (const char* word : {"Usage: lisco_simulate", "--scene", "--case", "singletons", "--gap", "--vehicle", "--sensor",
-                           "os1-128", "--drop-outs"})
+                           "os1-128", "--drop-outs", "--terrain", "field", "--rotations", "poses.csv", "--pitch"})
     EXPECT_NE(help.out.find(word), std::string::npos) << word;
   const Outcome version = run("--version");
   EXPECT_EQ(version.status, 0);
