@@ -4,6 +4,7 @@
 
 #include "lisco/cxx17.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -24,6 +25,13 @@ struct GroundParameters {
   /// Its origin and tilt decide where the ground is looked for; see estimateSensor.
   SensorHints sensor;
 };
+
+/// Estimates the sensor and its height above the ground from a sample of an organized cloud's cells, or of a rotation
+/// before. The height stays NaN where no ground is clearly seen.
+/// \param declared_origin position that the cloud states for its sensor, metres
+/// \param cells row by row from top to bottom; see estimateSensor
+LISCO_EXPORT GroundParameters estimateGround(std::size_t columns, std::size_t lasers,
+                                             const std::array<float, 3>& declared_origin, const CellSource& cells);
 
 /// Receives the decisions on whole columns. Refers to the callable that it is made of.
 class GroundVisitor {

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
 #include "core/ground/block.h"
 #include "core/ground/polar_grid.h"
 #include "core/ground/profile.h"
+#include "core/ground/start.h"
 #include "core/pi.h"
 
 namespace lisco {
@@ -21,6 +23,16 @@ using ground::kBins;
 using ground::kSectors;
 using ground::Profile;
 using ground::Sector;
+using ground::StartEstimator;
+
+namespace {
+
+/// Metres per metre.
+float maxSlope(const GroundParameters& parameters) {
+  return static_cast<float>(std::tan(static_cast<double>(parameters.max_slope) * kPi / 180.0));
+}
+
+}  // namespace
 
 /// Blocks of columns, the polar grid that they fill, and the ground found in it.
 class GroundFilter::State {
@@ -50,6 +62,7 @@ class GroundFilter::State {
   std::vector<std::uint8_t> column_ground_;                 // of one column
   std::uint64_t block_number_ = 0;
   std::vector<Sector> sectors_;
+  StartEstimator start_estimator_;
   float start_ = 0.0F;  // height of the ground beneath the sensor; NaN: unknown
 };
 
@@ -59,7 +72,7 @@ void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t 
   if (!(parameters.max_slope >= 1.0F && parameters.max_slope <= 60.0F))
     throw std::invalid_argument("lisco::GroundFilter: max_slope is not within 1 to 60 degrees");
   parameters_ = parameters;
-  max_slope_ = static_cast<float>(std::tan(static_cast<double>(parameters.max_slope) * kPi / 180.0));
+  max_slope_ = maxSlope(parameters);
   lasers_ = lasers;
   block_.resize(lasers);
   column_ground_.resize(std::max(column_ground_.size(), lasers));
@@ -71,6 +84,7 @@ void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t 
   columns_ = first_column_ = 0;
   block_number_ = 0;
   start_ = -parameters.sensor_height;
+  start_estimator_.begin(parameters.sensor);
   begun_ = true;
 }
 
@@ -139,22 +153,17 @@ void GroundFilter::State::insert() {
       if (block_number_ - sector.block > kFresh) sector.occupied = {};
       sector.block = block_number_;
     }
-    const std::size_t bin = index % kBins;
-    Cell& cell = sector.cells[bin];
-    const float height = block_.height[i];
-    std::uint64_t& word = sector.occupied[bin / 64];
-    const std::uint64_t bit = std::uint64_t{1} << (bin % 64);
-    if ((word & bit) == 0 || height < cell.low) {
-      word |= bit;
-      cell.low = height;
-      cell.low_rho = block_.rho[i];
-    }
+    sector.add(index % kBins, block_.rho[i], block_.height[i]);
   }
 }
 
 void GroundFilter::State::findGround() {
-  for (std::size_t s = 0; s < kSectors && std::isnan(start_); ++s)
-    if (sectors_[s].block == block_number_) start_ = ground::findStart(sectors_[s], max_slope_);
+  constexpr std::uint64_t kEstimatePeriod = 4;  // blocks
+  if (std::isnan(parameters_.sensor_height) && (std::isnan(start_) || block_number_ % kEstimatePeriod == 0)) {
+    const std::size_t count = std::isnan(start_) ? Block::kColumns : 1;
+    for (std::size_t column = 0; column < count; ++column) start_estimator_.add(block_, column, max_slope_);
+    start_ = start_estimator_.estimate();
+  }
   if (std::isnan(start_)) return;
   const Profile profile(start_, max_slope_);
   for (std::size_t s = 0; s < kSectors; ++s) {
@@ -173,8 +182,37 @@ void GroundFilter::State::classify() {
     const auto index = static_cast<std::size_t>(block_.cell[i]);
     const Cell& cell = sectors_[index / kBins].cells[index % kBins];
     const float above = block_.height[i] - (cell.ground + cell.slope * (block_.rho[i] - cell.low_rho));
-    block_.ground[i] = above < 0.25F && above > -0.5F;
+    block_.ground[i] = above < cell.tolerance && above > -0.5F;
   }
+}
+
+GroundParameters estimateGround(std::size_t columns, std::size_t lasers, const std::array<float, 3>& declared_origin,
+                                const CellSource& cells) {
+  GroundParameters parameters;
+  parameters.sensor = estimateSensor(columns, lasers, declared_origin, cells);
+  Block block;
+  block.resize(lasers);
+  ground::StartEstimator estimator;
+  estimator.begin(parameters.sensor);
+  const std::size_t samples = std::min(columns, ground::StartEstimator::kMemory);
+  for (std::size_t sample = 0; sample < samples; sample += Block::kColumns) {
+    const std::size_t count = std::min(Block::kColumns, samples - sample);
+    std::fill(block.z.begin(), block.z.end(), std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t column = (2 * (sample + i) + 1) * columns / (2 * samples);
+      for (std::size_t laser = 0; laser < lasers; ++laser) {
+        const Return cell = cells.at(laser, column);
+        const std::size_t to = laser * Block::kColumns + i;
+        block.x[to] = cell.x;
+        block.y[to] = cell.y;
+        block.z[to] = cell.z;
+      }
+    }
+    block.measure(parameters.sensor);
+    for (std::size_t i = 0; i < count; ++i) estimator.add(block, i, maxSlope(parameters));
+  }
+  parameters.sensor_height = -estimator.estimate();
+  return parameters;
 }
 
 GroundFilter::GroundFilter() : state_(std::make_unique<State>()) {}

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+
+#include "core/bits.h"
 
 namespace lisco::ground {
 
@@ -19,8 +22,15 @@ struct Cell {
   std::uint64_t levels;  ///< occupied heights: bit i for level i modulo 64
   float ground;          ///< height of the ground at low_rho
   float slope;           ///< of the ground there, metres per metre outwards
-  bool observed;         ///< whether the lowest return is on the ground
+  float tolerance;       ///< returns up to this far above the ground are on it
+  /// 0: the lowest return is not on the ground; otherwise how many sectors may still follow this one's example
+  std::int8_t confidence;
 };
+
+/// Number of the level of a height, modulo 64; levels are 0.25 m high.
+inline unsigned levelOf(float height) {
+  return static_cast<unsigned>(static_cast<std::int32_t>(std::floor(height * 4.0F)) & 63);
+}
 
 /// The cells of one azimuth, from the sensor outwards.
 struct Sector {
@@ -29,6 +39,40 @@ struct Sector {
   std::uint64_t block = 0;                           ///< the last one that added returns, from 1 on; 0: none
 
   bool has(std::size_t bin) const { return (occupied[bin / 64] >> (bin % 64) & 1) != 0; }
+
+  void add(std::size_t bin, float rho, float height) {
+    std::uint64_t& word = occupied[bin / 64];
+    const std::uint64_t bit = std::uint64_t{1} << (bin % 64);
+    Cell& cell = cells[bin];
+    const std::uint64_t level = std::uint64_t{1} << levelOf(height);
+    if ((word & bit) == 0) {
+      word |= bit;
+      cell.levels = level;
+      cell.low = height;
+      cell.low_rho = rho;
+      return;
+    }
+    cell.levels |= level;
+    if (height < cell.low) {
+      cell.low = height;
+      cell.low_rho = rho;
+    }
+  }
 };
+
+/// Calls visit(bin) for each cell with returns, from the sensor outwards.
+template <typename Visit>
+void forEachBin(const Sector& sector, Visit&& visit) {
+  for (std::size_t word = 0; word < sector.occupied.size(); ++word)
+    forEachBit(sector.occupied[word], [&](std::size_t bit) { visit(word * 64 + bit); });
+}
+
+/// Whether nothing stands on the lowest return of a cell, up to about 2 m.
+inline bool isBare(const Cell& cell) {
+  constexpr std::uint64_t kAbove = 0x7F;  // levels
+  const unsigned level = levelOf(cell.low);
+  const std::uint64_t turned = cell.levels >> level | cell.levels << (-level & 63);
+  return (turned >> 2 & kAbove) == 0;
+}
 
 }  // namespace lisco::ground

@@ -21,7 +21,4 @@ class Profile {
   float max_slope_;
 };
 
-/// The height of the ground beneath the sensor that most of a sector's cells agree with; NaN if too few do.
-float findStart(const Sector& sector, float max_slope);
-
 }  // namespace lisco::ground
