@@ -23,6 +23,7 @@
 #include "io/text.h"
 #include "lisco/version.h"
 #include "simulate/drive_files.h"
+#include "simulate/drive_packets.h"
 #include "simulation/cases.h"
 #include "simulation/drive.h"
 #include "simulation/motion.h"
@@ -68,6 +69,7 @@ struct Options {
   double pitch = 0;
   Motion motion;
   std::size_t rotations = 1;
+  bool pcap = false;
   fs::path output;
 
   bool isFolder() const { return output.extension() != ".pcd"; }
@@ -103,7 +105,8 @@ std::string usageText() {
       "Writes an organized cloud, a row per laser and a column per step, with fields x y z label; the label\n"
       "is the number of the object that was hit, 0 the ground. Cells without return are NaN. Cases have no ground.\n"
       "A drive can be written into a folder: rotation_000001.pcd and so on, each column in the sensor's frame of\n"
-      "its moment; poses.csv, the sensor's pose at each column; objects.csv, the objects by their labels.\n\n"
+      "its moment; poses.csv, the sensor's pose at each column; objects.csv, the objects by their labels; and with\n"
+      "--pcap, capture.pcap: the sensor's packets of the same returns, for lisco_stream.\n\n"
       "Options";
   return usage;
 }
@@ -144,6 +147,9 @@ bool parse(int argc, char** argv, Options& options) {
   const std::string cases = boost::join(caseNames(), ", ");
   const std::string terrains = boost::join(terrainNames(), ", ");
   const std::string sensors = boost::join(sensorNames(), ", ") + " (default " + options.sensor + ")";
+  const std::string pcap = "adds capture.pcap, the packets of a " + boost::join(packetSensorNames(), ", ") +
+                           ", to the folder; lasers, steps (1800 unless given) and duration of a rotation are those of "
+                           "the packets";
   // clang-format off
   shown.add_options()
     ("scene", countOption("--scene", options.scene, 1, kScenes), "1 to 5")
@@ -171,6 +177,7 @@ bool parse(int argc, char** argv, Options& options) {
      "of the pitch, in seconds (default 1.3)")
     ("rotations", countOption("--rotations", options.rotations, 1, kMaxRotations),
      "of the sensor on the terrain (default 1), of 0.1 s each; several are written into a folder")
+    ("pcap", po::bool_switch(&options.pcap), pcap.c_str())
     ("output,o", pathOption("FILE", "--output", options.output),
      "the scan to write (PCD); of a terrain also a folder")
     ("seed", countOption("--seed", options.seed, 0),
@@ -200,10 +207,13 @@ bool parse(int argc, char** argv, Options& options) {
   if (options.output.empty()) throw std::runtime_error("--output is missing; see --help");
   if (options.isFolder() && (options.terrain.empty() || options.output.extension() == ".pcap"))
     throw std::runtime_error("--output must end in .pcd" +
-                             std::string(options.terrain.empty() ? "" : " or be a folder") + ", not be '" +
-                             options.output.string() + "'");
-  if (!options.isFolder() && options.rotations > 1)
-    throw std::runtime_error("--rotations needs a folder as --output, not '" + options.output.string() + "'");
+                             std::string(options.terrain.empty() ? "" : " or be a folder, with --pcap for packets") +
+                             ", not be '" + options.output.string() + "'");
+  if (options.pcap && given.count("terrain") == 0) throw std::runtime_error("--pcap needs --terrain");
+  if (options.pcap && given.count("lasers") != 0) throw std::runtime_error("--pcap and --lasers exclude each other");
+  if (!options.isFolder() && (options.rotations > 1 || options.pcap))
+    throw std::runtime_error(std::string(options.pcap ? "--pcap" : "--rotations") +
+                             " needs a folder as --output, not '" + options.output.string() + "'");
   options.disturbance.seed = options.seed;
   if (options.disturbance.range_noise < 0) throw std::runtime_error("--noise must not be negative");
   if (options.disturbance.drop_outs < 0 || options.disturbance.drop_outs >= 1)
@@ -221,7 +231,8 @@ Sensor sensorFor(const Options& options) {
       throw std::runtime_error("more than " + std::to_string(kMaxCells) + " cells: fewer --lasers or --steps");
   };
   check(options.lasers, options.steps);  // before memory is allocated
-  Sensor sensor = makeSensor(options.sensor, options.lasers, options.steps);
+  Sensor sensor = options.pcap ? packetSensor(options.sensor, options.steps)
+                               : makeSensor(options.sensor, options.lasers, options.steps);
   check(sensor.lasers(), sensor.steps);
   return sensor;
 }
@@ -234,6 +245,7 @@ std::string argumentsOfDrive(const Options& options) {
             << options.turn_rate << " --roll " << options.roll << " --roll-period " << options.motion.roll_seconds
             << " --pitch " << options.pitch << " --pitch-period " << options.motion.pitch_seconds << " --rotations "
             << options.rotations;
+  if (options.pcap) arguments << " --pcap";
   return arguments.str();
 }
 
@@ -247,8 +259,9 @@ std::string argumentsOf(const Options& options, const Sensor& sensor) {
   else
     arguments << argumentsOfDrive(options);
   if (!options.worst_case.empty() && caseHasGap(options.worst_case)) arguments << " --gap " << options.gap;
-  arguments << " --seed " << options.seed << " --sensor " << options.sensor << " --lasers " << sensor.lasers()
-            << " --steps " << sensor.steps << " --noise " << options.disturbance.range_noise << " --drop-outs "
+  arguments << " --seed " << options.seed << " --sensor " << options.sensor;
+  if (!options.pcap) arguments << " --lasers " << sensor.lasers();
+  arguments << " --steps " << sensor.steps << " --noise " << options.disturbance.range_noise << " --drop-outs "
             << options.disturbance.drop_outs;
   return arguments.str();
 }
@@ -289,10 +302,12 @@ void printScene(const Options& options, const Sensor& sensor, const Scene& scene
 
 /// Drives through a street on a terrain.
 int drive(const Options& options, const Sensor& sensor, const std::string& comment) {
-  const double seconds = static_cast<double>(options.rotations) * options.motion.turn_seconds;
+  Motion motion = options.motion;
+  if (options.pcap) motion.turn_seconds = turnSeconds(sensor);
+  const double seconds = static_cast<double>(options.rotations) * motion.turn_seconds;
   const Terrain ground = makeTerrain(options.terrain, options.slope * kDegree, options.seed);
-  Drive drive(makeStreet(ground, options.motion, seconds, options.height, options.seed), sensor, options.disturbance,
-              options.motion, options.height);
+  Drive drive(makeStreet(ground, motion, seconds, options.height, options.seed), sensor, options.disturbance, motion,
+              options.height);
   std::printf("terrain %s: %s (seed %u)\n", options.terrain.c_str(), describeTerrain(options.terrain).c_str(),
               options.seed);
   const World& world = drive.world();
@@ -302,7 +317,7 @@ int drive(const Options& options, const Sensor& sensor, const std::string& comme
               sensor.lasers(), sensor.steps, options.height);
   DriveCounts counts;
   if (options.isFolder())
-    counts = writeDrive(drive, options.rotations, comment, options.output);
+    counts = writeDrive(drive, options.rotations, options.pcap, comment, options.output);
   else
     counts = writeRotation(drive, comment, options.output);
   std::printf("  returns   %zu in %zu rotation%s, %zu of them of the ground (label 0)\n  written   %s\n",

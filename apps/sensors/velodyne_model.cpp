@@ -52,25 +52,19 @@ std::vector<Laser> lasersAt(const std::array<double, kCount>& elevations, double
   return lasers;
 }
 
-VelodyneModel modelOf(const std::string& name, const fs::path& calibration_file) {
-  if (name == "vlp16") return {name, lasersAt(kVlp16, 2.304), {kUpperBlock}, 2, 55.296, 0.002, {0x22}};
-  if (name == "hdl32e") return {name, lasersAt(kHdl32e, 1.152), {kUpperBlock}, 1, 46.08, 0.002, {0x21}};
+std::vector<Laser> lasersOf(const std::string& name, const fs::path& calibration_file) {
+  if (name == "vlp16") return lasersAt(kVlp16, 2.304);
+  if (name == "hdl32e") return lasersAt(kHdl32e, 1.152);
   if (name == "hdl64e") {
     if (calibration_file.empty())
       throw std::runtime_error(
           "the hdl64e needs its calibration file: each of these sensors has its own; give it by --calibration");
-    // The calibration has no delays; the last two bytes of the packets carry a status.
-    return {name, readCalibration(calibration_file), {kUpperBlock, kLowerBlock}, 1, 48., 0.002, {}};
+    return readCalibration(calibration_file);  // which has no delays
   }
-  if (name == "vls128") {
-    // All lasers take their block's azimuth, as in most drivers. The period is measured.
-    VelodyneModel model{name,  lasersAt(kVls128, 0.), {kUpperBlock, kLowerBlock, kThirdBlock, kFourthBlock}, 1, 55.2,
-                        0.004, {0x63, 0xA1}};
-    for (Laser& laser : model.lasers) laser.azimuth_offset = kVls128Directions[laser.number % 8];
-    return model;
-  }
-  throw std::runtime_error("there is no sensor '" + name + "': it is one of " +
-                           boost::join(velodyneModelNames(), ", "));
+  // All lasers take their block's azimuth, as in most drivers.
+  std::vector<Laser> lasers = lasersAt(kVls128, 0.);
+  for (Laser& laser : lasers) laser.azimuth_offset = kVls128Directions[laser.number % 8];
+  return lasers;
 }
 
 }  // namespace
@@ -79,8 +73,21 @@ std::vector<std::string> velodyneModelNames() {
   return {"vlp16", "hdl32e", "hdl64e", "vls128"};
 }
 
+VelodyneModel velodynePackets(const std::string& name) {
+  if (name == "vlp16") return {name, {}, {kUpperBlock}, 2, 55.296, 0.002, {0x22}};
+  if (name == "hdl32e") return {name, {}, {kUpperBlock}, 1, 46.08, 0.002, {0x21}};
+  // The last two bytes of the packets carry a status.
+  if (name == "hdl64e") return {name, {}, {kUpperBlock, kLowerBlock}, 1, 48., 0.002, {}};
+  // The period is measured.
+  if (name == "vls128")
+    return {name, {}, {kUpperBlock, kLowerBlock, kThirdBlock, kFourthBlock}, 1, 55.2, 0.004, {0x63, 0xA1}};
+  throw std::runtime_error("there is no sensor '" + name + "': it is one of " +
+                           boost::join(velodyneModelNames(), ", "));
+}
+
 VelodyneModel makeVelodyneModel(const std::string& name, const fs::path& calibration_file) {
-  VelodyneModel model = modelOf(name, calibration_file);
+  VelodyneModel model = velodynePackets(name);
+  model.lasers = lasersOf(name, calibration_file);
   if (name != "hdl64e" && !calibration_file.empty())
     throw std::runtime_error("a calibration file is for the hdl64e only, not for the " + name);
   sortByElevation(model.lasers);

@@ -38,6 +38,10 @@ std::vector<std::string> velodyneModelNames();
 ///         another sensor with one, or if readCalibration () throws
 VelodyneModel makeVelodyneModel(const std::string& name, const fs::path& calibration_file = {});
 
+/// A sensor's packets: its model without lasers, which needs no calibration.
+/// \throws std::runtime_error with one line if the name is unknown
+VelodyneModel velodynePackets(const std::string& name);
+
 /// The HDL-64E's lasers in the order of their numbers, from the XML file that Velodyne delivers with each sensor
 /// (db.xml) and that PCL's HDLGrabber reads: angles in degrees, lengths in centimetres.
 /// \throws std::runtime_error with one line if it is missing, malformed, or does not describe each of the 64 lasers

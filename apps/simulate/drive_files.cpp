@@ -3,8 +3,10 @@
 #include "drive_files.h"
 
 #include <cmath>
+#include <optional>
 #include <vector>
 
+#include "drive_packets.h"
 #include "io/output_file.h"
 
 namespace lisco_apps {
@@ -16,6 +18,8 @@ constexpr const char* kPrefix = "rotation_";
 constexpr const char* kEnding = ".pcd";
 constexpr const char* kPoses = "poses.csv";
 constexpr const char* kObjects = "objects.csv";
+constexpr const char* kCapture = "capture.pcap";
+constexpr std::size_t kOthers = 3;  // files besides the rotations
 
 double degrees(double radians) {
   return radians * 180 / kPi;
@@ -58,19 +62,23 @@ DriveCounts writeRotation(Drive& drive, const std::string& comment, const fs::pa
   return counts;
 }
 
-DriveCounts writeDrive(Drive& drive, std::size_t rotations, const std::string& comment, const fs::path& folder) {
+DriveCounts writeDrive(Drive& drive, std::size_t rotations, bool with_packets, const std::string& comment,
+                       const fs::path& folder) {
   const std::size_t steps = drive.sensor().steps;
-  std::vector<std::string> names = {kPoses, kObjects};
+  std::vector<std::string> names = {kPoses, kObjects, kCapture};
   for (std::size_t rotation = 1; rotation <= rotations; ++rotation)
     names.push_back(formatted("%s%06zu%s", kPrefix, rotation, kEnding));
   DriveCounts counts;
   const auto make = [&](const fs::path& aside) {
     writeOwnFile(aside / kObjects, objectsOf(drive.world()), "label,");
     std::string poses = "rotation,column,seconds,x,y,z,roll_degrees,pitch_degrees,yaw_degrees\n";
+    std::optional<PacketWriter> packets;
+    if (with_packets) packets.emplace(aside / kCapture, drive.sensor());
     for (std::size_t rotation = 0; rotation < rotations; ++rotation) {
       const Scan scan = drive.columns(rotation * steps, steps);
       count(scan, counts);
-      writeOwnFile(aside / names[2 + rotation], pcdOf(scan, comment), kSignature);
+      if (packets) packets->add(scan);
+      writeOwnFile(aside / names[kOthers + rotation], pcdOf(scan, comment), kSignature);
       for (std::size_t column = 0; column < steps; ++column) {
         const Pose pose = drive.poseOf(rotation * steps + column);
         poses += formatted("%zu,%zu,%.6f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f\n", rotation + 1, column,
@@ -78,12 +86,14 @@ DriveCounts writeDrive(Drive& drive, std::size_t rotations, const std::string& c
                            degrees(pose.roll), degrees(pose.pitch), degrees(pose.yaw));
       }
     }
+    if (packets) packets->finish();
     writeOwnFile(aside / kPoses, poses, "rotation,");
   };
   const auto tidy = [&] {
     const std::vector<fs::path> clouds = filesIn(folder, kPrefix, kEnding);
     for (const fs::path& cloud : clouds) checkMayWrite(cloud, kSignature);
     for (const fs::path& cloud : clouds) fs::remove(cloud);
+    fs::remove(folder / kCapture);
   };
   writeOwnFolder(folder, names, make, tidy);
   return counts;

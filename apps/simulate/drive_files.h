@@ -28,8 +28,9 @@ DriveCounts writeRotation(lisco_simulation::Drive& drive, const std::string& com
 
 /// Writes a drive into a folder, all or nothing, in place of an earlier one: rotation_000001.pcd and so on, poses.csv
 /// and objects.csv.
+/// \param with_packets capture.pcap too; the sensor must be that of packetSensor ()
 /// \throws std::runtime_error with one line if it cannot be written
-DriveCounts writeDrive(lisco_simulation::Drive& drive, std::size_t rotations, const std::string& comment,
-                       const fs::path& folder);
+DriveCounts writeDrive(lisco_simulation::Drive& drive, std::size_t rotations, bool with_packets,
+                       const std::string& comment, const fs::path& folder);
 
 }  // namespace lisco_apps

@@ -261,7 +261,23 @@ TEST_F(LiscoSimulate, WritesADriveIntoAFolder) {
   expectRefusal(options + "-o theirs", {"poses.csv", "not written by this program"});
 }
 
+TEST_F(LiscoSimulate, WritesPacketsBesideADrive) {
+  const std::string options = "--terrain ramp --sensor vlp16 --rotations 2 -o drive";
+  const Outcome outcome = run(options + " --pcap");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  // 75 packets of 24 firings are a turn; each record is 16 bytes, 42 of headers, and a packet.
+  EXPECT_EQ(fs::file_size(folder_ / "drive/capture.pcap"), 24U + 150U * (16 + 42 + 1206));
+  EXPECT_EQ(lisco_apps::readCloudFile(folder_ / "drive/rotation_000002.pcd")->width, 1800U);
+  ASSERT_EQ(run(options).status, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "drive/capture.pcap"));
+}
+
 TEST_F(LiscoSimulate, RefusesBadDrivesInOneLine) {
+  expectRefusal("--terrain road --pcap --sensor vlp16 -o scan.pcd", {"--pcap", "folder"});
+  expectRefusal("--terrain road --pcap -o drive", {"--pcap", "vlp16", "vls128"});
+  expectRefusal("--terrain road --pcap --sensor vlp16 --lasers 16 -o drive", {"--pcap", "--lasers"});
+  expectRefusal("--terrain road --pcap --sensor vlp16 --steps 1801 -o drive", {"--pcap", "--steps"});
+  expectRefusal("--scene 1 --pcap -o scan.pcd", {"--pcap", "--terrain"});
   for (const char* name : {"planes", "1", "Road"})
     expectRefusal(std::string("-o scan.pcd --terrain=") + name, {"no terrain", "plane", "field"});
   expectRefusal("--terrain road --scene 1 -o scan.pcd", {"--scene", "--terrain"});
@@ -289,7 +305,7 @@ TEST_F(LiscoSimulate, PrintsHelpAndVersion) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.status, 0);
   for (const char* word : {"Usage: lisco_simulate", "--scene", "--case", "singletons", "--gap", "--vehicle", "--sensor",
-                           "os1-128", "--drop-outs", "--terrain", "field", "--rotations", "poses.csv", "--pitch"})
+                           "os1-128", "--drop-outs", "--terrain", "field", "--rotations", "poses.csv", "--pitch", "--pcap"})
     EXPECT_NE(help.out.find(word), std::string::npos) << word;
   const Outcome version = run("--version");
   EXPECT_EQ(version.status, 0);
