@@ -4,6 +4,7 @@
 // Ground filters against the truth of simulated drives: precision, recall and F1 of the ground, and the part of the
 // objects' returns that is lost, per terrain, sensor and filter. Prints Markdown.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -25,6 +26,7 @@
 #include "io/options.h"
 #include "lisco/ground_filter.h"
 #include "simulation/drive.h"
+#include "simulation/motion.h"
 #include "simulation/sensor.h"
 #include "simulation/street.h"
 #include "simulation/terrain.h"
@@ -46,6 +48,13 @@ struct Settings {
   double height = 1.8;  ///< metres
   double speed = 8;     ///< metres per second
   double sway = 2;      ///< amplitude of roll and pitch, degrees
+};
+
+/// A simulated drive, and what its returns lie on.
+struct Simulated {
+  std::vector<Scan> rotations;
+  std::vector<std::string> kinds;          ///< of the objects, by their numbers less 1
+  std::vector<std::vector<double>> above;  ///< the ground, metres, per rotation and cell; NaN: no return
 };
 
 /// Decisions on the returns of a rotation, laser by laser: 1 on the ground.
@@ -132,8 +141,8 @@ Decisions byMorphology(const Scan& scan, double /*height*/) {
   return returns.decisions(scan, ground);
 }
 
-/// Runs the filter over a whole drive, column by column, and counts.
-void addLisco(const std::vector<Scan>& rotations, Counts& counts) {
+/// Runs the filter over a whole drive, column by column.
+std::vector<Decisions> byLisco(const std::vector<Scan>& rotations) {
   lisco::GroundFilter filter;
   filter.begin({}, rotations.front().lasers);
   std::vector<Decisions> decided;
@@ -153,11 +162,61 @@ void addLisco(const std::vector<Scan>& rotations, Counts& counts) {
       filter.addColumn(cells.data(), scan.lasers, visit);
     }
   filter.finish(visit);
-  for (std::size_t i = 0; i < rotations.size(); ++i) counts.add(rotations[i], decided[i]);
+  return decided;
 }
 
-std::vector<Scan> rotationsOf(const Settings& settings, const std::string& terrain, const std::string& sensor_name,
-                              unsigned seed) {
+/// Where a filter goes wrong.
+class Details {
+ public:
+  void add(const Simulated& drive, const std::vector<Decisions>& decided) {
+    for (std::size_t i = 0; i < decided.size(); ++i)
+      for (std::size_t at = 0; at < decided[i].size(); ++at) {
+        const Cell& cell = drive.rotations[i].cells[at];
+        if (std::isnan(cell.x)) continue;
+        const bool is_right = (decided[i][at] != 0) == (cell.object == 0);
+        if (cell.object != 0)
+          count(drive.kinds[cell.object - 1], bandOf(drive.above[i][at], {0.1, 0.2, 0.5, 1}), is_right);
+        else
+          count("ground", bandOf(std::hypot(static_cast<double>(cell.x), static_cast<double>(cell.y)), {5, 10, 20, 40}),
+                is_right);
+      }
+  }
+  void print() const {
+    std::printf("\n%-12s %s\n", "", "wrong of all returns, up to 0.1, 0.2, 0.5, 1 m and higher above the ground");
+    for (const auto& [kind, bands] : of_)
+      if (kind != "ground") printBands(kind, bands);
+    std::printf("%-12s %s\n", "", "up to 5, 10, 20, 40 m and farther from the sensor");
+    const auto ground = of_.find("ground");
+    if (ground != of_.end()) printBands("ground", ground->second);
+    std::printf("\n");
+  }
+
+ private:
+  static constexpr std::size_t kBands = 5;
+  struct Band {
+    long wrong = 0, all = 0;
+  };
+  using Bands = std::array<Band, kBands>;
+
+  static std::size_t bandOf(double value, const std::array<double, kBands - 1>& limits) {
+    return static_cast<std::size_t>(std::upper_bound(limits.begin(), limits.end(), value) - limits.begin());
+  }
+  void count(const std::string& kind, std::size_t band, bool is_right) {
+    Band& in = of_[kind][band];
+    ++in.all;
+    if (!is_right) ++in.wrong;
+  }
+  static void printBands(const std::string& kind, const Bands& bands) {
+    std::printf("%-12s", kind.c_str());
+    for (const Band& band : bands) std::printf(" %7ld/%-8ld", band.wrong, band.all);
+    std::printf("\n");
+  }
+
+  std::map<std::string, Bands> of_;
+};
+
+Simulated simulated(const Settings& settings, const std::string& terrain, const std::string& sensor_name,
+                    unsigned seed) {
   Motion motion;
   motion.speed = settings.speed;
   motion.roll = settings.sway * kDegree;
@@ -166,12 +225,26 @@ std::vector<Scan> rotationsOf(const Settings& settings, const std::string& terra
   disturbance.seed = seed;
   const double seconds = static_cast<double>(settings.rotations) * motion.turn_seconds;
   const Terrain ground = makeTerrain(terrain, settings.slope * kDegree, seed);
-  const Sensor sensor = lisco_simulation::makeSensor(sensor_name);
+  const Sensor sensor = makeSensor(sensor_name);
   Drive drive(makeStreet(ground, motion, seconds, settings.height, seed), sensor, disturbance, motion, settings.height);
-  std::vector<Scan> rotations;
-  for (std::size_t i = 0; i < settings.rotations; ++i)
-    rotations.push_back(drive.columns(i * sensor.steps, sensor.steps));
-  return rotations;
+  Simulated result;
+  for (const Body& body : drive.world().bodies) result.kinds.push_back(body.kind);
+  result.kinds.emplace_back("sensor car");
+  for (std::size_t rotation = 0; rotation < settings.rotations; ++rotation) {
+    const std::size_t first = rotation * sensor.steps;
+    result.rotations.push_back(drive.columns(first, sensor.steps));
+    const Scan& scan = result.rotations.back();
+    std::vector<double>& above = result.above.emplace_back();
+    for (std::size_t i = 0; i < scan.cells.size(); ++i) {
+      const Cell& cell = scan.cells[i];
+      const Pose pose = drive.poseOf(first + i % sensor.steps);
+      const Vector place =
+          Rotation(pose)({static_cast<double>(cell.x), static_cast<double>(cell.y), static_cast<double>(cell.z)}) +
+          pose.place;
+      above.push_back(place.z - ground.height(place.x, place.y));
+    }
+  }
+  return result;
 }
 
 std::string cellsOf(const Counts& counts) {
@@ -193,7 +266,7 @@ struct Summary {
   }
 };
 
-int run(const Settings& settings, bool only_lisco) {
+int run(const Settings& settings, bool only_lisco, bool with_details) {
   const std::vector<Filter> rivals =
       only_lisco ? std::vector<Filter>{}
                  : std::vector<Filter>{{"height", byHeight}, {"plane", byPlane}, {"morphological", byMorphology}};
@@ -209,11 +282,16 @@ int run(const Settings& settings, bool only_lisco) {
   for (const std::string& terrain : settings.terrains)
     for (const std::string& sensor : settings.sensors) {
       std::vector<Counts> counts(names.size());
+      Details details;
       for (const std::string& seed : settings.seeds) {
-        const std::vector<Scan> rotations = rotationsOf(settings, terrain, sensor, countOf(seed, "--seeds", 0));
-        for (std::size_t i = 0; i < rivals.size(); ++i)
-          for (const Scan& scan : rotations) counts[i].add(scan, rivals[i].decide(scan, settings.height));
-        addLisco(rotations, counts.back());
+        const Simulated drive = simulated(settings, terrain, sensor, countOf(seed, "--seeds", 0));
+        const std::vector<Decisions> decided = byLisco(drive.rotations);
+        for (std::size_t rotation = 0; rotation < settings.rotations; ++rotation) {
+          const Scan& scan = drive.rotations[rotation];
+          for (std::size_t i = 0; i < rivals.size(); ++i) counts[i].add(scan, rivals[i].decide(scan, settings.height));
+          counts.back().add(scan, decided[rotation]);
+        }
+        details.add(drive, decided);
       }
       std::printf("| %s | %s |", terrain.c_str(), sensor.c_str());
       for (std::size_t i = 0; i < names.size(); ++i) {
@@ -221,6 +299,7 @@ int run(const Settings& settings, bool only_lisco) {
         std::printf(" %s |", cellsOf(counts[i]).c_str());
       }
       std::printf("\n");
+      if (with_details) details.print();
       std::fflush(stdout);
     }
   std::printf("\n");
@@ -240,6 +319,7 @@ int main(int argc, char** argv) {
   return lisco_apps::runProgram("ground_truth", [&] {
     Settings settings;
     bool only_lisco = false;
+    bool with_details = false;
     po::options_description options(
         "Usage: ground_truth [options]\n\n"
         "Compares ground filters with the truth of simulated drives, and prints a table in Markdown: per filter the\n"
@@ -257,10 +337,11 @@ int main(int argc, char** argv) {
       ("height", numberOption("M", "--height", settings.height), "of the sensor above the ground (default 1.8)")
       ("speed", numberOption("M/S", "--speed", settings.speed), "of the sensor (default 8)")
       ("sway", numberOption("DEG", "--sway", settings.sway), "amplitude of its roll and pitch (default 2)")
-      ("only-lisco", po::bool_switch(&only_lisco), "leave out the other filters");
+      ("only-lisco", po::bool_switch(&only_lisco), "leave out the other filters")
+      ("details", po::bool_switch(&with_details), "after each row, where Lisco goes wrong");
     // clang-format on
     po::variables_map given;
     if (!readCommandLine(argc, argv, "ground_truth", options, nullptr, given)) return 0;
-    return run(settings, only_lisco);
+    return run(settings, only_lisco, with_details);
   });
 }

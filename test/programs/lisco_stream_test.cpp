@@ -455,6 +455,54 @@ TEST_F(LiscoStream, KeepsThePaceOfTheCapture) {
   EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(290));
 }
 
+// --- Simulated drives ----------------------------------------------------------------------------------------------
+
+TEST_F(LiscoStream, FindsTheObjectsOfASimulatedDrive) {
+  const Outcome simulated =
+      runLine(std::string(LISCO_SIMULATE) + " --terrain plane --sensor hdl32e --speed 10 --rotations 3 --pcap -o drive");
+  ASSERT_EQ(simulated.status, 0) << simulated.err;
+  const Outcome outcome = run("drive/capture.pcap --sensor hdl32e -t 0.4 --ground-z -1.5 -o clouds");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (std::size_t rotation = 1; rotation <= 3; ++rotation) {
+    const Pcd truth = cloud("drive", rotation);
+    const Pcd streamed = cloud("clouds", rotation);
+    ASSERT_EQ(streamed.width, truth.width);
+    ASSERT_EQ(streamed.height, truth.height);
+    for (const char* axis : {"x", "y", "z"}) {
+      const std::vector<std::uint32_t> is = streamed.field(axis);
+      const std::vector<std::uint32_t> was = truth.field(axis);
+      for (std::size_t i = 0; i < is.size(); ++i) {
+        float value, expected;
+        std::memcpy(&value, &is[i], sizeof value);
+        std::memcpy(&expected, &was[i], sizeof expected);
+        ASSERT_EQ(std::isnan(value), std::isnan(expected)) << "cell " << i;
+        if (!std::isnan(value)) {
+          ASSERT_NEAR(value, expected, 1e-4F) << "cell " << i;
+        }
+      }
+    }
+    // Most returns of a cluster lie on one object.
+    const std::vector<std::uint32_t> labels = streamed.field("label");
+    const std::vector<std::uint32_t> objects = truth.field("label");
+    std::map<std::uint32_t, std::map<std::uint32_t, std::size_t>> clusters;
+    std::size_t clustered = 0;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      if (labels[i] == 0) continue;
+      ++clustered;
+      ++clusters[labels[i]][objects[i]];
+    }
+    std::size_t of_one_object = 0;
+    for (const auto& [label, of] : clusters) {
+      std::size_t most = 0;
+      for (const auto& [object, returns] : of) most = std::max(most, returns);
+      of_one_object += most;
+    }
+    EXPECT_GT(clusters.size(), 30U);
+    EXPECT_GT(clustered, 20000U);
+    EXPECT_GT(of_one_object, clustered * 8 / 10);
+  }
+}
+
 // --- Errors --------------------------------------------------------------------------------------------------------
 
 TEST_F(LiscoStream, EndsAtTheTruncationOfACapture) {
