@@ -3,6 +3,7 @@
 #include "core/near/voxel_plane.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -143,14 +144,19 @@ class PlaneLinker {
     if (end - begin == 1) return true;  // the boxes are the returns
     const Box box = boxOf(*many, b);
     for (std::uint32_t i = few->first_point[a]; i < few->first_point[a + 1]; ++i) {
-      if (!(Box::squaredGap(Box::around(few->x[i], few->y[i], few->z[i]), box) < layout_.squared_tolerance)) continue;
-      const FloatVector x = hn::Set(kFloats, few->x[i]);
-      const FloatVector y = hn::Set(kFloats, few->y[i]);
-      const FloatVector z = hn::Set(kFloats, few->z[i]);
+      const NearReturn& point = few->points[i];
+      if (!(Box::squaredGap(Box::around(point.x, point.y, point.z), box) < layout_.squared_tolerance)) continue;
+      const FloatVector own_x = hn::Set(kFloats, point.x);
+      const FloatVector own_y = hn::Set(kFloats, point.y);
+      const FloatVector own_z = hn::Set(kFloats, point.z);
       for (std::uint32_t k = begin; k < end; k += std::uint32_t{kLanes}) {
-        std::uint32_t near = bitsOf(areNeighbours(hn::Sub(x, hn::LoadU(kFloats, &many->x[k])),
-                                                  hn::Sub(y, hn::LoadU(kFloats, &many->y[k])),
-                                                  hn::Sub(z, hn::LoadU(kFloats, &many->z[k])), squared_tolerance_));
+        FloatVector x;
+        FloatVector y;
+        FloatVector z;
+        FloatVector elements;
+        hn::LoadInterleaved4(kFloats, &many->points[k].x, x, y, z, elements);
+        std::uint32_t near =
+            bitsOf(areNeighbours(hn::Sub(own_x, x), hn::Sub(own_y, y), hn::Sub(own_z, z), squared_tolerance_));
         if (end - k < kLanes) near &= (1U << (end - k)) - 1;
         if (near != 0) return true;
       }
@@ -182,6 +188,28 @@ namespace {
 HWY_EXPORT(linkWithin);
 HWY_EXPORT(linkAcross);
 
+/// The box around some returns: four lanes, of which the last, of their elements, has no meaning.
+class PointBounds {
+ public:
+  explicit PointBounds(const NearReturn& near) : lo_(lanesOf(near)), hi_(lo_) {}
+  void add(const NearReturn& near) {
+    const Lanes point = lanesOf(near);
+    lo_ = point < lo_ ? point : lo_;
+    hi_ = point > hi_ ? point : hi_;
+  }
+  Box box() const { return {{lo_[0], lo_[1], lo_[2]}, {hi_[0], hi_[1], hi_[2]}}; }
+
+ private:
+  using Lanes = float __attribute__((vector_size(16)));
+  static Lanes lanesOf(const NearReturn& near) {
+    Lanes lanes;
+    static_assert(sizeof lanes == sizeof near);
+    std::memcpy(&lanes, &near, sizeof lanes);
+    return lanes;
+  }
+  Lanes lo_, hi_;
+};
+
 }  // namespace
 
 void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, std::size_t following,
@@ -204,7 +232,7 @@ void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
   for (std::size_t i = 0; i < count; ++voxel) {
     const std::uint64_t key = items[i] >> layout.number_bits;
     const NearReturn* near = returnOf(items[i]);
-    Box box = Box::around(near->x, near->y, near->z);
+    PointBounds bounds(*near);
     std::uint32_t root = subclusters.find(near->element);
     plane.first_point[voxel] = static_cast<std::uint32_t>(points);
     do {
@@ -217,13 +245,12 @@ void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
       const std::size_t size = fragments.endOf(numberOf(items[i])) - numberOf(items[i]);
       plane.reservePoints(points + size);
       for (std::size_t k = 0; k < size; ++k, ++near, ++points) {
-        plane.x[points] = near->x;
-        plane.y[points] = near->y;
-        plane.z[points] = near->z;
-        box.add(Box::around(near->x, near->y, near->z));
+        plane.points[points] = *near;
+        bounds.add(*near);
       }
       ++i;
     } while (i < count && items[i] >> layout.number_bits == key);
+    const Box box = bounds.box();
     for (std::size_t axis = 0; axis < 3; ++axis) {
       plane.lo[axis][voxel] = box.lo[axis];
       plane.hi[axis][voxel] = box.hi[axis];

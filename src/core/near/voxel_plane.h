@@ -57,7 +57,7 @@ struct VoxelPlane {
   std::vector<float> lo[3], hi[3];         ///< of each voxel's box
   std::vector<std::uint32_t> root;         ///< of its subcluster, perhaps outdated
   std::vector<std::uint32_t> first_point;  ///< and the end
-  std::vector<float> x, y, z;              ///< of each point
+  std::vector<NearReturn> points;
 
   /// Makes room for some voxels, as many bricks, and their end marks.
   void reserveVoxels(std::size_t count) {
@@ -72,8 +72,7 @@ struct VoxelPlane {
     bricks.resize(size);
   }
   void reservePoints(std::size_t count) {
-    if (x.size() >= count + kReadBehind) return;
-    for (auto* coordinate : {&x, &y, &z}) coordinate->resize(count + count / 4 + kReadBehind);
+    if (points.size() < count + kReadBehind) points.resize(count + count / 4 + kReadBehind);
   }
 };
 
