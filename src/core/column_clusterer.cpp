@@ -187,6 +187,12 @@ void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t begin, std::
                                          const CellSource& cells) {
   constexpr std::size_t kWorkOfCell = 2;  // in the segment linker's units
   Partition& partition = partitions_[i];
+  if (!partition.hasFar()) {
+    partition.readLasers(cells, begin, end, lasers, subclusters_);
+    if (partition_count_ > 1)
+      balancer_.record(begin, end - begin, (end - begin) * lasers * kWorkOfCell + partition.workDone());
+    return;
+  }
   partition.addLasers(lasers);
   for (std::size_t first = begin; first < end; first += RingBlock::kColumns) {
     const std::size_t count = std::min(end - first, RingBlock::kColumns);

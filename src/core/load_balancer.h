@@ -53,6 +53,7 @@ class LoadBalancer {
 
   /// Records the work of some columns, in any unit. Threads may call it at the same time, each for its own part.
   void record(std::size_t first, std::size_t columns, std::size_t work) {
+    if (columns == 0) return;
     const std::size_t begin = first / kGroup;
     const std::size_t end = (first + columns + kGroup - 1) / kGroup;
     // At least 1, so that every column belongs to a part.

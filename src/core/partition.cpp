@@ -71,6 +71,16 @@ void Partition::readColumns(const CellSource& cells, std::size_t first_cell, std
   segments_.link(image_, subclusters);
 }
 
+void Partition::readLasers(const CellSource& cells, std::size_t first, std::size_t end, std::size_t lasers,
+                           DisjointSets& subclusters) {
+  for (std::size_t laser = 0; laser < lasers; ++laser)
+    for (std::size_t column = first; column < end; column += RingBlock::kColumns) {
+      const std::size_t count = std::min(end - column, RingBlock::kColumns);
+      fill(block_, 0, cells, laser, column, count);
+      readRing(block_, laser, static_cast<std::uint32_t>(column), count, subclusters);
+    }
+}
+
 void Partition::linkWithin(DisjointSets& subclusters) {
   segments_.linkRest(image_, subclusters);
   near_.link(voxels_, subclusters);

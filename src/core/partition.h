@@ -46,6 +46,11 @@ class Partition {
   void readColumns(const CellSource& cells, std::size_t first_cell, std::size_t count, std::size_t lasers,
                    std::uint32_t first_column, DisjointSets& subclusters);
 
+  /// Reads some columns laser by laser, which is the order of an organized cloud in memory: where all returns are near.
+  /// \param first column of these, in the rotation and among the cells
+  void readLasers(const CellSource& cells, std::size_t first, std::size_t end, std::size_t lasers,
+                  DisjointSets& subclusters);
+
   /// Reads a ring block, without linking it.
   void readRing(RingBlock& block, std::size_t laser, std::uint32_t first_column, std::size_t columns,
                 DisjointSets& subclusters) {

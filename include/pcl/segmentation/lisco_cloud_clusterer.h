@@ -4,6 +4,7 @@
 
 #include "lisco/cxx17.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -38,13 +39,24 @@ class LISCO_EXPORT LiscoCloudClusterer {
   template <typename PointT>
   bool cluster(const PointCloud<PointT>& cloud, const Indices* indices, float tolerance, unsigned int threads,
                const char* caller) {
-    const PointT* const points = cloud.points.data();
-    const auto point_at = [points](std::size_t, std::size_t point) {
-      return (lisco::Return{points[point].x, points[point].y, points[point].z, static_cast<std::uint32_t>(point)});
+    const auto read_points = [&cloud](std::size_t, std::size_t first, std::size_t count,
+                                      const lisco::CellSource::Destination& to) {
+      const PointT* const points = cloud.points.data() + first;
+      // The same columns of the next row, which are often read next.
+      constexpr std::size_t kCacheLine = 64;
+      if (first + cloud.width + count <= cloud.size())
+        for (std::size_t i = 0; i < count; i += std::max<std::size_t>(1, kCacheLine / sizeof(PointT)))
+          __builtin_prefetch(points + cloud.width + i);
+      for (std::size_t i = 0; i < count; ++i) {
+        to.x[i] = points[i].x;
+        to.y[i] = points[i].y;
+        to.z[i] = points[i].z;
+        to.source_index[i] = static_cast<std::uint32_t>(first + i);
+      }
     };
     const auto& origin = cloud.sensor_origin_;
     const Layout layout{cloud.size(), cloud.width, cloud.height, {origin[0], origin[1], origin[2]}};
-    return (clusterPoints(layout, lisco::CellSource(point_at), indices, tolerance, threads, caller));
+    return (clusterPoints(layout, lisco::CellSource(read_points), indices, tolerance, threads, caller));
   }
 
   /** \brief Appends the clusters of the last cloud whose size is within [min_size, max_size], in the order in which

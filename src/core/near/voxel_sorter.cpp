@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/bits.h"
 #include "core/near/constants.h"
 #include "core/parallel.h"
 
@@ -45,53 +46,82 @@ void boundReturns(const NearReturn* returns, std::size_t count, Box& box) {
 
 constexpr std::size_t kBatch = 64;  // returns
 
-/// Numbers of voxels along an axis.
-HWY_INLINE void numberValues(const float* values, double corner, double per_metre, std::uint32_t* numbers) {
-  for (std::size_t i = 0; i < kBatch; ++i)
-    numbers[i] =
+/// The returns of a batch, by coordinates. \param size those behind count as the corner, so that their numbers fit
+void loadBatch(const NearReturn* returns, std::size_t size, const VoxelNumbering& numbering,
+               float (&coordinates)[3][kBatch], std::uint32_t* elements) {
+  NearReturn padded[kBatch];
+  if (size < kBatch) {
+    std::copy_n(returns, size, padded);
+    std::fill(padded + size, padded + kBatch,
+              NearReturn{static_cast<float>(numbering.corner[0]), static_cast<float>(numbering.corner[1]),
+                         static_cast<float>(numbering.corner[2]), 0});
+    returns = padded;
+  }
+  static_assert(kBatch % kLanes == 0, "a batch is whole vectors");
+  for (std::size_t i = 0; i < kBatch; i += kLanes) {
+    FloatVector x;
+    FloatVector y;
+    FloatVector z;
+    FloatVector element;
+    hn::LoadInterleaved4(kFloats, &returns[i].x, x, y, z, element);
+    hn::StoreU(x, kFloats, &coordinates[0][i]);
+    hn::StoreU(y, kFloats, &coordinates[1][i]);
+    hn::StoreU(z, kFloats, &coordinates[2][i]);
+    hn::StoreU(hn::BitCast(kWords, element), kWords, &elements[i]);
+  }
+}
+
+/// Adds the numbers along an axis to the keys of a batch.
+/// \param brick_shift of the brick's number in the key. \param voxel_shift of the voxel's number in it
+HWY_INLINE void addToKeys(const float* values, double corner, double per_metre, unsigned brick_shift,
+                          unsigned voxel_shift, std::uint64_t* keys) {
+  for (std::size_t i = 0; i < kBatch; ++i) {
+    const auto number =
         static_cast<std::uint32_t>(static_cast<std::int32_t>((static_cast<double>(values[i]) - corner) * per_metre));
+    // Bricks begin with 1, so that those before and after one have keys too.
+    keys[i] += std::uint64_t{(number >> 2) + 1} << brick_shift | std::uint64_t{number & 3U} << voxel_shift;
+  }
+}
+
+/// Bit i: item i differs from the one before.
+HWY_INLINE std::uint64_t changes(const std::uint64_t* keys, const std::uint32_t* elements) {
+  using Keys = hn::CappedTag<std::uint64_t, 8>;
+  constexpr Keys kKeys{};
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < kBatch; i += hn::Lanes(kKeys)) {
+    std::uint8_t mask[8] = {};
+    hn::StoreMaskBits(kKeys, hn::Ne(hn::LoadU(kKeys, keys + i), hn::LoadU(kKeys, keys + i - 1)), mask);
+    bits |= std::uint64_t{mask[0]} << i;
+  }
+  for (std::size_t i = 0; i < kBatch; i += kLanes)
+    bits |= std::uint64_t{bitsOf(differ(elements + i, hn::LoadU(kWords, elements + i - 1)))} << i;
+  return bits;
 }
 
 /// Cuts a part's returns into fragments. \return the number of fragments
 std::size_t cutPart(const VoxelNumbering& numbering, unsigned number_bits, const FragmentList::Part& part,
                     std::uint64_t* starts, std::uint64_t* items) {
-  std::uint32_t numbers[3][kBatch];
   float coordinates[3][kBatch];
-  const unsigned major_shift = numbering.minor_bits + numbering.middle_bits;
-  std::uint64_t last_key = ~std::uint64_t{0};
-  std::uint32_t last_element = 0;
+  std::uint64_t keys[1 + kBatch];  // the first: of the return before
+  std::uint32_t elements[1 + kBatch];
+  keys[kBatch] = ~std::uint64_t{0};
+  elements[kBatch] = 0;
+  const unsigned brick_shifts[3] = {6, 6 + numbering.minor_bits, 6 + numbering.minor_bits + numbering.middle_bits};
+  const NearReturn* const returns = part.near->returns.data();
   std::size_t count = 0;
-  const NearReturn* returns = part.near->returns.data();
-  for (std::size_t batch = 0; batch < part.near->count; batch += kBatch, returns += kBatch) {
+  for (std::size_t batch = 0; batch < part.near->count; batch += kBatch) {
     const std::size_t size = std::min(kBatch, part.near->count - batch);
-    for (std::size_t i = 0; i < size; ++i) {
-      coordinates[0][i] = returns[i].x;
-      coordinates[1][i] = returns[i].y;
-      coordinates[2][i] = returns[i].z;
-    }
-    for (std::size_t axis = 0; axis < 3; ++axis)  // numbers that fit, of no return
-      std::fill(coordinates[axis] + size, coordinates[axis] + kBatch, static_cast<float>(numbering.corner[axis]));
-    for (std::size_t i = 0; i < 3; ++i) {
+    keys[0] = keys[kBatch];
+    elements[0] = elements[kBatch];
+    loadBatch(returns + batch, size, numbering, coordinates, elements + 1);
+    std::fill(keys + 1, keys + 1 + kBatch, 0);
+    for (unsigned i = 0; i < 3; ++i) {
       const std::size_t axis = numbering.axis[i];
-      numberValues(coordinates[axis], numbering.corner[axis], numbering.per_metre, numbers[i]);
+      addToKeys(coordinates[axis], numbering.corner[axis], numbering.per_metre, brick_shifts[i], 2 * i, keys + 1);
     }
-    std::uint64_t starts_here = 0;
-    for (std::size_t i = 0; i < size; ++i) {
-      const std::uint32_t minor = numbers[0][i];
-      const std::uint32_t middle = numbers[1][i];
-      const std::uint32_t major = numbers[2][i];
-      // Bricks begin with 1, so that those before and after one have keys too.
-      const std::uint64_t brick = std::uint64_t{(major >> 2) + 1} << major_shift |
-                                  std::uint64_t{(middle >> 2) + 1} << numbering.minor_bits | ((minor >> 2) + 1);
-      const std::uint64_t key = brick << 6 | ((minor & 3U) | (middle & 3U) << 2 | (major & 3U) << 4);
-      const std::uint32_t element = returns[i].element;
-      const bool is_start = key != last_key || element != last_element;
-      last_key = key;
-      last_element = element;
-      items[count] = key << number_bits | (part.first + batch + i);
-      count += is_start ? 1 : 0;
-      starts_here |= std::uint64_t{is_start} << i;
-    }
+    const std::uint64_t starts_here = changes(keys + 1, elements + 1) & ~bitsFrom(size);
+    forEachBit(starts_here,
+               [&](std::size_t i) { items[count++] = keys[1 + i] << number_bits | (part.first + batch + i); });
     starts[batch / kBatch] = starts_here;
   }
   const std::size_t end = part.near->count;
