@@ -3,17 +3,17 @@
 //
 // Clusters scan files and writes the clusters as tables, clouds and pictures.
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <limits>
+#include <memory>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include <pcl/segmentation/lisco_cluster_extraction.h>
@@ -21,8 +21,13 @@
 
 #include "io/cloud_file.h"
 #include "io/clusters.h"
+#include "io/interruption.h"
 #include "io/options.h"
+#include "io/scan_file.h"
 #include "io/terminal_line.h"
+#include "recordings/result_bag.h"
+#include "recordings/scan_source.h"
+#include "recordings/work_progress.h"
 
 namespace {
 
@@ -31,8 +36,10 @@ using namespace lisco_apps;
 
 struct Options {
   std::vector<std::string> inputs;
+  InputOptions input;
   ClusterOptions clustering;
   fs::path output;
+  fs::path bag;
   bool cloud_per_cluster = false;
   unsigned threads = 1;  ///< files clustered at the same time
 };
@@ -46,22 +53,36 @@ bool parse(int argc, char** argv, Options& options) {
   po::options_description shown(
       "Usage: lisco_cluster INPUT... --tolerance M [options]\n\n"
       "Finds the Euclidean clusters of LiDAR scans: the clusters of PCL's EuclideanClusterExtraction.\n"
-      "An input is a scan (.pcd .ply, KITTI .bin, the paper authors' .csv) or a folder of scans.\n\n"
+      "An input is\n"
+      "  - a scan: .pcd, .ply, .bin (KITTI's, nuScenes' and others' floats), .npy (N x 3 or more, or rows x columns x "
+      "3\n"
+      "    or more), the paper authors' .csv; or a folder of scans\n"
+      "  - a recording, each of whose clouds (sensor_msgs/PointCloud2) or rotations (packets, with --sensor) is a "
+      "scan:\n"
+      "    .db3 and .mcap of ROS 2, or the folder of such a bag; .bag of ROS 1; .pcap and .pcapng\n"
+      "An unorganized cloud with a field `ring`, or sorted laser by laser, is arranged in rows first: that affects "
+      "the\n"
+      "time only. Ctrl-C ends the program after the scans it has begun.\n\n"
       "Options");
   options.clustering.addTo(shown);
+  options.input.addTo(shown);
   // clang-format off
   shown.add_options()
     ("threads", countOption("--threads", options.threads, 0),
      "cluster N files at the same time (default 1; 0: one per processor)")
     ("output,o", pathOption("DIR", "--output", options.output),
      "folder for labels.pcd, clusters.csv, range_image.png and top_view.png; with several inputs, a folder in it for "
-     "each")
+     "each; of a recording, a folder in it for each message or rotation, of its number and time")
+    ("bag", pathOption("FILE.mcap", "--bag", options.bag),
+     "write the labelled clouds (sensor_msgs/PointCloud2) and boxes (visualization_msgs/MarkerArray) as a recording of "
+     "ROS 2; scans without a time are 0.1 s apart")
     ("clouds", po::bool_switch(&options.cloud_per_cluster), "also write one cloud per cluster (needs --output)");
   // clang-format on
   po::variables_map given;
   if (!readCommandLine(argc, argv, "lisco_cluster", shown, &options.inputs, given)) return false;
   if (options.inputs.empty()) throw std::runtime_error("no input; see --help");
   options.clustering.check();
+  options.input.check();
   if (options.threads == 0) options.threads = std::max(1U, std::thread::hardware_concurrency());
   if (options.cloud_per_cluster && options.output.empty()) throw std::runtime_error("--clouds needs --output");
   return true;
@@ -76,6 +97,7 @@ void printSummary(const ClusteredScan& scan, const Options& options, double read
   for (const auto& cluster : scan.clusters) in_clusters += cluster.indices.size();
 
   std::printf("%s\n", scan.name.c_str());
+  if (!scan.note.empty()) std::printf("  read      %s\n", scan.note.c_str());
   if (cloud.height > 1)
     std::printf("  scan      %u rows x %u columns, %zu returns", cloud.height, cloud.width, returns);
   else
@@ -97,77 +119,124 @@ void printSummary(const ClusteredScan& scan, const Options& options, double read
   std::printf("\n");
 }
 
-struct Job {
-  fs::path file;
-  fs::path folder;  ///< of its results; empty: none are written
+/// Names the folder of each input's results: none if there is one input, which is no recording.
+class ResultFolders {
+ public:
+  ResultFolders(const fs::path& output, const std::vector<fs::path>& files)
+      : output_(output), is_single_(files.size() == 1), names_(namesOf(files)) {}
+
+  /// \return empty if no results are written
+  fs::path of(const ScanItem& item) const {
+    if (output_.empty()) return {};
+    const fs::path folder = is_single_ ? output_ : output_ / names_[item.input];
+    return item.folder.empty() ? folder : folder / item.folder;
+  }
+
+ private:
+  fs::path output_;
+  bool is_single_;
+  std::vector<std::string> names_;
 };
 
-/// One job per input file. Results of several go to a folder each, numbered where file names repeat.
-/// \param all_well set to whether every input folder holds scans
-std::vector<Job> jobsOf(const Options& options, bool& all_well) {
-  std::vector<std::string> failures;
-  const std::vector<fs::path> files = expandInputs(options.inputs, failures);
-  for (const std::string& failure : failures) std::cerr << "lisco_cluster: " << failure << '\n';
-  all_well = failures.empty();
-  const std::vector<std::string> names = namesOf(files);
-  std::vector<Job> jobs;
-  for (std::size_t i = 0; i < files.size(); ++i)
-    jobs.push_back(
-        {files[i], options.output.empty() || files.size() == 1 ? options.output : options.output / names[i]});
-  return jobs;
+/// A clustered scan as a recording has it.
+/// \param number of the scan, from 0
+LabelledScan labelledScanOf(const ClusteredScan& scan, std::int64_t time_ns, std::size_t number) {
+  constexpr std::int64_t kPeriodNs = 100000000;
+  const Cloud& cloud = *scan.cloud;
+  LabelledScan labelled;
+  labelled.time_ns = time_ns > 0 ? time_ns : kPeriodNs * static_cast<std::int64_t>(number);
+  labelled.frame = cloud.header.frame_id.empty() ? "lidar" : cloud.header.frame_id;
+  labelled.rows = cloud.height;
+  labelled.columns = cloud.width;
+  for (const pcl::PointXYZ& point : cloud) labelled.points.push_back({point.x, point.y, point.z});
+  labelled.labels = labelsOf(scan.clusters, cloud.size());
+  for (std::size_t i = 0; i < scan.clusters.size(); ++i) {
+    const ClusterShape shape = shapeOf(cloud, scan.clusters[i]);
+    labelled.boxes.push_back({static_cast<std::uint32_t>(i + 1), shape.lo(), shape.hi()});
+  }
+  return labelled;
 }
 
-/// Threads that share a list of jobs.
+/// Threads that share the scans of the inputs.
 class Workers {
  public:
-  Workers(const Options& options, std::vector<Job> jobs)
-      : options_(options), jobs_(std::move(jobs)), progress_(jobs_.size() > 1) {}
+  Workers(const Options& options, ScanSource& source)
+      : options_(options),
+        source_(source),
+        folders_(options.output, source.files()),
+        progress_(source.hasRecording() || source.files().size() > 1) {
+    if (!options.bag.empty()) bag_.emplace(options.bag, "lisco_cluster");
+    source_.onNote([this](const std::string& note) { say(note); });
+  }
 
-  /// \return whether all jobs succeeded
+  /// \return whether all scans succeeded
   bool run() {
     std::vector<std::thread> others;
-    for (std::size_t i = 1; i < std::min<std::size_t>(options_.threads, jobs_.size()); ++i)
-      others.emplace_back([this] { work(); });
+    for (std::size_t i = 1; i < options_.threads; ++i) others.emplace_back([this] { work(); });
     work();
     for (std::thread& other : others) other.join();
+    progress_.clear();
+    if (bag_) {
+      bag_->finish();
+      std::printf("written     %s\n", options_.bag.c_str());
+    }
+    if (Interruption::happened() && !is_over_) {
+      say(formatted("interrupted after %zu scans, whose results are complete", done_));
+      all_well_ = false;
+    }
     return all_well_;
   }
 
  private:
+  /// The next scan. \return nothing at the end, or after an interruption
+  std::optional<ScanItem> take(std::size_t& number) {
+    const std::lock_guard<std::mutex> reading(reading_);
+    if (Interruption::happened() || is_over_) return std::nullopt;
+    std::optional<ScanItem> item = source_.next();
+    is_over_ = !item;
+    number = taken_++;
+    if (item) {
+      const std::lock_guard<std::mutex> lock(terminal_);
+      progress_.show(source_.share(), item->name, number);
+    }
+    return item;
+  }
+
   void work() {
     pcl::LiscoClusterExtraction<pcl::PointXYZ> extraction;
     extraction.setClusterTolerance(options_.clustering.tolerance);
     extraction.setMinClusterSize(options_.clustering.min_size);
     extraction.setMaxClusterSize(options_.clustering.max_size);
-    for (std::size_t job = next_++; job < jobs_.size(); job = next_++) {
-      {
-        const std::lock_guard<std::mutex> lock(terminal_);
-        progress_.show(static_cast<double>(done_) / static_cast<double>(jobs_.size()),
-                       jobs_[job].file.filename().string());
-      }
-      std::string failure;
+    std::size_t number = 0;
+    while (const std::optional<ScanItem> item = take(number)) {
       try {
-        clusterFile(jobs_[job], extraction);
+        clusterScan(*item, number, extraction);
+        const std::lock_guard<std::mutex> lock(terminal_);
+        ++done_;
       } catch (const std::exception& error) {
-        failure = error.what();
+        say(error.what());
+        const std::lock_guard<std::mutex> lock(terminal_);
+        all_well_ = false;
       }
-      const std::lock_guard<std::mutex> lock(terminal_);
-      ++done_;
-      if (failure.empty()) continue;
-      progress_.clear();
-      std::cerr << "lisco_cluster: " << failure << '\n';
-      all_well_ = false;
     }
   }
 
-  void clusterFile(const Job& job, pcl::LiscoClusterExtraction<pcl::PointXYZ>& extraction) {
+  void say(const std::string& line) {
+    const std::lock_guard<std::mutex> lock(terminal_);
+    progress_.clear();
+    std::cerr << "lisco_cluster: " << line << '\n';
+  }
+
+  void clusterScan(const ScanItem& item, std::size_t number, pcl::LiscoClusterExtraction<pcl::PointXYZ>& extraction) {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
+    const Scan input = item.read();
     ClusteredScan scan;
-    scan.name = job.file.filename().string();
+    scan.name = item.name;
+    scan.note = input.note;
     scan.tolerance = options_.clustering.tolerance;
-    scan.cloud = readCloudFile(job.file);
-    if (scan.cloud->empty()) throw std::runtime_error(job.file.string() + ": holds no points");
+    scan.cloud = input.clustered();
+    if (scan.cloud->empty()) throw std::runtime_error(item.file.string() + ": holds no points");
     scan.clustered = returnsAbove(*scan.cloud, options_.clustering.ground_z);
 
     const auto read = Clock::now();
@@ -176,20 +245,34 @@ class Workers {
     extraction.extract(scan.clusters);
 
     const auto clustered = Clock::now();
-    if (!job.folder.empty()) writeResults(scan, job.folder, options_.cloud_per_cluster);
+    if (input.arranged) {  // results are those of the input's points in their order, the range image is of the rows
+      scan.arranged = std::make_shared<ClusteredScan>(scan);
+      scan.cloud = input.cloud;
+      scan.clustered = returnsAbove(*scan.cloud, options_.clustering.ground_z);
+      input.toInputOrder(scan.clusters);
+    }
+    const fs::path folder = folders_.of(item);
+    if (!folder.empty()) writeResults(scan, folder, options_.cloud_per_cluster);
+    std::optional<LabelledScan> labelled;
+    if (bag_) labelled = labelledScanOf(scan, item.time_ns, number);
     const auto written = Clock::now();
 
     const std::lock_guard<std::mutex> lock(terminal_);
+    if (labelled) bag_->write(*labelled);
     progress_.clear();
     printSummary(scan, options_, milliseconds(read - start), milliseconds(clustered - read),
-                 milliseconds(written - clustered), job.folder);
+                 milliseconds(written - clustered), folder);
   }
 
   const Options& options_;
-  const std::vector<Job> jobs_;
-  std::atomic<std::size_t> next_{0};
+  std::mutex reading_;  ///< guards the members up to terminal_; taken before that
+  ScanSource& source_;
+  std::size_t taken_ = 0;
+  bool is_over_ = false;
+  const ResultFolders folders_;
   std::mutex terminal_;  ///< guards the terminal and the members after it
-  ProgressBar progress_;
+  WorkProgress progress_;
+  std::optional<ResultBag> bag_;
   std::size_t done_ = 0;
   bool all_well_ = true;
 };
@@ -200,8 +283,8 @@ int main(int argc, char** argv) {
   return runProgram("lisco_cluster", [&] {
     Options options;
     if (!parse(argc, argv, options)) return 0;
-    bool all_well = true;
-    const bool worked_off = Workers(options, jobsOf(options, all_well)).run();
-    return all_well && worked_off ? 0 : 2;
+    Interruption::listen();
+    ScanSource source(options.inputs, options.input, Interruption::happened);
+    return Workers(options, source).run() ? 0 : 2;
   });
 }

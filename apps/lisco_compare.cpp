@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -20,10 +20,12 @@
 #include "compare/report.h"
 #include "drawing/chart.h"
 #include "io/cloud_file.h"
+#include "io/interruption.h"
 #include "io/options.h"
 #include "io/output_file.h"
 #include "io/terminal_line.h"
 #include "io/text.h"
+#include "recordings/scan_source.h"
 
 namespace {
 
@@ -32,6 +34,7 @@ using namespace lisco_apps;
 
 struct Options {
   std::vector<std::string> inputs;
+  InputOptions input;
   CompareSettings settings;
   GroundHeights ground;
   fs::path json, csv, plot;
@@ -60,9 +63,12 @@ bool parse(int argc, char** argv, Options& options) {
   po::options_description shown(
       "Usage: lisco_compare INPUT... --tolerance M[,M...] [options]\n\n"
       "Clusters scans by PCL and by Lisco side by side, on the same returns: compares the clusters first, then the\n"
-      "times. An input is a scan (.pcd .ply, KITTI .bin, the paper authors' .csv) or a\n"
-      "folder of scans. Clusters are also scored against the true objects of scans with a field 'label' (uint32, as\n"
-      "lisco_simulate writes it).\n\n"
+      "times. An input is a scan (.pcd .ply .bin .npy, the paper authors' .csv), a folder of scans, or a recording\n"
+      "(.db3 .mcap .bag .pcap .pcapng) with a scan in each cloud or rotation, see lisco_cluster --help.\n"
+      "Clusters are also scored against the true objects of scans with a field 'label' (uint32, as lisco_simulate\n"
+      "writes it). An unorganized cloud with rings is arranged in rows first. Ctrl-C ends the program after the scan "
+      "it\n"
+      "has begun, with the summary and files of those that are done.\n\n"
       "Baselines: pcl (the reference: EuclideanClusterExtraction with KdTree (false)), pcl-tutorial (sorted KdTree),\n"
       "pcl-octree (resolution = tolerance), grid (a voxel grid), paper (Lisco as published, with PCL's comparison),\n"
       "lisco, and, shown without times, pcl-default (no search method given, which breaks on rotating scans).\n\n"
@@ -96,11 +102,13 @@ bool parse(int argc, char** argv, Options& options) {
     ("csv", pathOption("FILE", "--csv", options.csv), "write a row per input, tolerance and baseline")
     ("plot", pathOption("DIR", "--plot", options.plot), "draw charts (PNG) into a folder; needs gnuplot");
   // clang-format on
+  options.input.addTo(shown);
   po::options_description hidden;
   hidden.add_options()("rivals", po::value<std::string>(&baselines));  // the former name of --baselines
   po::variables_map given;
   if (!readCommandLine(argc, argv, "lisco_compare", shown, &options.inputs, given, hidden)) return false;
   if (options.inputs.empty()) throw std::runtime_error("no input; see --help");
+  options.input.check();
   if (given.count("tolerance") == 0) throw std::runtime_error("--tolerance is missing; see --help");
   for (const std::string& item : itemsOf(tolerances)) settings.tolerances.push_back(toleranceOf(item));
   if (check_only) settings.runs = 0;
@@ -122,31 +130,36 @@ bool parse(int argc, char** argv, Options& options) {
 }
 
 /// Compares one scan at all tolerances and prints the tables.
-/// \param cases_before, cases pairs of scan and tolerance compared so far, and in all
-InputResult compareFile(const fs::path& file, const std::string& name, const Options& options, std::size_t cases_before,
-                        double cases, ProgressBar& progress) {
+/// \param done, weight share of the work before this scan, and of this scan
+InputResult compareScan(const ScanItem& item, const std::string& name, const Options& options, double done,
+                        double weight, ProgressBar& progress) {
   const CompareSettings& settings = options.settings;
-  std::vector<std::uint32_t> object_of;
-  const Cloud::Ptr cloud = readCloudFile(file, &object_of);
+  const Scan read = item.read();
   InputResult input;
   input.name = name;
-  input.file = file.string();
-  input.ground_z = options.ground.of(file.stem().string());
+  input.file = item.file.string() + (item.folder.empty() ? "" : ": " + item.folder);
+  input.ground_z = options.ground.of(item.file.stem().string());
   ComparedScan scan;
   try {
-    scan = prepareScan(*cloud, std::move(object_of), input.ground_z, settings.unorganized);
+    // Without an arrangement, the points stay in the order of the input.
+    const Cloud& cloud = settings.unorganized ? *read.cloud : *read.clustered();
+    scan = prepareScan(cloud, settings.unorganized ? read.object_of : read.objectsOfClustered(), input.ground_z,
+                       settings.unorganized);
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error(file.string() + ": " + error.what());
+    throw std::runtime_error(input.file + ": " + error.what());
   }
   input.rows = scan.cloud->height;
   input.columns = scan.cloud->width;
   input.returns = scan.returns->size();
   progress.clear();
   std::fputs(headingOf(input, settings).c_str(), stdout);
+  if (!settings.unorganized && read.arranged) std::printf("  %s\n", read.note.c_str());
+  const double cases = static_cast<double>(settings.tolerances.size());
   for (const double tolerance : settings.tolerances) {
-    const double done = static_cast<double>(cases_before + input.cases.size());
+    const double cases_before = static_cast<double>(input.cases.size());
     input.cases.push_back(compareAt(scan, tolerance, settings, [&](const std::string& what, double share) {
-      progress.show((done + share) / cases, formatted("%s at %g m: %s", name.c_str(), tolerance, what.c_str()));
+      progress.show(done + weight * (cases_before + share) / cases,
+                    formatted("%s at %g m: %s", name.c_str(), tolerance, what.c_str()));
     }));
     progress.clear();
     std::fputs(tableOf(input.cases.back()).c_str(), stdout);
@@ -173,17 +186,22 @@ bool checkAgreement(const std::vector<InputResult>& inputs, const CompareSetting
 int compare(const Options& options) {
   const CompareSettings& settings = options.settings;
   std::vector<std::string> failures;
-  const std::vector<fs::path> files = expandInputs(options.inputs, failures);
-  for (const std::string& failure : failures) std::fprintf(stderr, "lisco_compare: %s\n", failure.c_str());
+  const auto report = [&failures](const std::string& failure) {
+    std::fprintf(stderr, "lisco_compare: %s\n", failure.c_str());
+    failures.push_back(failure);
+  };
+  Interruption::listen();
+  ScanSource source(options.inputs, options.input, Interruption::happened);
+  for (const std::string& failure : source.takeFailures()) report(failure);
+  const std::vector<fs::path>& files = source.files();
   if (files.empty()) return 2;
-  const std::vector<std::string> names = namesOf(files);
+  std::vector<std::string> names = namesOf(files);
   // Checked before the work.
   if (!options.json.empty()) checkMayWrite(options.json, kJsonSignature);
   if (!options.csv.empty()) checkMayWrite(options.csv, kCsvSignature);
-  const std::vector<std::string> charts = chartsOf(names, settings);
   if (!options.plot.empty()) {
     checkGnuplot();
-    checkMayWriteInto(options.plot, charts);
+    checkMayWriteInto(options.plot, chartsOf(names, settings));
   }
 
   std::vector<std::string> stems;
@@ -194,17 +212,25 @@ int compare(const Options& options) {
   std::fputs(describeRun(settings).c_str(), stdout);
   std::fflush(stdout);
   std::vector<InputResult> results;
-  const double cases = static_cast<double>(files.size() * settings.tolerances.size());
   ProgressBar progress;
-  for (std::size_t i = 0; i < files.size(); ++i) {
+  source.onNote([&progress](const std::string& note) {
+    progress.clear();
+    std::fprintf(stderr, "lisco_compare: %s\n", note.c_str());
+  });
+  while (!Interruption::happened()) {
+    const double share = source.share();
+    const std::optional<ScanItem> item = source.next();
+    if (!item) break;
+    const double weight = item->folder.empty() ? 1 / static_cast<double>(files.size()) : 0;
+    const std::string name = names[item->input] + (item->folder.empty() ? "" : "_" + item->folder);
     try {
-      results.push_back(compareFile(files[i], names[i], options, i * settings.tolerances.size(), cases, progress));
+      results.push_back(compareScan(*item, name, options, share, weight, progress));
     } catch (const std::exception& error) {
       progress.clear();
-      std::fprintf(stderr, "lisco_compare: %s\n", error.what());
-      failures.emplace_back(error.what());
+      report(error.what());
     }
   }
+  if (Interruption::happened()) report(formatted("interrupted after %zu scans", results.size()));
   progress.clear();
   if (results.empty()) return 2;
   std::fputs(summaryOf(results, settings).c_str(), stdout);
@@ -213,8 +239,11 @@ int compare(const Options& options) {
 
   if (!options.json.empty()) writeOwnFile(options.json, jsonOf(results, settings, failures), kJsonSignature);
   if (!options.csv.empty()) writeOwnFile(options.csv, csvOf(results, settings), kCsvSignature);
+  names.clear();
+  for (const InputResult& result : results) names.push_back(result.name);
   if (!options.plot.empty())
-    writeOwnFolder(options.plot, charts, [&](const fs::path& aside) { drawCharts(results, settings, aside); });
+    writeOwnFolder(options.plot, chartsOf(names, settings),
+                   [&](const fs::path& aside) { drawCharts(results, settings, aside); });
   if (!agree) return 1;
   return failures.empty() ? 0 : 2;
 }

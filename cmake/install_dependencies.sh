@@ -5,8 +5,8 @@
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config libpcl-dev libhwy-dev libboost-program-options-dev nlohmann-json3-dev
-          libcairo2-dev libpcap-dev fonts-dejavu-core gnuplot-nox libgtest-dev liblz4-dev doxygen dpkg-dev file help2man
-          binutils)
+          libcairo2-dev libpcap-dev libsqlite3-dev liblz4-dev libzstd-dev libbz2-dev fonts-dejavu-core gnuplot-nox
+          libgtest-dev doxygen dpkg-dev file help2man binutils)
 
 missing=()
 for package in "${packages[@]}"; do

@@ -26,7 +26,7 @@ bool parseThree(const std::string& line, std::array<double, 3>& values) {
 
 }  // namespace
 
-Cloud::Ptr readAuthorsCsv(const fs::path& file, Labels* /*object_of*/) {
+Cloud::Ptr readAuthorsCsv(const fs::path& file, const ReadOptions& /*options*/, ReadExtras& /*extras*/) {
   const std::string text = wholeContentOf(file);
   std::istringstream content(text);
   std::string line;

@@ -20,10 +20,10 @@ namespace {
 
 struct Format {
   std::string_view ending;
-  Cloud::Ptr (*read)(const fs::path& file, Labels* object_of);
+  Cloud::Ptr (*read)(const fs::path& file, const ReadOptions& options, ReadExtras& extras);
 };
-constexpr std::array<Format, 4> kFormats{
-    {{".pcd", readPcd}, {".ply", readPly}, {".bin", readKittiBin}, {".csv", readAuthorsCsv}}};
+constexpr std::array<Format, 5> kFormats{
+    {{".pcd", readPcd}, {".ply", readPly}, {".bin", readFloatBin}, {".npy", readNpy}, {".csv", readAuthorsCsv}}};
 
 std::string endingOf(const fs::path& file) {
   return boost::to_lower_copy(file.extension().string());
@@ -45,8 +45,9 @@ std::string wholeContentOf(const fs::path& file) {
   return content;
 }
 
-Cloud::Ptr readCloudFile(const fs::path& file, Labels* object_of) {
-  if (object_of != nullptr) object_of->clear();
+namespace {
+
+Cloud::Ptr readFile(const fs::path& file, const ReadOptions& options, ReadExtras& extras) {
   std::error_code error;
   if (!fs::exists(file, error)) fail(file, error ? "cannot be read: " + error.message() : "does not exist");
   if (!fs::is_regular_file(file, error)) fail(file, "is no file");
@@ -54,13 +55,36 @@ Cloud::Ptr readCloudFile(const fs::path& file, Labels* object_of) {
   const std::string ending = endingOf(file);
   if (ending == ".pcap" || ending == ".pcapng") fail(file, "is a capture of packets: give it to lisco_stream");
   const Format* const format = formatOf(ending);
-  if (format == nullptr) fail(file, "has an unknown ending (known: pcd, ply, bin, csv)");
+  if (format == nullptr)
+    fail(file, "has an unknown ending (known: pcd, ply, bin, npy, csv; recordings: pcap, pcapng, db3, mcap, bag)");
   if (fs::file_size(file, error) == 0) fail(file, "is empty");
   try {
-    return format->read(file, object_of);
+    return format->read(file, options, extras);
   } catch (const std::bad_alloc&) {
     fail(file, "is too large for this machine's memory");
   }
+}
+
+}  // namespace
+
+Cloud::Ptr readCloudFile(const fs::path& file, Labels* object_of) {
+  ReadExtras extras;
+  Cloud::Ptr cloud = readFile(file, {}, extras);
+  if (object_of != nullptr) *object_of = std::move(extras.object_of);
+  return cloud;
+}
+
+Scan readScan(const fs::path& file, const ReadOptions& options) {
+  ReadExtras extras;
+  Scan scan;
+  scan.cloud = readFile(file, options, extras);
+  scan.object_of = std::move(extras.object_of);
+  scan.note = std::move(extras.note);
+  if (scan.cloud->height == 1 && !extras.rings.empty())
+    arrangeByAzimuth(extras.rings, scan);
+  else if (scan.cloud->height == 1)
+    arrange(extras.message, scan);
+  return scan;
 }
 
 std::vector<fs::path> cloudFilesIn(const fs::path& folder) {

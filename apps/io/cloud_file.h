@@ -15,8 +15,9 @@ namespace lisco_apps {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
-/// Reads a scan by the ending of its name: PCD and PLY with fields x, y, z of float or double, KITTI's `.bin` (float32
-/// x y z intensity, unorganized), or the paper authors' `.csv` (see authors_csv.cpp). Organized as the file is.
+/// Reads a scan by the ending of its name: PCD and PLY with fields x, y, z of float or double, KITTI's, nuScenes' and
+/// others' `.bin` (float32 x y z and more, unorganized), NumPy's `.npy`, or the paper authors' `.csv` (see
+/// authors_csv.cpp). Organized as the file is; see readScan () for more.
 /// \param object_of if not nullptr, receives the field `label` (uint32) per point, as simulated and annotated scans
 ///        have it; empty if there is none
 /// \throws std::runtime_error with one line that names the file and what is wrong with it

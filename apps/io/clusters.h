@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ struct ClusteredScan {
   Cloud::ConstPtr cloud;   ///< as read
   pcl::Indices clustered;  ///< the points that were clustered: returns above the ground
   Clusters clusters;       ///< largest first
+  std::string note;        ///< how it was read; empty if there is nothing to say
+  /// The same in a row for each ring, as it was clustered; nullptr if that is the cloud itself.
+  std::shared_ptr<const ClusteredScan> arranged;
 };
 
 /// Per point of a cloud: 0 = in no cluster, otherwise 1 + the index of its cluster.

@@ -5,7 +5,10 @@
 #include <string>
 #include <string_view>
 
+#include <pcl/PCLPointCloud2.h>
+
 #include "io/cloud_file.h"
+#include "io/scan_file.h"
 #include "io/text.h"
 
 namespace pcl {
@@ -16,12 +19,27 @@ namespace lisco_apps {
 
 using Labels = std::vector<std::uint32_t>;
 
-// The readers behind readCloudFile, one per format: a file that exists and is not empty to a cloud. `object_of` may be
-// nullptr; formats without labels leave it as it is. They throw std::runtime_error as readCloudFile does.
-Cloud::Ptr readPcd(const fs::path& file, Labels* object_of);
-Cloud::Ptr readPly(const fs::path& file, Labels* object_of);
-Cloud::Ptr readKittiBin(const fs::path& file, Labels* object_of);
-Cloud::Ptr readAuthorsCsv(const fs::path& file, Labels* object_of);
+/// What a file holds besides its points.
+struct ReadExtras {
+  Labels object_of;                  ///< field `label`
+  pcl::PCLPointCloud2 message;       ///< of an unorganized cloud with field `ring`: its points; else empty
+  std::vector<std::uint16_t> rings;  ///< of the points of an unorganized cloud, which is sorted by them; else empty
+  std::string note;                  ///< how the file was read
+};
+
+// The readers behind readScan and readCloudFile, one per format: a file that exists and is not empty to a cloud. They
+// throw std::runtime_error as readCloudFile does.
+Cloud::Ptr readPcd(const fs::path& file, const ReadOptions& options, ReadExtras& extras);
+Cloud::Ptr readPly(const fs::path& file, const ReadOptions& options, ReadExtras& extras);
+Cloud::Ptr readFloatBin(const fs::path& file, const ReadOptions& options, ReadExtras& extras);
+Cloud::Ptr readAuthorsCsv(const fs::path& file, const ReadOptions& options, ReadExtras& extras);
+
+Cloud::Ptr readNpy(const fs::path& file, const ReadOptions& options, ReadExtras& extras);
+
+/// Whether a message has a field `ring`.
+bool hasRing(const pcl::PCLPointCloud2& message);
+/// The points of a cloud with their rings.
+pcl::PCLPointCloud2 messageOf(const Cloud& cloud, const std::vector<std::uint16_t>& rings);
 
 std::string wholeContentOf(const fs::path& file);
 
@@ -37,6 +55,6 @@ double headerCount(const std::vector<std::string>& words, std::size_t at);
 /// \param check_header throws if the content would make PCL's reader crash, abort, or allocate far more than the file
 ///        holds; `file` is the name for errors
 Cloud::Ptr readByPcl(pcl::FileReader& reader, const fs::path& file, const std::string& format,
-                     void (*check_header)(const fs::path& file, const fs::path& content), Labels* object_of);
+                     void (*check_header)(const fs::path& file, const fs::path& content), ReadExtras& extras);
 
 }  // namespace lisco_apps

@@ -101,9 +101,9 @@ void checkHeader(const fs::path& file, const fs::path& content) {
 
 }  // namespace
 
-Cloud::Ptr readPcd(const fs::path& file, Labels* object_of) {
+Cloud::Ptr readPcd(const fs::path& file, const ReadOptions& /*options*/, ReadExtras& extras) {
   pcl::PCDReader reader;
-  return readByPcl(reader, file, "pcd", checkHeader, object_of);
+  return readByPcl(reader, file, "pcd", checkHeader, extras);
 }
 
 }  // namespace lisco_apps

@@ -98,7 +98,39 @@ Labels labelsIn(const pcl::PCLPointCloud2& blob) {
   return labels;
 }
 
+/// Appends a field of one value.
+void addField(pcl::PCLPointCloud2& message, const char* name, std::uint8_t datatype, std::uint32_t bytes) {
+  pcl::PCLPointField field;
+  field.name = name;
+  field.offset = message.point_step;
+  field.datatype = datatype;
+  field.count = 1;
+  message.fields.push_back(field);
+  message.point_step += bytes;
+}
+
 }  // namespace
+
+bool hasRing(const pcl::PCLPointCloud2& message) {
+  return std::any_of(message.fields.begin(), message.fields.end(),
+                     [](const pcl::PCLPointField& field) { return field.name == "ring"; });
+}
+
+pcl::PCLPointCloud2 messageOf(const Cloud& cloud, const std::vector<std::uint16_t>& rings) {
+  pcl::PCLPointCloud2 message;
+  for (const char* const name : {"x", "y", "z"}) addField(message, name, pcl::PCLPointField::FLOAT32, sizeof(float));
+  addField(message, "ring", pcl::PCLPointField::UINT16, sizeof(std::uint16_t));
+  message.height = 1;
+  message.width = static_cast<std::uint32_t>(cloud.size());
+  message.row_step = message.point_step * message.width;
+  message.data.resize(cloud.size() * message.point_step);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    std::uint8_t* const point = message.data.data() + i * message.point_step;
+    std::memcpy(point, cloud[i].data, 3 * sizeof(float));
+    std::memcpy(point + 3 * sizeof(float), &rings[i], sizeof(std::uint16_t));
+  }
+  return message;
+}
 
 std::vector<std::string> wordsOf(const std::string& line) {
   std::istringstream stream(line);
@@ -112,7 +144,7 @@ double headerCount(const std::vector<std::string>& words, std::size_t at) {
 }
 
 Cloud::Ptr readByPcl(pcl::FileReader& reader, const fs::path& file, const std::string& format,
-                     void (*check_header)(const fs::path& file, const fs::path& content), Labels* object_of) {
+                     void (*check_header)(const fs::path& file, const fs::path& content), ReadExtras& extras) {
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // errors are reported once, by the caller
   const Snapshot content(file);
   check_header(file, content.path());
@@ -141,7 +173,8 @@ Cloud::Ptr readByPcl(pcl::FileReader& reader, const fs::path& file, const std::s
   cloud->sensor_origin_ = origin;
   cloud->sensor_orientation_ = orientation;
   for (std::size_t axis = 0; axis < 3; ++axis) copyField(blob, file, axis, *cloud);
-  if (object_of != nullptr) *object_of = labelsIn(blob);
+  extras.object_of = labelsIn(blob);
+  if (blob.height == 1 && hasRing(blob)) extras.message = std::move(blob);
   return cloud;
 }
 

@@ -48,9 +48,9 @@ void checkHeader(const fs::path& file, const fs::path& content) {
 
 }  // namespace
 
-Cloud::Ptr readPly(const fs::path& file, Labels* object_of) {
+Cloud::Ptr readPly(const fs::path& file, const ReadOptions& /*options*/, ReadExtras& extras) {
   pcl::PLYReader reader;
-  return readByPcl(reader, file, "ply", checkHeader, object_of);
+  return readByPcl(reader, file, "ply", checkHeader, extras);
 }
 
 }  // namespace lisco_apps

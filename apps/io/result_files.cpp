@@ -71,7 +71,7 @@ void writeResults(const ClusteredScan& scan, const fs::path& folder, bool cloud_
         try {
           writeLabels(scan, aside / "labels.pcd");
           writeTable(scan, aside / "clusters.csv");
-          drawRangeImage(scan, aside / "range_image.png");
+          drawRangeImage(scan.arranged ? *scan.arranged : scan, aside / "range_image.png");
           drawTopView(scan, aside / "top_view.png");
           if (cloud_per_cluster) writeClusterClouds(scan, aside / "clusters");
         } catch (const pcl::IOException&) {

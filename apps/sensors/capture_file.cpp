@@ -127,6 +127,13 @@ CaptureFile::CaptureFile(const fs::path& file, std::optional<std::uint16_t> port
   }
 }
 
+double CaptureFile::share() const {
+  std::error_code unknown;
+  const std::uintmax_t size = fs::is_regular_file(file_, unknown) ? fs::file_size(file_, unknown) : 0;
+  const long at = std::ftell(pcap_file(capture_.get()));
+  return size == 0 || at < 0 ? 0 : static_cast<double>(at) / static_cast<double>(size);
+}
+
 PacketSource::Arrival CaptureFile::next(Packet& packet) {
   pcap_pkthdr* header = nullptr;
   const u_char* data = nullptr;

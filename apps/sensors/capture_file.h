@@ -23,6 +23,7 @@ class CaptureFile : public PacketSource {
   explicit CaptureFile(const fs::path& file, std::optional<std::uint16_t> port = std::nullopt);
 
   Arrival next(Packet& packet) override;
+  double share() const override;
 
  private:
   struct Close {

@@ -32,6 +32,9 @@ class PacketSource {
   /// Waits for the next packet, at most 100 ms.
   virtual Arrival next(Packet& packet) = 0;
 
+  /// How much of a file has been read, 0 to 1; 0 if unknown.
+  virtual double share() const { return 0; }
+
   /// Packets that next () has given.
   std::uint64_t packets() const { return packets_; }
   /// Frames left out: not UDP, to another port, or fragments.

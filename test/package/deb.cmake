@@ -9,7 +9,8 @@ run(${CMAKE_CPACK_COMMAND} --config ${BUILD_DIR}/CPackConfig.cmake -G DEB -C ${C
 string(REGEX MATCH "^[0-9]+[.][0-9]+" interface ${VERSION})
 set(depends_liblisco${interface} libc6 libhwy1 libpcl-common)
 set(depends_liblisco-dev liblisco${interface} libpcl-dev)
-set(depends_lisco-tools libboost-program-options libcairo2 liblisco${interface} libpcl-io)
+set(depends_lisco-tools libboost-program-options libbz2-1.0 libcairo2 liblisco${interface} liblz4-1 libpcl-io
+    libsqlite3-0 libzstd1)
 set(depends_lisco-doc)
 set(packages liblisco${interface} liblisco-dev lisco-tools lisco-doc)
 set(files)

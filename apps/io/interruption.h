@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <signal.h>
+
+namespace lisco_apps {
+
+/// The first SIGINT or SIGTERM asks the program to end after what it has begun; the second ends it at once.
+class Interruption {
+ public:
+  static void listen() {
+    struct sigaction action {};
+    action.sa_handler = [](int) { happened_ = 1; };
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+  }
+  static bool happened() { return happened_ != 0; }
+
+ private:
+  static inline volatile sig_atomic_t happened_ = 0;
+};
+
+}  // namespace lisco_apps

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/PointIndices.h>
+
+#include "io/cloud_file.h"
+
+namespace lisco_apps {
+
+/// A cloud as a file or a message has it and, if its rings are known, arranged in rows of them.
+struct Scan {
+  Cloud::Ptr cloud;                      ///< in the input's order
+  Cloud::Ptr arranged;                   ///< a row for each ring; nullptr: the cloud is clustered as it is
+  pcl::Indices point_of_cell;            ///< of `arranged`: number in `cloud`, UNAVAILABLE without a point
+  std::vector<std::uint32_t> object_of;  ///< field `label` of each point of `cloud`; empty if there is none
+  std::string note;                      ///< how it was read and arranged; empty if there is nothing to say
+
+  /// The cloud to be clustered.
+  const Cloud::Ptr& clustered() const { return arranged ? arranged : cloud; }
+  /// object_of, of the points of clustered ().
+  std::vector<std::uint32_t> objectsOfClustered() const;
+  /// Converts clusters of clustered () to those of the cloud.
+  void toInputOrder(std::vector<pcl::PointIndices>& clusters) const;
+};
+
+/// How files are read.
+struct ReadOptions {
+  unsigned bin_fields = 0;  ///< floats a point of a `.bin`; 0: by their looks
+};
+
+/// Reads a scan as readCloudFile () does, and arranges an unorganized one by its field `ring`, or by rings that the
+/// order of a `.bin` or `.npy` shows.
+/// \throws std::runtime_error as readCloudFile ()
+Scan readScan(const fs::path& file, const ReadOptions& options = {});
+
+/// Arranges a cloud of one row by the rings in its message, see pcl::organizeLiscoCloud (). Leaves it as it is without
+/// such a field, or if rings and times make no rows.
+void arrange(const pcl::PCLPointCloud2& message, Scan& scan);
+
+/// Arranges a cloud whose points are sorted by ring and, in each, by azimuth: a point goes to the column of its azimuth
+/// or, if that is taken, to the next one that is free. Leaves the cloud as it is if that takes far more columns than
+/// the rings have points.
+/// \param rings of the points, from 0
+void arrangeByAzimuth(const std::vector<std::uint16_t>& rings, Scan& scan);
+
+}  // namespace lisco_apps

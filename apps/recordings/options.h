@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <boost/program_options.hpp>
+
+#include "recordings/topic_reader.h"
+
+namespace lisco_apps {
+
+/// Which part of a recording is read.
+struct RecordingOptions {
+  std::string topic;
+  TimeSpan span;
+  unsigned every = 1;
+
+  void addTo(boost::program_options::options_description& shown);
+  /// \throws std::runtime_error with one line
+  void check() const;
+  /// Whether any of them was given.
+  bool areGiven() const { return !topic.empty() || every != 1 || span.from > 0 || span.to < 1e300; }
+};
+
+}  // namespace lisco_apps

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "recordings/packet_input.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include <boost/algorithm/string.hpp>
+
+#include "recordings/packet_messages.h"
+#include "recordings/topic_choice.h"
+#include "sensors/capture_file.h"
+
+namespace lisco_apps {
+namespace {
+
+constexpr const char* kOuster = "ouster";
+
+/// The packets of a time span.
+class SpanPackets : public PacketSource {
+ public:
+  SpanPackets(std::unique_ptr<PacketSource> source, const TimeSpan& span) : source_(std::move(source)), span_(span) {}
+
+  Arrival next(Packet& packet) override {
+    while (true) {
+      const Arrival arrival = source_->next(packet);
+      foreign_ = source_->foreign();
+      error_ = source_->error();
+      if (arrival != Arrival::kPacket) return arrival;
+      if (!first_us_) first_us_ = packet.time_us;
+      const double seconds = 1e-6 * static_cast<double>(packet.time_us - *first_us_);
+      if (seconds > span_.to) return Arrival::kEnd;
+      if (!span_.holds(seconds)) continue;
+      ++packets_;
+      return arrival;
+    }
+  }
+  double share() const override { return source_->share(); }
+
+ private:
+  std::unique_ptr<PacketSource> source_;
+  TimeSpan span_;
+  std::optional<std::int64_t> first_us_;
+};
+
+/// The packets at the beginning, for preparing a decoder.
+class FirstPackets : public PacketSource {
+ public:
+  FirstPackets(PacketSource& source, const std::function<bool()>& is_interrupted)
+      : source_(source), is_interrupted_(is_interrupted) {}
+
+  Arrival next(Packet& packet) override {
+    constexpr std::uint64_t kPackets = 100000;  // a minute or more
+    if (packets_ == kPackets || is_interrupted_()) return Arrival::kEnd;
+    ++packets_;
+    return source_.next(packet);
+  }
+
+ private:
+  PacketSource& source_;
+  const std::function<bool()>& is_interrupted_;
+};
+
+/// A file that lives as long as this object.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::string& content) {
+    std::string name = (fs::temp_directory_path() / "lisco_XXXXXX").string();
+    const int descriptor = mkstemp(name.data());
+    if (descriptor < 0) fail(name, "cannot be written");
+    close(descriptor);
+    path_ = name;
+    std::ofstream(path_, std::ios::binary) << content;
+  }
+  ~TemporaryFile() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// Whether a file is the metadata of an Ouster sensor.
+bool isMetadata(const fs::path& file) {
+  constexpr std::uintmax_t kMaxBytes = 10'000'000;
+  std::error_code error;
+  if (boost::to_lower_copy(file.extension().string()) != ".json" || fs::file_size(file, error) > kMaxBytes || error)
+    return false;
+  std::ifstream stream(file, std::ios::binary);
+  const std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  return boost::contains(content, "\"beam_altitude_angles\"");
+}
+
+struct MetadataBeside {
+  std::vector<fs::path> all;  ///< in the folder of the input
+  fs::path named;             ///< the one that the input's name leads to; empty if there is none
+};
+
+MetadataBeside metadataBeside(const fs::path& input) {
+  MetadataBeside beside;
+  std::error_code error;
+  const std::string stem = input.stem().string();
+  for (fs::directory_iterator entry(fs::absolute(input).parent_path(), error), end; !error && entry != end;
+       entry.increment(error))
+    if (isMetadata(entry->path())) beside.all.push_back(entry->path());
+  std::sort(beside.all.begin(), beside.all.end());
+  std::size_t longest = 0;
+  for (const fs::path& file : beside.all) {
+    const std::string other = file.stem().string();
+    if (!boost::starts_with(stem, other) && !boost::starts_with(other, stem)) continue;
+    const std::size_t common = std::min(stem.size(), other.size());
+    if (common <= longest) continue;
+    longest = common;
+    beside.named = file;
+  }
+  return beside;
+}
+
+std::string listOf(const std::vector<fs::path>& files) {
+  std::vector<std::string> names;
+  for (const fs::path& file : files) names.push_back(file.filename().string());
+  return boost::join(names, ", ");
+}
+
+bool isPipe(const fs::path& input) {
+  std::error_code unknown;
+  const fs::file_type type = fs::status(input, unknown).type();
+  return type == fs::file_type::fifo || type == fs::file_type::character;
+}
+
+}  // namespace
+
+bool isCapture(const fs::path& input) {
+  const std::string ending = boost::to_lower_copy(input.extension().string());
+  return ending == ".pcap" || ending == ".pcapng" || ending == ".cap";
+}
+
+PacketInput openPackets(const fs::path& input, const RecordingOptions& options, DecoderOptions decoder,
+                        std::optional<std::uint16_t> port, const std::function<bool()>& is_interrupted) {
+  PacketInput packets;
+  const bool is_recording = isRecording(input);
+  std::size_t topic = 0;
+  std::string maker;
+  std::optional<TemporaryFile> recorded_metadata;
+  if (is_recording) {
+    const std::unique_ptr<Recording> recording = openRecording(input);
+    topic = chooseTopic(*recording, input, options.topic, true);
+    const Topic& chosen = recording->topics()[topic];
+    if (kindOf(chosen) != TopicKind::kPackets)
+      fail(input, "topic " + chosen.name + " holds clouds, which need no --sensor");
+    maker = makerOfPackets(chosen.type);
+    const bool is_ouster = decoder.sensor == kOuster || (decoder.sensor.empty() && boost::contains(maker, "Ouster"));
+    if (is_ouster && decoder.metadata.empty()) {
+      if (const std::string text = metadataIn(input, chosen.name); !text.empty()) {
+        recorded_metadata.emplace(text);
+        decoder.metadata = recorded_metadata->path();
+        decoder.sensor = kOuster;
+      }
+    }
+  }
+  const auto open = [&]() -> std::unique_ptr<PacketSource> {
+    if (is_recording)
+      return std::make_unique<MessagePackets>(std::make_unique<TopicReader>(openRecording(input), topic, options.span));
+    return std::make_unique<SpanPackets>(std::make_unique<CaptureFile>(input, port), options.span);
+  };
+  if (!is_recording) packets.source = open();  // says why it is no capture, before anything is asked for
+
+  const bool may_be_ouster = decoder.sensor.empty() && (maker.empty() || boost::contains(maker, "Ouster"));
+  if (decoder.metadata.empty() && (decoder.sensor == kOuster || may_be_ouster)) {
+    MetadataBeside beside = metadataBeside(input);
+    if (beside.named.empty() && decoder.sensor == kOuster && beside.all.size() == 1) beside.named = beside.all.front();
+    if (!beside.named.empty()) {
+      decoder.sensor = kOuster;
+      decoder.metadata = beside.named;
+      packets.notes.push_back("an Ouster sensor, by the metadata beside it: " + beside.named.filename().string());
+    } else if (decoder.sensor == kOuster || !maker.empty() || !beside.all.empty()) {
+      fail(input, "needs " +
+                      std::string(maker.empty() && decoder.sensor.empty() ? "--sensor NAME; an Ouster's also "
+                                                                          : "--sensor ouster ") +
+                      "--metadata FILE, the sensor's metadata" +
+                      (beside.all.empty() ? "" : " (beside it are " + listOf(beside.all) + ")"));
+    }
+  }
+  if (decoder.sensor.empty())
+    fail(input, "holds the packets of " + (maker.empty() ? "a sensor" : maker) + ": name it by --sensor (" +
+                    boost::join(sensorNames(), ", ") + ")");
+  packets.decoder = makeDecoder(decoder);
+  if (!isPipe(input)) {
+    const std::unique_ptr<PacketSource> first = open();
+    FirstPackets source(*first, is_interrupted);
+    packets.decoder->prepare(source);
+  }
+  if (!packets.source) packets.source = open();
+  return packets;
+}
+
+}  // namespace lisco_apps

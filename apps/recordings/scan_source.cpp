@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "recordings/scan_source.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include <boost/algorithm/string/join.hpp>
+
+#include "io/options.h"
+#include "recordings/bytes.h"
+#include "recordings/packet_input.h"
+#include "recordings/point_cloud2.h"
+#include "recordings/rotations.h"
+#include "recordings/topic_choice.h"
+
+namespace lisco_apps {
+namespace {
+
+std::vector<fs::path> recordingsIn(const fs::path& folder) {
+  std::vector<fs::path> found;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (isRecording(entry->path()) || isCapture(entry->path())) found.push_back(entry->path());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::string namesOfAll(const std::vector<fs::path>& files) {
+  std::vector<std::string> names;
+  for (const fs::path& file : files) names.push_back(file.filename().string());
+  return boost::algorithm::join(names, ", ");
+}
+
+/// An item that reports a failure.
+ScanItem failureOf(const fs::path& file, const std::string& line) {
+  ScanItem item;
+  item.name = file.filename().string();
+  item.file = file;
+  item.read = [line]() -> Scan { throw std::runtime_error(line); };
+  return item;
+}
+
+/// A message or rotation.
+ScanItem itemOf(const fs::path& file, std::uint64_t number, std::int64_t time_ns) {
+  ScanItem item;
+  const auto seconds = static_cast<long long>(time_ns / 1000000000);
+  const auto micros = static_cast<long long>(time_ns / 1000 % 1000000);
+  item.folder = formatted("%06llu_%lld.%06lld", static_cast<unsigned long long>(number), seconds, micros);
+  item.name = formatted("%s %llu at %lld.%06lld", file.filename().c_str(), static_cast<unsigned long long>(number),
+                        seconds, micros);
+  item.file = file;
+  item.time_ns = time_ns;
+  return item;
+}
+
+}  // namespace
+
+/// The scans of one recording.
+class ScanSource::Sequence {
+ public:
+  virtual ~Sequence() = default;
+  /// Throws what ends it.
+  virtual std::optional<ScanItem> next() = 0;
+  virtual double share() const = 0;
+};
+
+/// Each message of a topic of clouds.
+class ScanSource::Messages : public Sequence {
+ public:
+  Messages(fs::path file, std::unique_ptr<TopicReader> reader, unsigned every)
+      : file_(std::move(file)), reader_(std::move(reader)), every_(every) {}
+
+  std::optional<ScanItem> next() override {
+    Message message;
+    while (reader_->next(message)) {
+      if (taken_++ % every_ != 0) continue;
+      ScanItem item = itemOf(file_, reader_->number(), message.time_ns);
+      const std::string name =
+          file_.string() +
+          formatted(": message %llu of %s is malformed: ", static_cast<unsigned long long>(reader_->number()),
+                    reader_->topic().name.c_str());
+      try {
+        auto cloud = std::make_shared<pcl::PCLPointCloud2>(pointCloud2In(message, reader_->topic()));
+        item.read = [cloud = std::move(cloud), name] {
+          try {
+            return scanOf(*cloud);
+          } catch (const Broken& why) {
+            throw std::runtime_error(name + why.what());
+          }
+        };
+      } catch (const Broken& why) {
+        return failureOf(file_, name + why.what());
+      }
+      return item;
+    }
+    if (!reader_->error().empty()) throw std::runtime_error(reader_->error());
+    return std::nullopt;
+  }
+  double share() const override { return reader_->share(); }
+
+ private:
+  fs::path file_;
+  std::unique_ptr<TopicReader> reader_;
+  unsigned every_;
+  std::uint64_t taken_ = 0;
+};
+
+/// Each rotation of a sensor's packets.
+class ScanSource::Turns : public Sequence {
+ public:
+  Turns(fs::path file, PacketInput input, unsigned every)
+      : file_(std::move(file)), rotations_(std::move(input)), every_(every) {}
+
+  std::optional<ScanItem> next() override {
+    while (std::optional<Rotation> rotation = rotations_.next()) {
+      if (taken_++ % every_ != 0) continue;
+      ScanItem item = itemOf(file_, rotation->number, 1000 * rotation->time_us);
+      item.read = [cloud = rotation->cloud] {
+        Scan scan;
+        scan.cloud = cloud;
+        return scan;
+      };
+      return item;
+    }
+    const PacketInput& input = rotations_.input();
+    if (!input.source->error().empty()) throw std::runtime_error(input.source->error());
+    if (taken_ == 0) fail(file_, "holds no data packet of a " + input.decoder->name());
+    return std::nullopt;
+  }
+  double share() const override { return rotations_.input().source->share(); }
+
+ private:
+  fs::path file_;
+  Rotations rotations_;
+  unsigned every_;
+  std::uint64_t taken_ = 0;
+};
+
+void InputOptions::addTo(boost::program_options::options_description& shown) {
+  recording.addTo(shown);
+  const std::string sensors = "of packets: the sensor: " + boost::join(sensorNames(), ", ");
+  // clang-format off
+  shown.add_options()
+    ("sensor", textOption("NAME", [this](const std::string& text) { decoder.sensor = text; }), sensors.c_str())
+    ("calibration", textOption("FILE", [this](const std::string& text) { decoder.calibration = text; }),
+     "of packets: the sensor's calibration, see lisco_stream --help")
+    ("metadata", textOption("FILE", [this](const std::string& text) { decoder.metadata = text; }),
+     "of packets: an Ouster sensor's metadata (default: found in the recording, or beside the capture by its name)")
+    ("port", textOption("N", [this](const std::string& text) {
+       port = static_cast<std::uint16_t>(countOf(text, "--port", 1, 65535)); }),
+     "of a capture: take only packets to this UDP port")
+    ("bin-fields", countOption("--bin-fields", files.bin_fields, 3, 64),
+     "floats a point of a .bin: 4 of KITTI (x y z intensity), 5 of nuScenes (and ring), others (default: by their "
+     "looks)");
+  // clang-format on
+}
+
+void InputOptions::check() const {
+  recording.check();
+}
+
+ScanSource::ScanSource(const std::vector<std::string>& inputs, const InputOptions& options,
+                       std::function<bool()> is_interrupted)
+    : options_(options), is_interrupted_(std::move(is_interrupted)) {
+  for (const std::string& input : inputs) {
+    if (isRecording(input)) {
+      files_.emplace_back(input);
+      continue;
+    }
+    const std::vector<fs::path> recordings = recordingsIn(input);
+    std::vector<std::string> failures;
+    const std::vector<fs::path> found = expandInputs({input}, failures);
+    if (found.empty() && !recordings.empty())
+      failures = {input + ": holds no scans, but recordings, to be given by name: " + namesOfAll(recordings)};
+    failures_.insert(failures_.end(), failures.begin(), failures.end());
+    files_.insert(files_.end(), found.begin(), found.end());
+  }
+}
+
+ScanSource::~ScanSource() = default;
+
+bool ScanSource::hasRecording() const {
+  for (const fs::path& file : files_)
+    if (isRecording(file) || isCapture(file)) return true;
+  return false;
+}
+
+std::unique_ptr<ScanSource::Sequence> ScanSource::open(const fs::path& file) {
+  const RecordingOptions& part = options_.recording;
+  if (isRecording(file)) {
+    std::unique_ptr<Recording> recording = openRecording(file);
+    const std::size_t topic = chooseTopic(*recording, file, part.topic, !options_.decoder.sensor.empty());
+    if (kindOf(recording->topics()[topic]) == TopicKind::kClouds) {
+      note_(file.string() + ": topic " + recording->topics()[topic].name);
+      return std::make_unique<Messages>(file, std::make_unique<TopicReader>(std::move(recording), topic, part.span),
+                                        part.every);
+    }
+  }
+  PacketInput packets = openPackets(file, part, options_.decoder, options_.port, is_interrupted_);
+  for (const std::string& note : packets.notes) note_(file.string() + ": " + note);
+  return std::make_unique<Turns>(file, std::move(packets), part.every);
+}
+
+std::optional<ScanItem> ScanSource::next() {
+  if (!failures_.empty()) {
+    const std::string line = failures_.front();
+    failures_.erase(failures_.begin());
+    return failureOf({}, line);
+  }
+  while (at_ < files_.size()) {
+    const fs::path& file = files_[at_];
+    ScanItem item;
+    try {
+      if (!isRecording(file) && !isCapture(file)) {
+        item.name = file.filename().string();
+        item.file = file;
+        item.read = [file, options = options_.files] { return readScan(file, options); };
+        item.input = at_++;
+        return item;
+      }
+      if (!open_) open_ = open(file);
+      if (std::optional<ScanItem> scan = open_->next()) {
+        scan->input = at_;
+        return scan;
+      }
+      open_.reset();
+      ++at_;
+    } catch (const std::runtime_error& why) {
+      open_.reset();
+      item = failureOf(file, why.what());
+      item.input = at_++;
+      return item;
+    }
+  }
+  return std::nullopt;
+}
+
+double ScanSource::share() const {
+  if (files_.empty()) return 1;
+  return (static_cast<double>(at_) + (open_ ? open_->share() : 0)) / static_cast<double>(files_.size());
+}
+
+}  // namespace lisco_apps

@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# others.sh LISCO_CLUSTER FOLDER: recordings written by @mcap/core are read by lisco_cluster, and those of lisco_cluster
+# by @mcap/core and @foxglove/rosmsg2-serialization, which npm installs into the folder. Exit code 77, skipped: there is
+# no npm, or no network.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+cluster=$1
+folder=$2
+mkdir -p "$folder"
+cd "$folder"
+
+if ! command -v npm >npm.log 2>&1 || ! command -v node >>npm.log 2>&1; then
+  echo "skipped: there is no npm (Debian's packages nodejs and npm)"
+  exit 77
+fi
+if [ ! -d node_modules/@mcap/core ] || [ ! -d node_modules/zstd-codec ]; then
+  [ -f package.json ] || echo '{"private": true}' >package.json
+  if ! timeout 120 npm install --no-audit --no-fund @mcap/core@2 @foxglove/rosmsg@5 \
+       @foxglove/rosmsg2-serialization@3 lz4js@0.2 zstd-codec@0.1 >npm.log 2>&1; then
+    tail -n 5 npm.log
+    echo "skipped: npm cannot install the packages (is there a network?)"
+    exit 77
+  fi
+fi
+cp "$here/others.mjs" .
+
+rm -rf written results result.mcap
+mkdir written
+node others.mjs write written
+expected=
+for method in none lz4 zstd unchunked; do
+  "$cluster" "written/$method.mcap" --topic /points -t 0.5 --min-size 3 >out.txt 2>err.txt
+  said=$(grep -E '^  (read|scan|clusters|sizes)' out.txt)
+  [ "$(grep -c '^  clusters  2 of' out.txt)" = 5 ] || { cat out.txt; echo "$method: not 2 clusters in each of 5"; exit 1; }
+  grep -q 'arranged by ring in 4 rows x 60 columns' out.txt || { cat out.txt; echo "$method: not arranged"; exit 1; }
+  [ -z "$expected" ] || [ "$said" = "$expected" ] || { echo "$method gives other clusters"; exit 1; }
+  expected=$said
+done
+
+"$cluster" written/lz4.mcap --topic /points -t 0.5 --min-size 3 -o results --bag result.mcap >out.txt 2>err.txt
+[ "$(find results -name clusters.csv | wc -l)" = 5 ]
+node others.mjs read result.mcap >read.txt
+# The clusters' sizes and boxes by the tables, and by the recording.
+for table in $(find results -name clusters.csv | sort); do
+  awk -F, 'NR > 1 { printf "%d %d %.3f %.3f %.3f %.3f %.3f %.3f\n", $1, $2, $6, $7, $8, $9, $10, $11 }' "$table"
+done >tables.txt
+if ! grep -v '^#' read.txt | diff - tables.txt; then
+  echo "the recording holds other clusters than the tables"
+  exit 1
+fi
+[ "$(grep -c '^# sensor_msgs/msg/PointCloud2 lidar_link 240 points' read.txt)" = 5 ] ||
+  { cat read.txt; echo "other clouds"; exit 1; }
+# What was written can be clustered again.
+"$cluster" result.mcap -t 0.5 --min-size 3 >out.txt 2>err.txt
+[ "$(grep -c '^  clusters  2 of' out.txt)" = 5 ]
+echo "5 clouds in 4 recordings, and 1 recording of results"
