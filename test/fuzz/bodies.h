@@ -32,6 +32,9 @@ void fuzzStream(const std::uint8_t* data, std::size_t size);
 /// A scan's file, whose first byte gives the format.
 void fuzzReaders(const std::uint8_t* data, std::size_t size);
 
+/// A recording, one of its messages, or a cloud of floats; the first byte gives the kind.
+void fuzzRecordings(const std::uint8_t* data, std::size_t size);
+
 /// Packets of a sensor, or a capture of them.
 void fuzzPackets(const std::uint8_t* data, std::size_t size);
 

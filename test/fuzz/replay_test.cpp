@@ -39,7 +39,9 @@ class Fuzz : public testing::TestWithParam<Target> {
 
 INSTANTIATE_TEST_SUITE_P(Bodies, Fuzz,
                          testing::Values(Target{"engine", fuzzEngine, 6000}, Target{"stream", fuzzStream, 6000},
-                                         Target{"readers", fuzzReaders, 2000}, Target{"packets", fuzzPackets, 6000}),
+                                         Target{"readers", fuzzReaders, 2000},
+                                         Target{"recordings", fuzzRecordings, 2000},
+                                         Target{"packets", fuzzPackets, 6000}),
                          [](const auto& target) { return std::string(target.param.name); });
 
 std::vector<Bytes> corpus() {
