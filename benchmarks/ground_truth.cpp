@@ -107,6 +107,8 @@ struct Filter {
   std::function<Decisions(const Scan& scan, double height)> decide;
 };
 
+constexpr std::size_t kBetweenDrives = 5;  // rotations
+
 constexpr double kThickness = 0.2;  // metres: how far ground may be from the height or the plane
 
 Decisions byHeight(const Scan& scan, double height) {
@@ -223,7 +225,8 @@ Simulated simulated(const Settings& settings, const std::string& terrain, const 
   motion.pitch = settings.sway * kDegree;
   Disturbance disturbance;
   disturbance.seed = seed;
-  const double seconds = static_cast<double>(settings.rotations) * motion.turn_seconds;
+  const std::size_t begin = kBetweenDrives * (seed % 20);  // another phase of the swaying
+  const double seconds = static_cast<double>(begin + settings.rotations) * motion.turn_seconds;
   const Terrain ground = makeTerrain(terrain, settings.slope * kDegree, seed);
   const Sensor sensor = makeSensor(sensor_name);
   Drive drive(makeStreet(ground, motion, seconds, settings.height, seed), sensor, disturbance, motion, settings.height);
@@ -231,7 +234,7 @@ Simulated simulated(const Settings& settings, const std::string& terrain, const 
   for (const Body& body : drive.world().bodies) result.kinds.push_back(body.kind);
   result.kinds.emplace_back("sensor car");
   for (std::size_t rotation = 0; rotation < settings.rotations; ++rotation) {
-    const std::size_t first = rotation * sensor.steps;
+    const std::size_t first = (begin + rotation) * sensor.steps;
     result.rotations.push_back(drive.columns(first, sensor.steps));
     const Scan& scan = result.rotations.back();
     std::vector<double>& above = result.above.emplace_back();
@@ -248,21 +251,32 @@ Simulated simulated(const Settings& settings, const std::string& terrain, const 
 }
 
 std::string cellsOf(const Counts& counts) {
-  return formatted("%5.1f | %5.1f | %5.1f | %4.1f", 100 * counts.precision(), 100 * counts.recall(), 100 * counts.f1(),
+  return formatted("%.1f / %.1f / **%.1f** / %.1f", 100 * counts.precision(), 100 * counts.recall(), 100 * counts.f1(),
                    100 * counts.lost());
 }
 
-/// The least and the mean of a column of the table.
+/// The least, the most and the mean of a column of the table.
 struct Summary {
-  double sum_f1 = 0, least_f1 = 2, most_lost = 0, sum_lost = 0;
+  double sum_f1 = 0, least_f1 = 2, sum_lost = 0, most_lost = -1;
+  std::string least_at, most_at;
   int count = 0;
 
-  void add(const Counts& counts) {
+  void add(const Counts& counts, const std::string& at) {
     sum_f1 += counts.f1();
-    least_f1 = std::min(least_f1, counts.f1());
-    most_lost = std::max(most_lost, counts.lost());
     sum_lost += counts.lost();
     ++count;
+    if (counts.f1() < least_f1) {
+      least_f1 = counts.f1();
+      least_at = at;
+    }
+    if (counts.lost() > most_lost) {
+      most_lost = counts.lost();
+      most_at = at;
+    }
+  }
+  void print(const std::string& name) const {
+    std::printf("| %s | %.1f | %.1f (%s) | %.1f | %.1f (%s) |\n", name.c_str(), 100 * sum_f1 / count, 100 * least_f1,
+                least_at.c_str(), 100 * sum_lost / count, 100 * most_lost, most_at.c_str());
   }
 };
 
@@ -274,9 +288,9 @@ int run(const Settings& settings, bool only_lisco, bool with_details) {
   for (const Filter& rival : rivals) names.emplace_back(rival.name);
   names.emplace_back("Lisco");
   std::printf("| terrain | sensor |");
-  for (const std::string& name : names) std::printf(" %s: P | R | F1 | lost |", name.c_str());
+  for (const std::string& name : names) std::printf(" %s |", name.c_str());
   std::printf("\n|---|---|");
-  for (std::size_t i = 0; i < names.size(); ++i) std::printf("--:|--:|--:|--:|");
+  for (std::size_t i = 0; i < names.size(); ++i) std::printf("---|");
   std::printf("\n");
   std::vector<Summary> summaries(names.size());
   for (const std::string& terrain : settings.terrains)
@@ -295,20 +309,15 @@ int run(const Settings& settings, bool only_lisco, bool with_details) {
       }
       std::printf("| %s | %s |", terrain.c_str(), sensor.c_str());
       for (std::size_t i = 0; i < names.size(); ++i) {
-        summaries[i].add(counts[i]);
+        summaries[i].add(counts[i], terrain + ", " + sensor);
         std::printf(" %s |", cellsOf(counts[i]).c_str());
       }
       std::printf("\n");
       if (with_details) details.print();
       std::fflush(stdout);
     }
-  std::printf("\n");
-  for (std::size_t i = 0; i < names.size(); ++i)
-    std::printf(
-        "%s: F1 %.1f %% in the mean, %.1f %% at least; %.1f %% of the objects' returns lost in the mean, %.1f %% at "
-        "most\n",
-        names[i].c_str(), 100 * summaries[i].sum_f1 / summaries[i].count, 100 * summaries[i].least_f1,
-        100 * summaries[i].sum_lost / summaries[i].count, 100 * summaries[i].most_lost);
+  std::printf("\n| filter | F1: mean | least | lost: mean | most |\n|---|--:|---|--:|---|\n");
+  for (std::size_t i = 0; i < names.size(); ++i) summaries[i].print(names[i]);
   return 0;
 }
 
@@ -322,8 +331,10 @@ int main(int argc, char** argv) {
     bool with_details = false;
     po::options_description options(
         "Usage: ground_truth [options]\n\n"
-        "Compares ground filters with the truth of simulated drives, and prints a table in Markdown: per filter the\n"
-        "precision P, recall R and F1 of the ground, and the part of the objects' returns that is lost, in per cent");
+        "Compares ground filters with the truth of simulated drives, and prints two tables in Markdown: per filter "
+        "the\n"
+        "precision, recall and F1 of the ground and the part of the objects' returns that is lost, in per cent; and\n"
+        "their means");
     const auto list = [](const char* name, std::vector<std::string>& items) {
       return textOption(name, [&items](const std::string& text) { items = itemsOf(text); });
     };

@@ -6,13 +6,13 @@
 #
 #   benchmarks/suite.sh [--runs N] [SECTION...]     --runs: timed runs of each baseline (default 5)
 #
-# Sections: real recordings vehicle worst growth memory threads stages, and latency, whose tables and picture are in
-# doc/streaming.md
+# Sections: real recordings vehicle worst growth memory threads stages; latency, whose tables and picture are in
+# doc/streaming.md; and ground, whose tables are in doc/ground.md
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/benchmarks/tools.sh"
 
-all_sections=(real recordings vehicle worst growth memory threads stages latency)
+all_sections=(real recordings vehicle worst growth memory threads stages latency ground)
 runs=5
 sections=()
 while [ $# -gt 0 ]; do
@@ -172,6 +172,12 @@ measure_latency() {
     code_block <"$out/windows.txt" | replace_section "$streaming" "windows" && cat "$out/windows.txt" &&
     report "$out/timeline.txt" "${latency[@]}" --table timeline "$data/scans/vls128_street_0.pcd" &&
     gnuplot -e "data='$out/timeline.txt'; image='$root/doc/images/timeline.png'" "$root/benchmarks/timeline.gp"
+}
+
+# Ground filters against the truth of simulated drives.
+measure_ground() {
+  report "$out/ground.txt" "$build/benchmarks/ground_truth" &&
+    replace_section "$root/doc/ground.md" "ground truth" <"$out/ground.txt" && cat "$out/ground.txt"
 }
 
 measure_threads() { measure_engine threads; }

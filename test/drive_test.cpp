@@ -395,6 +395,36 @@ TEST(Street, StandsOnTheGround) {
   }
 }
 
+TEST(Street, SaysTheExtentsOfBoxes) {
+  // The solids of a body in its own frame, met by rays from outside along each axis.
+  const World world = makeStreet(Terrain(), {}, 1, kHeight, 3);
+  std::set<std::string> kinds;
+  for (const Body& body : world.bodies) {
+    if (body.height == 0) continue;
+    kinds.insert(body.kind);
+    double length = 0;
+    double width = 0;
+    double height = 0;
+    for (double x = -body.length; x <= body.length; x += 0.02)
+      for (const Solid& solid : body.solids) {
+        for (double z = 0.02; z < 4; z += 0.1) {
+          const Interval across = solid.along({0, 1, 0}, {x, 0, z});
+          if (across.enter > across.leave) continue;
+          width = std::max({width, -across.enter, across.leave});
+          length = std::max(length, std::fabs(x));
+        }
+        for (const double y : {0.0, 0.2, 0.5}) {
+          const Interval up = solid.along({0, 0, 1}, {x, y, 0});
+          if (up.enter <= up.leave) height = std::max(height, up.leave);
+        }
+      }
+    EXPECT_NEAR(2 * length, body.length, 0.05) << body.kind;
+    EXPECT_NEAR(2 * width, body.width, 0.01) << body.kind;
+    EXPECT_NEAR(height, body.height, 0.01) << body.kind;
+  }
+  EXPECT_EQ(kinds, (std::set<std::string>{"car", "lorry", "wall"}));
+}
+
 TEST(Street, LeavesTheSensorsWayFree) {
   Motion motion;
   motion.speed = 10;

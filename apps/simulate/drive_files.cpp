@@ -34,14 +34,16 @@ void count(const Scan& scan, DriveCounts& counts) {
 }
 
 std::string objectsOf(const World& world) {
-  std::string text = "label,kind,x,y,z,yaw_degrees,speed_x,speed_y\n";
+  std::string text = "label,kind,x,y,z,yaw_degrees,length,width,height,speed_x,speed_y\n";
   std::size_t number = 0;
   for (const Body& body : world.bodies) {
     const Vector place = standingAfter(body, 0, world.ground).place;
-    text += formatted("%zu,%s,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f\n", ++number, body.kind.c_str(), place.x, place.y, place.z,
-                      degrees(body.heading), body.velocity.x, body.velocity.y);
+    text += formatted("%zu,%s,%.4f,%.4f,%.4f,%.4f,", ++number, body.kind.c_str(), place.x, place.y, place.z,
+                      degrees(body.heading));
+    text += body.height > 0 ? formatted("%.4f,%.4f,%.4f", body.length, body.width, body.height) : ",,";
+    text += formatted(",%.4f,%.4f\n", body.velocity.x, body.velocity.y);
   }
-  if (!world.carrier.empty()) text += formatted("%zu,sensor car,,,,,,\n", number + 1);
+  if (!world.carrier.empty()) text += formatted("%zu,sensor car,,,,,,,,,\n", number + 1);
   return text;
 }
 

@@ -30,6 +30,7 @@ struct Body {
   std::vector<Solid> solids;  ///< on a floor of height 0 around (0, 0), facing x
   double length = 0;          ///< of its footprint along x and y, metres
   double width = 0;
+  double height = 0;  ///< metres; 0: it is no box, and the footprint is what it stands on
   Footing footing = Footing::kFounded;
   Vector at;           ///< at the start; z is that of the ground
   double heading = 0;  ///< radians counterclockwise

@@ -8,13 +8,15 @@
 namespace lisco_simulation {
 namespace {
 
+constexpr double kWheelProtrudes = 0.02;  // metres
+
 /// Adds the four wheels of a car, on the floor, slightly protruding.
 void addWheels(std::vector<Solid>& solids, double front_axle, double rear_axle, double half_width,
                double radius = 0.32) {
   for (const double axle : {front_axle, rear_axle})
     for (const double side : {-1.0, 1.0})
       solids.push_back(Solid::cylinder({axle, side * (half_width - 0.2), radius},
-                                       {axle, side * (half_width + 0.02), radius}, radius));
+                                       {axle, side * (half_width + kWheelProtrudes), radius}, radius));
 }
 
 }  // namespace
@@ -35,7 +37,7 @@ Thing car(Random& random) {
       Solid::block({cabin_back, half - 1.0, -side + 0.06, side - 0.06, waist},
                    {cabin_back + (estate ? 0.25 : 0.6), half - 1.75, -side + 0.22, side - 0.22, top})};
   addWheels(solids, half - 0.8, -half + 0.8, side);
-  return {{"car", solids}, 2 * half};
+  return {{"car", solids}, 2 * half, 2 * (side + kWheelProtrudes), top};
 }
 
 Thing sensorCar() {
@@ -145,7 +147,7 @@ Thing broadTree(Random& random) {
 Thing wall(Random& random, double length) {
   const double half = random.between(0.1, 0.15);
   const double height = random.between(0.9, 2.2);
-  return {{"wall", {Solid::box({-half, -length / 2, 0}, {half, length / 2, height})}}, 2 * half};
+  return {{"wall", {Solid::box({-half, -length / 2, 0}, {half, length / 2, height})}}, 2 * half, length, height};
 }
 
 Thing lorry(Random& random) {
@@ -157,7 +159,7 @@ Thing lorry(Random& random) {
                                Solid::box({-half + 0.3, -0.5, 0.8}, {half - kCab, 0.5, 1.1}),
                                Solid::box({half - kCab, -kSide, 0.5}, {half, kSide, 2.7})};
   addWheels(solids, half - 1, -half + 1.6, kSide - 0.1, 0.48);
-  return {{"lorry", solids}, 2 * half};
+  return {{"lorry", solids}, 2 * half, 2 * kSide, top};
 }
 
 Thing bridge(double span) {

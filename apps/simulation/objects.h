@@ -13,6 +13,9 @@ namespace lisco_simulation {
 struct Thing {
   Object object;
   double length;  ///< along x on the floor
+  // The extents of those that are boxes but for details, 0: of others.
+  double width = 0;   ///< along y
+  double height = 0;  ///< above the floor
 };
 
 /// A saloon or an estate car with bonnet, boot, slanted windows and wheels.

@@ -12,13 +12,22 @@
 namespace lisco_simulation {
 namespace {
 
-constexpr double kEnds = 75;        // metres of street behind the start and beyond the end
-constexpr double kFreeWay = 2.5;    // metres
-constexpr double kWalking = 1.3;    // metres per second
-constexpr double kCarWidth = 1.84;  // metres
+constexpr double kEnds = 75;      // metres of street behind the start and beyond the end
+constexpr double kFreeWay = 2.5;  // metres
+constexpr double kWalking = 1.3;  // metres per second
 
+/// \param width of the footprint of what is no box, metres
 Body bodyOf(Thing thing, double width, Footing footing, const Vector& at, double heading) {
-  return {thing.object.kind, std::move(thing.object.solids), thing.length, width, footing, at, heading, {}};
+  Body body;
+  body.kind = thing.object.kind;
+  body.solids = std::move(thing.object.solids);
+  body.length = thing.length;
+  body.width = thing.height > 0 ? thing.width : width;
+  body.height = thing.height;
+  body.footing = footing;
+  body.at = at;
+  body.heading = heading;
+  return body;
 }
 
 /// One side of the street.
@@ -31,7 +40,7 @@ class Side {
   void add() {
     const double along = side_ < 0 ? 0 : kPi;  // cars face as the traffic does
     for (double x = begin_; x < end_; x += random_.between(5.2, 12))
-      add(car(random_), kCarWidth, Footing::kWheels, x, 4.3, along + random_.between(-0.02, 0.02));
+      add(car(random_), 0, Footing::kWheels, x, 4.3, along + random_.between(-0.02, 0.02));
     for (double x = begin_ + random_.between(0, 20); x < end_; x += random_.between(22, 28))
       add(lampPost(random_), 0.3, Footing::kFounded, x, 6, -side_ * kPi / 2 - kPi / 2);
     for (double x = begin_ + random_.between(0, 40); x < end_; x += random_.between(30, 50))
@@ -46,7 +55,7 @@ class Side {
       add(broadTree(random_), 0.5, Footing::kFounded, x, 8.2, 0);
     for (double x = begin_; x < end_;) {
       const double length = random_.between(6, 14);
-      add(wall(random_, length), length, Footing::kFounded, x + length / 2, 9.3, kPi / 2);
+      add(wall(random_, length), 0, Footing::kFounded, x + length / 2, 9.3, kPi / 2);
       x += length + random_.between(3, 15);
     }
     for (double x = begin_; x < end_;) {
@@ -70,17 +79,17 @@ class Side {
 };
 
 void addTraffic(World& world, Random& random, double speed) {
-  const auto add = [&](Thing thing, double width, double x, double y, double velocity) {
-    Body body = bodyOf(std::move(thing), width, Footing::kWheels, {x, y, 0}, velocity < 0 ? kPi : 0);
+  const auto add = [&](Thing thing, double x, double y, double velocity) {
+    Body body = bodyOf(std::move(thing), 0, Footing::kWheels, {x, y, 0}, velocity < 0 ? kPi : 0);
     body.velocity = {velocity, 0, 0};
     world.bodies.push_back(std::move(body));
   };
   const double oncoming = 2 * kRoadMiddle;
-  add(car(random), kCarWidth, random.between(13, 18), 0, speed + 2);
-  add(car(random), kCarWidth, random.between(-18, -13), 0, std::max(speed - 2, 0.0));
-  add(car(random), kCarWidth, random.between(8, 20), oncoming, -9);
-  add(lorry(random), 2.4, random.between(38, 45), oncoming, -8);
-  add(car(random), kCarWidth, random.between(-30, -20), oncoming, -9);
+  add(car(random), random.between(13, 18), 0, speed + 2);
+  add(car(random), random.between(-18, -13), 0, std::max(speed - 2, 0.0));
+  add(car(random), random.between(8, 20), oncoming, -9);
+  add(lorry(random), random.between(38, 45), oncoming, -8);
+  add(car(random), random.between(-30, -20), oncoming, -9);
 }
 
 }  // namespace
