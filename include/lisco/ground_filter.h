@@ -20,6 +20,8 @@ namespace lisco {
 struct GroundParameters {
   /// Of the sensor above the ground beneath it, metres; NaN: estimated from the returns.
   float sensor_height = std::numeric_limits<float>::quiet_NaN();
+  /// Rise of the ground around the sensor along x and y, metres per metre; a start, refined by the returns.
+  std::array<float, 2> slope{0.0F, 0.0F};
   /// Steepest ground, degrees against the x-y plane of the cloud, 1 to 60.
   float max_slope = 20.0F;
   /// Its origin and tilt decide where the ground is looked for; see estimateSensor.

@@ -19,11 +19,11 @@ namespace lisco {
 
 using ground::Block;
 using ground::Cell;
-using ground::kBins;
 using ground::kSectors;
+using ground::PlaneEstimator;
 using ground::Profile;
 using ground::Sector;
-using ground::StartEstimator;
+
 
 namespace {
 
@@ -62,8 +62,7 @@ class GroundFilter::State {
   std::vector<std::uint8_t> column_ground_;                 // of one column
   std::uint64_t block_number_ = 0;
   std::vector<Sector> sectors_;
-  StartEstimator start_estimator_;
-  float start_ = 0.0F;  // height of the ground beneath the sensor; NaN: unknown
+  PlaneEstimator plane_estimator_;
 };
 
 void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t lasers) {
@@ -83,8 +82,7 @@ void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t 
   }
   columns_ = first_column_ = 0;
   block_number_ = 0;
-  start_ = -parameters.sensor_height;
-  start_estimator_.begin(parameters.sensor);
+  plane_estimator_.begin(parameters, max_slope_);
   begun_ = true;
 }
 
@@ -147,40 +145,38 @@ void GroundFilter::State::insert() {
   constexpr std::uint64_t kFresh = 16;  // blocks after which a sector shows the rotation before
   for (std::size_t i = 0; i < block_.size; ++i) {
     if (block_.cell[i] == Block::kNoCell) continue;
-    const auto index = static_cast<std::size_t>(block_.cell[i]);
-    Sector& sector = sectors_[index / kBins];
+    Sector& sector = sectors_[Block::sectorOf(block_.cell[i])];
     if (sector.block != block_number_) {
       if (block_number_ - sector.block > kFresh) sector.occupied = {};
       sector.block = block_number_;
     }
-    sector.add(index % kBins, block_.rho[i], block_.height[i]);
+    sector.add(Block::binOf(block_.cell[i]), block_.rho[i], block_.height[i]);
   }
 }
 
 void GroundFilter::State::findGround() {
   constexpr std::uint64_t kEstimatePeriod = 4;  // blocks
-  if (std::isnan(parameters_.sensor_height) && (std::isnan(start_) || block_number_ % kEstimatePeriod == 0)) {
-    const std::size_t count = std::isnan(start_) ? Block::kColumns : 1;
-    for (std::size_t column = 0; column < count; ++column) start_estimator_.add(block_, column, max_slope_);
-    start_ = start_estimator_.estimate();
+  if (!plane_estimator_.isKnown() || block_number_ % kEstimatePeriod == 0) {
+    const std::size_t count = plane_estimator_.isKnown() ? 1 : Block::kColumns;
+    for (std::size_t column = 0; column < count; ++column) plane_estimator_.add(block_, column);
+    plane_estimator_.update();
   }
-  if (std::isnan(start_)) return;
-  const Profile profile(start_, max_slope_);
+  if (!plane_estimator_.isKnown()) return;
+  const Profile profile(plane_estimator_.plane(), max_slope_);
   for (std::size_t s = 0; s < kSectors; ++s) {
     if (sectors_[s].block != block_number_) continue;
     const Sector* beside = nullptr;
     for (const std::size_t other : {(s + 1) % kSectors, (s + kSectors - 1) % kSectors})
       if (sectors_[other].block != 0 && block_number_ - sectors_[other].block < 8) beside = &sectors_[other];
-    profile.follow(sectors_[s], beside);
+    profile.follow(sectors_[s], ground::directionOf(s), beside);
   }
 }
 
 void GroundFilter::State::classify() {
   for (std::size_t i = 0; i < block_.size; ++i) {
     block_.ground[i] = 0;
-    if (block_.cell[i] == Block::kNoCell || std::isnan(start_)) continue;
-    const auto index = static_cast<std::size_t>(block_.cell[i]);
-    const Cell& cell = sectors_[index / kBins].cells[index % kBins];
+    if (block_.cell[i] == Block::kNoCell || !plane_estimator_.isKnown()) continue;
+    const Cell& cell = sectors_[Block::sectorOf(block_.cell[i])].cells[Block::binOf(block_.cell[i])];
     const float above = block_.height[i] - (cell.ground + cell.slope * (block_.rho[i] - cell.low_rho));
     block_.ground[i] = above < cell.tolerance && above > -0.5F;
   }
@@ -192,9 +188,9 @@ GroundParameters estimateGround(std::size_t columns, std::size_t lasers, const s
   parameters.sensor = estimateSensor(columns, lasers, declared_origin, cells);
   Block block;
   block.resize(lasers);
-  ground::StartEstimator estimator;
-  estimator.begin(parameters.sensor);
-  const std::size_t samples = std::min(columns, ground::StartEstimator::kMemory);
+  PlaneEstimator estimator;
+  estimator.begin(parameters, maxSlope(parameters));
+  const std::size_t samples = std::min(columns, PlaneEstimator::kMemory);
   for (std::size_t sample = 0; sample < samples; sample += Block::kColumns) {
     const std::size_t count = std::min(Block::kColumns, samples - sample);
     std::fill(block.z.begin(), block.z.end(), std::numeric_limits<float>::quiet_NaN());
@@ -209,9 +205,13 @@ GroundParameters estimateGround(std::size_t columns, std::size_t lasers, const s
       }
     }
     block.measure(parameters.sensor);
-    for (std::size_t i = 0; i < count; ++i) estimator.add(block, i, maxSlope(parameters));
+    for (std::size_t i = 0; i < count; ++i) estimator.add(block, i);
   }
-  parameters.sensor_height = -estimator.estimate();
+  estimator.update();
+  if (!estimator.isKnown()) return parameters;
+  parameters.sensor_height = -estimator.plane().height;
+  parameters.slope = {estimator.plane().slope_x + parameters.sensor.tilt[0],
+                      estimator.plane().slope_y + parameters.sensor.tilt[1]};
   return parameters;
 }
 

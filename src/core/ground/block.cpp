@@ -2,10 +2,12 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "core/ground/block.h"
 
+#include <array>
 #include <cmath>
 #include <cstring>
 
 #include "core/ground/polar_grid.h"
+#include "core/pi.h"
 
 namespace lisco::ground {
 namespace {
@@ -27,7 +29,7 @@ inline float octants(float x, float y) {
 }
 
 /// Octaves of the squared distance, divided into eight: the exponent and three bits of the mantissa.
-inline std::int32_t binOf(float squared) {
+inline std::int32_t logBinOf(float squared) {
   constexpr std::int32_t kFirst = (127 - 2) << 3;  // 0.25 m2
   std::int32_t bits;
   std::memcpy(&bits, &squared, sizeof bits);
@@ -37,6 +39,18 @@ inline std::int32_t binOf(float squared) {
 }
 
 }  // namespace
+
+Direction directionOf(std::size_t sector) {
+  static const auto directions = [] {
+    std::array<Direction, kSectors> all;
+    for (std::size_t i = 0; i < kSectors; ++i) {
+      const double azimuth = 2.0 * kPi * (static_cast<double>(i) + 0.5) / static_cast<double>(kSectors);
+      all[i] = {static_cast<float>(std::cos(azimuth)), static_cast<float>(std::sin(azimuth))};
+    }
+    return all;
+  }();
+  return directions[sector];
+}
 
 void Block::resize(std::size_t lasers) {
   size = lasers * kColumns;
@@ -71,7 +85,7 @@ void Block::measure(const SensorHints& sensor) {
     const std::int32_t sector = static_cast<std::int32_t>(octants(x_valid, y_valid) * kScale) & kMask;
     to_rho[i] = std::sqrt(squared);
     to_height[i] = dz - tilt_x * x_valid - tilt_y * y_valid;
-    to_cell[i] = valid ? sector * static_cast<std::int32_t>(kBins) + binOf(squared) : kNoCell;
+    to_cell[i] = valid ? sector << 8 | logBinOf(squared) : kNoCell;
   }
 }
 

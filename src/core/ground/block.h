@@ -20,9 +20,12 @@ struct Block {
   std::vector<float> x, y, z;        ///< as received, metres
   std::vector<float> rho;            ///< horizontal distance from the sensor, metres
   std::vector<float> height;         ///< above the sensor's horizon, metres
-  std::vector<std::int32_t> cell;    ///< of the polar grid, sector * kBins + bin; kNoCell if there is no return
+  std::vector<std::int32_t> cell;    ///< of the polar grid, see sectorOf and binOf; kNoCell if there is no return
   std::vector<std::uint8_t> ground;  ///< the decisions
   std::size_t size = 0;              ///< number of elements
+
+  static std::size_t sectorOf(std::int32_t cell) { return static_cast<std::size_t>(cell) >> 8; }
+  static std::size_t binOf(std::int32_t cell) { return static_cast<std::size_t>(cell) & 255; }
 
   /// Allocates only if there are more lasers than ever before.
   void resize(std::size_t lasers);

@@ -60,6 +60,14 @@ struct Sector {
   }
 };
 
+/// A unit vector.
+struct Direction {
+  float x, y;
+};
+
+/// The middle of a sector.
+Direction directionOf(std::size_t sector);
+
 /// Calls visit(bin) for each cell with returns, from the sensor outwards.
 template <typename Visit>
 void forEachBin(const Sector& sector, Visit&& visit) {
@@ -67,11 +75,11 @@ void forEachBin(const Sector& sector, Visit&& visit) {
     forEachBit(sector.occupied[word], [&](std::size_t bit) { visit(word * 64 + bit); });
 }
 
-/// Whether nothing stands on the lowest return of a cell, up to about 2 m.
-inline bool isBare(const Cell& cell) {
+/// Whether none of the occupied levels is up to about 2 m above a height.
+inline bool isBare(float low, std::uint64_t levels) {
   constexpr std::uint64_t kAbove = 0x7F;  // levels
-  const unsigned level = levelOf(cell.low);
-  const std::uint64_t turned = cell.levels >> level | cell.levels << (-level & 63);
+  const unsigned level = levelOf(low);
+  const std::uint64_t turned = levels >> level | levels << (-level & 63);
   return (turned >> 2 & kAbove) == 0;
 }
 

@@ -3,68 +3,116 @@
 #include "core/ground/profile.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
-
-#include "core/bits.h"
 
 namespace lisco::ground {
-void Profile::follow(Sector& sector, const Sector* beside) const {
-  constexpr float kBaseline = 1.5F;  // metres over which steps may not add up
-  float ground = start_;
-  float slope = 0.0F;
-  float last_rho = 0.0F;
-  float back_rho = 0.0F, back_ground = start_;  // ground at least a baseline inwards
-  float next_rho = 0.0F, next_ground = start_;  // the next one to become that
-  forEachBin(sector, [&](std::size_t bin) {
-    Cell& cell = sector.cells[bin];
-    const float distance = std::max(cell.low_rho - last_rho, 0.0F);
-    const float from_back = std::max(cell.low_rho - back_rho, 0.0F);
-    const bool bare = isBare(cell);
-    const float back_slope = back_rho == 0.0F ? 0.07F : max_slope_;
-    const float expected = ground + slope * std::min(distance, 2.0F);
+namespace {
+
+/// Cells of a sector with returns, from the sensor outwards.
+struct Outwards {
+  std::array<Cell*, kBins> cells;
+  std::array<bool, kBins> bare;
+  std::array<std::uint8_t, kBins> bins;
+  std::size_t size = 0;
+
+  explicit Outwards(Sector& sector) {
+    forEachBin(sector, [&](std::size_t bin) {
+      cells[size] = &sector.cells[bin];
+      bins[size] = static_cast<std::uint8_t>(bin);
+      ++size;
+    });
+    for (std::size_t i = 0; i < size; ++i) {
+      std::uint64_t levels = cells[i]->levels;
+      if (i + 1 < size && bins[i + 1] == bins[i] + 1) levels |= cells[i + 1]->levels;
+      bare[i] = isBare(cells[i]->low, levels);
+    }
+  }
+
+  /// The first bare cell clearly beyond one; nullptr if there is none.
+  const Cell* beyond(std::size_t i) const {
+    const float rho = 1.12F * cells[i]->low_rho + 0.2F;
+    constexpr std::size_t kMost = 6;
+    for (std::size_t j = i + 1; j < size && j < i + kMost; ++j)
+      if (bare[j] && cells[j]->low_rho >= rho) return cells[j];
+    return nullptr;
+  }
+};
+
+/// Ground reached so far, and a part of it further inwards.
+struct Reached {
+  float rho, ground;
+  float back_rho, back_ground;
+  float next_rho, next_ground;  // becomes the back
+
+  float slope(float max_slope) const {
+    return rho > back_rho ? std::clamp((ground - back_ground) / (rho - back_rho), -max_slope, max_slope) : 0.0F;
+  }
+  void advance(const Cell& cell) {
+    constexpr float kBaseline = 1.5F;  // metres
+    rho = cell.low_rho;
+    ground = cell.low;
+    if (rho - next_rho < kBaseline + 0.1F * rho) return;
+    back_rho = next_rho;
+    back_ground = next_ground;
+    next_rho = rho;
+    next_ground = ground;
+  }
+};
+
+}  // namespace
+
+void Profile::follow(Sector& sector, const Direction& direction, const Sector* beside) const {
+  const Outwards outwards(sector);
+  Reached reached{0.0F, plane_.height, 0.0F, plane_.height, 0.0F, plane_.height};
+  const float first_slope = plane_.slopeTowards(direction);
+  bool first = true;
+  for (std::size_t i = 0; i < outwards.size; ++i) {
+    Cell& cell = *outwards.cells[i];
+    const bool bare = outwards.bare[i];
+    const float distance = std::max(cell.low_rho - reached.rho, 0.0F);
+    const float slope = first ? first_slope : reached.slope(max_slope_);
+    const float baseline = first ? cell.low_rho : reached.rho - reached.back_rho;
+    const float expected = reached.ground + slope * std::min(distance, 2.0F * baseline);
     const float above = cell.low - expected;
+    const float from_back = std::max(cell.low_rho - reached.back_rho, 0.0F);
+    const float rise = cell.low - reached.back_ground;
     bool found;
-    if (last_rho == 0.0F)
-      found = std::fabs(above) < (bare ? 0.12F + 0.07F * distance : 0.1F + 0.04F * distance);
+    if (first)
+      found = std::fabs(above) < (bare ? 0.1F + 0.04F * distance : 0.1F + 0.03F * distance);
     else if (bare)
-      found = above < 0.15F + std::min(max_slope_ * distance, 0.15F + 0.02F * distance) &&
-              above > -0.2F - max_slope_ * distance && cell.low - back_ground < 0.15F + back_slope * from_back;
+      found = above < 0.12F + std::min(max_slope_ * distance, 0.12F + 0.015F * distance) &&
+              above > -0.2F - std::min(max_slope_ * distance, 0.3F) && rise < 0.15F + max_slope_ * from_back;
     else
-      found = above < 0.12F + std::min(0.15F * distance, 0.08F) &&
-              above > -0.2F - std::min(max_slope_ * distance, 0.4F) &&
-              cell.low - back_ground < 0.12F + back_slope * from_back;
+      found = above < 0.1F + std::min(0.15F * distance, 0.06F) && above > -0.2F - std::min(max_slope_ * distance, 0.3F) &&
+              rise < 0.12F + max_slope_ * from_back;
+    if (!found && !first && bare && std::fabs(cell.low - reached.ground) < 0.1F + max_slope_ * distance) {
+      // A change of slope, if the next cell continues it.
+      if (const Cell* const next = outwards.beyond(i)) {
+        const float here = (cell.low - reached.ground) / std::max(distance, 0.5F);
+        const float step = next->low_rho - cell.low_rho;
+        const float further = (next->low - cell.low) / step;
+        found = std::fabs(further) < max_slope_ && std::fabs(further - here) < 0.07F + 0.03F / step;
+      }
+    }
     int confidence = found ? 8 : 0;
+    const std::size_t bin = outwards.bins[i];
     if (!found && beside != nullptr && beside->has(bin) && beside->cells[bin].confidence > 1) {
       const Cell& other = beside->cells[bin];
       const float above_beside = cell.low - (other.ground + other.slope * (cell.low_rho - other.low_rho));
       const float width = 0.0245F * cell.low_rho;
       found = std::fabs(above_beside) < (bare ? 0.1F + 0.1F * width : 0.08F) &&
-              std::fabs(above) < 0.3F + max_slope_ * distance;
+              std::fabs(cell.low - reached.ground) < 0.2F + max_slope_ * distance;
       if (found) confidence = other.confidence - 1;
     }
     cell.confidence = static_cast<std::int8_t>(confidence);
     if (found) {
-      if (distance > 0.2F) {
-        const float new_slope = std::clamp((cell.low - ground) / distance, -max_slope_, max_slope_);
-        const float weight = std::min(0.7F, distance * 0.4F);
-        slope += weight * (new_slope - slope);
-      }
-      ground = cell.low;
-      last_rho = cell.low_rho;
-      if (next_rho == 0.0F) {
-        next_rho = last_rho;
-        next_ground = ground;
-      } else if (last_rho - next_rho > kBaseline) {
-        back_rho = next_rho;
-        back_ground = next_ground;
-        next_rho = last_rho;
-        next_ground = ground;
-      }
-      cell.ground = ground;
-      cell.slope = slope;
+      first = false;
+      reached.advance(cell);
+      cell.ground = cell.low;
+      cell.slope = reached.slope(max_slope_);
       cell.tolerance = bare ? 0.15F : 0.05F;
-    } else if (above < 0) {  // a reflection, perhaps
+    } else if (above < 0.0F) {  // a reflection, perhaps
       cell.ground = expected;
       cell.slope = slope;
       cell.tolerance = 0.1F;
@@ -73,7 +121,7 @@ void Profile::follow(Sector& sector, const Sector* beside) const {
       cell.slope = 0.0F;
       cell.tolerance = -1e30F;
     }
-  });
+  }
 }
 
 }  // namespace lisco::ground

@@ -3,21 +3,23 @@
 #pragma once
 
 #include "core/ground/polar_grid.h"
+#include "core/ground/start.h"
 
 namespace lisco::ground {
 
 /// Follows the ground of a sector outwards, and sets `ground`, `slope` and `observed` of its cells.
 class Profile {
  public:
-  /// \param start height of the ground beneath the sensor, metres above the sensor's horizon
+  /// \param plane the ground around the sensor
   /// \param max_slope metres per metre
-  Profile(float start, float max_slope) : start_(start), max_slope_(max_slope) {}
+  Profile(const Plane& plane, float max_slope) : plane_(plane), max_slope_(max_slope) {}
 
   /// \param beside a sector beside this one whose ground is known, or null
-  void follow(Sector& sector, const Sector* beside) const;
+  /// \param direction of the sector
+  void follow(Sector& sector, const Direction& direction, const Sector* beside) const;
 
  private:
-  float start_;
+  Plane plane_;
   float max_slope_;
 };
 

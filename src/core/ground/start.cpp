@@ -6,76 +6,139 @@
 #include <cmath>
 #include <limits>
 
-#include "core/ground/polar_grid.h"
-
 namespace lisco::ground {
 namespace {
 
 constexpr float kNear = 25.0F;          // metres; beyond, the ground may be higher or lower
 constexpr std::size_t kMostCells = 48;  // of a column
-constexpr int kMinAgreeing = 2;         // cells
-constexpr float kMinReach = 1.15F;      // of the farthest of them by the nearest
-constexpr float kEnough = 0.5F;         // of the most votes
+constexpr float kMinReach = 1.12F;      // of a cell's distance by that of the one before
+constexpr float kSameSlope = 0.08F;     // metres per metre
+constexpr float kLevel = 0.1F;          // metres per metre
+constexpr float kEnough = 0.5F;         // of the most weight
+constexpr float kWindow = 0.15F;        // metres, of heights that agree
+constexpr float kMinWeight = 6.0F;      // of the lines that show a plane
 
 }  // namespace
 
-void StartEstimator::add(const Block& block, std::size_t column, float max_slope) {
+void PlaneEstimator::begin(const GroundParameters& parameters, float max_slope) {
+  const SensorHints& sensor = parameters.sensor;
+  const bool origin_known = sensor.steps_per_turn != 0 || sensor.origin != std::array<float, 3>{};
+  highest_ = origin_known ? -0.2F : 0.5F;  // otherwise the ground may be as high as the cloud's origin
+  max_slope_ = max_slope;
+  height_given_ = known_ = !std::isnan(parameters.sensor_height);
+  plane_ = {known_ ? -parameters.sensor_height : 0.0F, parameters.slope[0] - sensor.tilt[0],
+            parameters.slope[1] - sensor.tilt[1]};
+  count_ = 0;
+}
+
+void PlaneEstimator::add(const Block& block, std::size_t column) {
   struct Low {
     float rho, height;
   };
   Sector sector;  // of all azimuths: lasers of a column may be staggered
+  Direction sum{0.0F, 0.0F};
   for (std::size_t i = column; i < block.size; i += Block::kColumns)
-    if (block.cell[i] != Block::kNoCell && block.rho[i] < kNear)
-      sector.add(static_cast<std::size_t>(block.cell[i]) % kBins, block.rho[i], block.height[i]);
+    if (block.cell[i] != Block::kNoCell && block.rho[i] < kNear) {
+      sector.add(Block::binOf(block.cell[i]), block.rho[i], block.height[i]);
+      const Direction direction = directionOf(Block::sectorOf(block.cell[i]));
+      sum.x += direction.x;
+      sum.y += direction.y;
+    }
+  const float length = std::max(std::sqrt(sum.x * sum.x + sum.y * sum.y), 1e-3F);
+  const Direction direction{sum.x / length, sum.y / length};
+
   std::array<Low, kMostCells> lows;
   std::size_t size = 0;
   forEachBin(sector, [&](std::size_t bin) {
     const Cell& cell = sector.cells[bin];
-    if (size < kMostCells && cell.low < highest_ && isBare(cell)) lows[size++] = {cell.low_rho, cell.low};
+    if (size < kMostCells && isBare(cell.low, cell.levels)) lows[size++] = {cell.low_rho, cell.low};
   });
-  std::array<int, kMostCells> agreeing{};
-  int most = 0;
+  const auto beyond = [&](std::size_t i) {
+    std::size_t j = i + 1;
+    while (j < size && lows[j].rho < kMinReach * lows[i].rho) ++j;
+    return j;
+  };
+  const auto slopeOf = [&](std::size_t i, std::size_t j) {
+    return (lows[j].height - lows[i].height) / (lows[j].rho - lows[i].rho);
+  };
+  // Lines through three cells, or through two that are nearly level.
+  std::array<Line, kMostCells> lines;
+  std::size_t line_count = 0;
   for (std::size_t i = 0; i < size; ++i) {
-    float farthest = 0.0F;
-    for (std::size_t j = i; j < size; ++j) {
-      const float distance = std::fabs(lows[j].rho - lows[i].rho);
-      if (std::fabs(lows[j].height - lows[i].height) >= 0.03F + 0.2F * max_slope * distance) continue;
-      ++agreeing[i];
-      farthest = lows[j].rho;
+    const std::size_t j = beyond(i);
+    if (j == size) break;
+    float slope = slopeOf(i, j);
+    float weight = 0.5F;
+    const std::size_t k = beyond(j);
+    if (k < size && std::fabs(slopeOf(j, k) - slope) < kSameSlope && std::fabs(slope) < max_slope_) {
+      slope = slopeOf(i, k);
+      weight = 1.0F;
+    } else if (std::fabs(slope) > kLevel) {
+      continue;
     }
-    if (farthest < kMinReach * lows[i].rho) agreeing[i] = 0;
-    most = std::max(most, agreeing[i]);
+    const float height = lows[i].height - slope * lows[i].rho;
+    if (height < highest_) lines[line_count++] = {height, slope, weight, direction};
   }
-  if (most < kMinAgreeing) return;
-  Vote vote{std::numeric_limits<float>::infinity(), 0.0F};
-  for (std::size_t i = 0; i < size; ++i)
-    if (static_cast<float>(agreeing[i]) >= kEnough * static_cast<float>(most) && agreeing[i] >= kMinAgreeing &&
-        lows[i].height < vote.height)
-      vote = {lows[i].height, static_cast<float>(agreeing[i] - 1)};
-  votes_[count_++ % kMemory] = vote;
+  const Agreed agreed = lowestOf(lines.data(), line_count, 0.1F);
+  if (agreed.weight == 0.0F) return;
+  Line line{agreed.height, 0.0F, agreed.weight, direction};
+  float weight = 0.0F;
+  for (std::size_t i = 0; i < line_count; ++i)
+    if (std::fabs(lines[i].height - agreed.height) < 0.2F) {
+      line.slope += lines[i].weight * lines[i].slope;
+      weight += lines[i].weight;
+    }
+  line.slope = weight > 0.0F ? line.slope / weight : 0.0F;
+  lines_[count_++ % kMemory] = line;
 }
 
-float StartEstimator::estimate() const {
-  constexpr float kWindow = 0.25F;  // metres
-  const std::size_t size = std::min(count_, kMemory);
+/// Of the heights that at least kEnough of the most weight agrees with, the lowest: the mean of those near it, and
+/// their weight.
+PlaneEstimator::Agreed PlaneEstimator::lowestOf(const Line* lines, std::size_t size, float window) {
   std::array<float, kMemory> support{};
   float most = 0.0F;
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t j = 0; j < size; ++j)
-      if (std::fabs(votes_[i].height - votes_[j].height) < kWindow) support[i] += votes_[j].weight;
+      if (std::fabs(lines[i].height - lines[j].height) < window) support[i] += lines[j].weight;
     most = std::max(most, support[i]);
   }
   float lowest = std::numeric_limits<float>::infinity();
   for (std::size_t i = 0; i < size; ++i)
-    if (support[i] >= kEnough * most) lowest = std::min(lowest, votes_[i].height);
+    if (support[i] >= kEnough * most) lowest = std::min(lowest, lines[i].height);
   float sum = 0.0F, weight = 0.0F;
   for (std::size_t i = 0; i < size; ++i)
-    if (std::fabs(votes_[i].height - (lowest + kWindow)) < 2 * kWindow) {
-      sum += votes_[i].weight * votes_[i].height;
-      weight += votes_[i].weight;
+    if (std::fabs(lines[i].height - (lowest + window)) < 2.0F * window) {
+      sum += lines[i].weight * lines[i].height;
+      weight += lines[i].weight;
     }
-  constexpr float kMinWeight = 8.0F;
-  return most >= kMinWeight ? sum / weight : std::numeric_limits<float>::quiet_NaN();
+  return {weight > 0.0F ? sum / weight : 0.0F, weight};
+}
+
+void PlaneEstimator::update() {
+  const std::size_t size = std::min(count_, kMemory);
+  if (!height_given_) {
+    const Agreed agreed = lowestOf(lines_.data(), size, kWindow);
+    if (agreed.weight < kMinWeight) return;
+    plane_.height = agreed.height;
+    known_ = true;
+  }
+  // Least squares of slope_x x + slope_y y = slope, drawn to the horizon where directions are few.
+  float xx = 1.0F, xy = 0.0F, yy = 1.0F, xs = 0.0F, ys = 0.0F, all = 0.0F;
+  for (std::size_t i = 0; i < size; ++i) {
+    const Line& line = lines_[i];
+    if (std::fabs(line.height - plane_.height) > 2.0F * kWindow) continue;
+    const auto [x, y] = line.direction;
+    all += line.weight;
+    xx += line.weight * x * x;
+    xy += line.weight * x * y;
+    yy += line.weight * y * y;
+    xs += line.weight * x * line.slope;
+    ys += line.weight * y * line.slope;
+  }
+  if (all < kMinWeight) return;
+  const float determinant = xx * yy - xy * xy;
+  plane_.slope_x = std::clamp((xs * yy - ys * xy) / determinant, -max_slope_, max_slope_);
+  plane_.slope_y = std::clamp((ys * xx - xs * xy) / determinant, -max_slope_, max_slope_);
 }
 
 }  // namespace lisco::ground

@@ -6,38 +6,57 @@
 #include <cstddef>
 
 #include "core/ground/block.h"
+#include "core/ground/polar_grid.h"
+#include "lisco/ground_filter.h"
 
 namespace lisco::ground {
 
-/// Estimates the height of the ground beneath the sensor, above its horizon, from columns: the lowest height that many
-/// returns agree with.
-class StartEstimator {
+/// The ground around the sensor, in its frame: height (metres) beneath it, and slopes along x and y.
+struct Plane {
+  float height = 0.0F;
+  float slope_x = 0.0F, slope_y = 0.0F;
+
+  float slopeTowards(const Direction& direction) const { return slope_x * direction.x + slope_y * direction.y; }
+};
+
+/// Estimates the plane of the ground around the sensor from columns: the lowest height that lines through many
+/// columns' returns agree with, and the slopes of these lines.
+class PlaneEstimator {
  public:
   static constexpr std::size_t kMemory = 64;  ///< columns
 
-  /// Forgets all columns.
-  /// \param sensor unless it shows where the sensor is, the ground may be as high as the origin of the cloud
-  void begin(const SensorHints& sensor) {
-    const bool known = sensor.steps_per_turn != 0 || sensor.origin != std::array<float, 3>{};
-    highest_ = known ? -0.2F : 0.5F;
-    count_ = 0;
-  }
+  /// Forgets all columns. A height that is not NaN is not estimated.
+  void begin(const GroundParameters& parameters, float max_slope);
 
   /// Adds what a column shows, if it shows ground clearly; forgets the oldest of kMemory.
-  /// \param block whose column it is
-  void add(const Block& block, std::size_t column, float max_slope);
+  void add(const Block& block, std::size_t column);
 
-  /// NaN if too little was added.
-  float estimate() const;
+  /// Updates the plane by the columns added; it stays as it is, if they show too little.
+  void update();
+
+  bool isKnown() const { return known_; }
+  const Plane& plane() const { return plane_; }
 
  private:
-  struct Vote {
-    float height;
+  /// A line that a column's ground may follow.
+  struct Line {
+    float height;  // beneath the sensor
+    float slope;
     float weight;
+    Direction direction;
   };
-  std::array<Vote, kMemory> votes_;
+  struct Agreed {
+    float height, weight;
+  };
+  static Agreed lowestOf(const Line* lines, std::size_t size, float window);
+
+  std::array<Line, kMemory> lines_;
   std::size_t count_ = 0;  // ever added
-  float highest_ = 0.0F;   // metres
+  Plane plane_;
+  bool known_ = false;
+  bool height_given_ = false;
+  float highest_ = 0.0F;  // metres
+  float max_slope_ = 0.0F;
 };
 
 }  // namespace lisco::ground
