@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/bits.h"
 #include "core/ground/block.h"
 #include "core/ground/polar_grid.h"
 #include "core/ground/profile.h"
@@ -19,11 +20,11 @@ namespace lisco {
 
 using ground::Block;
 using ground::Cell;
+using ground::Columns;
 using ground::kSectors;
 using ground::PlaneEstimator;
 using ground::Profile;
 using ground::Sector;
-
 
 namespace {
 
@@ -39,29 +40,30 @@ class GroundFilter::State {
  public:
   void begin(const GroundParameters& parameters, std::size_t lasers);
   void add(const Return* cells, std::size_t lasers, const GroundVisitor& visit);
-  void addColumns(std::size_t first, std::size_t count, const CellSource& cells);
   void finish(const GroundVisitor& visit);
-  const std::uint8_t* ground() const { return block_.ground.data(); }
-  void decide();
-  void clear() { begun_ = false; }
+  void addAll(std::size_t columns, const CellSource& cells, std::uint8_t* ground);
 
  private:
-  void visitColumns(const GroundVisitor& visit);
+  void decideWaiting(const GroundVisitor& visit);
+  void decide(std::size_t first, std::size_t count, std::uint8_t* ground, std::size_t stride);
   void insert();
+  void insert(std::int32_t cell, float rho, float height, std::uint64_t levels);
   void findGround();
-  void classify();
+  void classify(std::size_t count, std::uint8_t* ground, std::size_t stride) const;
 
   GroundParameters parameters_;
   float max_slope_ = 0.0F;
   std::size_t lasers_ = 0;
   bool begun_ = false;
+  Columns received_;
+  std::size_t waiting_ = 0;                                 // columns received and not decided
+  std::array<std::size_t, Block::kColumns> cell_counts_{};  // of these columns
+  std::size_t decided_ = 0;                                 // columns, from begin () on
+  std::vector<std::uint8_t> waiting_ground_, column_ground_;
   Block block_;
-  std::size_t columns_ = 0;                                 // in the block
-  std::array<std::size_t, Block::kColumns> cell_counts_{};  // of its columns
-  std::size_t first_column_ = 0;                            // of the block, from begin () on
-  std::vector<std::uint8_t> column_ground_;                 // of one column
   std::uint64_t block_number_ = 0;
   std::vector<Sector> sectors_;
+  std::array<std::uint64_t, kSectors / 64> touched_{};  // sectors with returns of the block
   PlaneEstimator plane_estimator_;
 };
 
@@ -74,13 +76,15 @@ void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t 
   max_slope_ = maxSlope(parameters);
   lasers_ = lasers;
   block_.resize(lasers);
+  received_.resize(lasers, Block::kColumns);
+  waiting_ground_.resize(std::max(waiting_ground_.size(), lasers * Block::kColumns));
   column_ground_.resize(std::max(column_ground_.size(), lasers));
   sectors_.resize(kSectors);
   for (Sector& sector : sectors_) {
     sector.occupied = {};
     sector.block = 0;
   }
-  columns_ = first_column_ = 0;
+  waiting_ = decided_ = 0;
   block_number_ = 0;
   plane_estimator_.begin(parameters, max_slope_);
   begun_ = true;
@@ -91,67 +95,98 @@ void GroundFilter::State::add(const Return* cells, std::size_t lasers, const Gro
   if (lasers > lasers_) throw std::invalid_argument("lisco::GroundFilter: more cells than lasers");
   for (std::size_t laser = 0; laser < lasers_; ++laser) {
     const Return cell = laser < lasers ? cells[laser] : kNoReturn;
-    const std::size_t i = laser * Block::kColumns + columns_;
-    block_.x[i] = cell.x;
-    block_.y[i] = cell.y;
-    block_.z[i] = cell.z;
+    const std::size_t i = laser * Block::kColumns + waiting_;
+    received_.x[i] = cell.x;
+    received_.y[i] = cell.y;
+    received_.z[i] = cell.z;
   }
-  cell_counts_[columns_++] = lasers;
-  if (columns_ < Block::kColumns) return;
-  decide();
-  visitColumns(visit);
-}
-
-void GroundFilter::State::addColumns(std::size_t first, std::size_t count, const CellSource& cells) {
-  std::array<std::uint32_t, Block::kColumns> source_indices;
-  for (std::size_t laser = 0; laser < lasers_; ++laser) {
-    const std::size_t i = laser * Block::kColumns;
-    cells.read(laser, first, count, {&block_.x[i], &block_.y[i], &block_.z[i], source_indices.data()});
-  }
-  columns_ = count;
+  cell_counts_[waiting_++] = lasers;
+  if (waiting_ == Block::kColumns) decideWaiting(visit);
 }
 
 void GroundFilter::State::finish(const GroundVisitor& visit) {
-  if (!begun_ || columns_ == 0) return;
-  decide();
-  visitColumns(visit);
+  if (!begun_ || waiting_ == 0) return;
+  for (std::size_t column = waiting_; column < Block::kColumns; ++column) received_.clear(column, lasers_);
+  decideWaiting(visit);
 }
 
-void GroundFilter::State::visitColumns(const GroundVisitor& visit) {
-  const std::size_t count = columns_;
-  columns_ = 0;
+void GroundFilter::State::decideWaiting(const GroundVisitor& visit) {
+  const std::size_t count = waiting_;
+  waiting_ = 0;
+  decide(0, count, waiting_ground_.data(), Block::kColumns);
   for (std::size_t column = 0; column < count; ++column) {
     for (std::size_t laser = 0; laser < cell_counts_[column]; ++laser)
-      column_ground_[laser] = block_.ground[laser * Block::kColumns + column];
-    visit(first_column_++, column_ground_.data(), cell_counts_[column]);
+      column_ground_[laser] = waiting_ground_[laser * Block::kColumns + column];
+    visit(decided_++, column_ground_.data(), cell_counts_[column]);
   }
 }
 
-/// Decides on the columns of the block.
-void GroundFilter::State::decide() {
-  for (std::size_t column = columns_; column < Block::kColumns; ++column)
+/// Reads more columns at a time than are decided together: the returns of a laser lie side by side in a cloud's memory.
+void GroundFilter::State::addAll(std::size_t columns, const CellSource& cells, std::uint8_t* ground) {
+  constexpr std::size_t kRead = 64;
+  std::array<std::uint32_t, kRead> source_indices;
+  received_.resize(lasers_, kRead);
+  for (std::size_t first = 0; first < columns; first += kRead) {
+    const std::size_t count = std::min(kRead, columns - first);
     for (std::size_t laser = 0; laser < lasers_; ++laser) {
-      const std::size_t i = laser * Block::kColumns + column;
-      block_.x[i] = block_.y[i] = block_.z[i] = 0.0F;
+      const std::size_t i = laser * kRead;
+      cells.read(laser, first, count, {&received_.x[i], &received_.y[i], &received_.z[i], source_indices.data()});
     }
+    for (std::size_t column = count; column % Block::kColumns != 0; ++column) received_.clear(column, lasers_);
+    for (std::size_t column = 0; column < count; column += Block::kColumns)
+      decide(column, std::min(Block::kColumns, count - column), ground + first + column, columns);
+  }
+  begun_ = false;
+}
+
+/// Decides on `count` of the columns received.
+/// \param ground receives a byte for each cell, a row of `stride` for each laser
+void GroundFilter::State::decide(std::size_t first, std::size_t count, std::uint8_t* ground, std::size_t stride) {
   ++block_number_;
-  block_.measure(parameters_.sensor);
+  block_.measure(received_, first, parameters_.sensor);
   insert();
   findGround();
-  classify();
+  classify(count, ground, stride);
 }
 
+/// Adds the block's returns to the grid, those that follow each other in one of its cells together.
 void GroundFilter::State::insert() {
-  constexpr std::uint64_t kFresh = 16;  // blocks after which a sector shows the rotation before
+  touched_ = {};
+  std::int32_t current = Block::kNoCell;
+  float low = 0.0F, low_rho = 0.0F;
+  std::uint64_t levels = 0;
   for (std::size_t i = 0; i < block_.size; ++i) {
-    if (block_.cell[i] == Block::kNoCell) continue;
-    Sector& sector = sectors_[Block::sectorOf(block_.cell[i])];
-    if (sector.block != block_number_) {
-      if (block_number_ - sector.block > kFresh) sector.occupied = {};
-      sector.block = block_number_;
+    const std::int32_t cell = block_.cell[i];
+    if (cell == Block::kNoCell) continue;
+    const float height = block_.height[i];
+    const std::uint64_t level = std::uint64_t{1} << Block::levelOf(cell);
+    if (Block::withoutLevel(cell) == current) {
+      levels |= level;
+      if (height < low) {
+        low = height;
+        low_rho = block_.rho[i];
+      }
+      continue;
     }
-    sector.add(Block::binOf(block_.cell[i]), block_.rho[i], block_.height[i]);
+    if (current != Block::kNoCell) insert(current, low_rho, low, levels);
+    current = Block::withoutLevel(cell);
+    low = height;
+    low_rho = block_.rho[i];
+    levels = level;
   }
+  if (current != Block::kNoCell) insert(current, low_rho, low, levels);
+}
+
+void GroundFilter::State::insert(std::int32_t cell, float rho, float height, std::uint64_t levels) {
+  constexpr std::uint64_t kFresh = 16;  // blocks after which a sector shows the rotation before
+  const std::size_t number = Block::sectorOf(cell);
+  Sector& sector = sectors_[number];
+  if (sector.block != block_number_) {
+    if (block_number_ - sector.block > kFresh) sector.occupied = {};
+    sector.block = block_number_;
+    touched_[number / 64] |= std::uint64_t{1} << (number % 64);
+  }
+  sector.add(Block::binOf(cell), rho, height, levels);
 }
 
 void GroundFilter::State::findGround() {
@@ -163,49 +198,64 @@ void GroundFilter::State::findGround() {
   }
   if (!plane_estimator_.isKnown()) return;
   const Profile profile(plane_estimator_.plane(), max_slope_);
-  for (std::size_t s = 0; s < kSectors; ++s) {
-    if (sectors_[s].block != block_number_) continue;
-    const Sector* beside = nullptr;
-    for (const std::size_t other : {(s + 1) % kSectors, (s + kSectors - 1) % kSectors})
-      if (sectors_[other].block != 0 && block_number_ - sectors_[other].block < 8) beside = &sectors_[other];
-    profile.follow(sectors_[s], ground::directionOf(s), beside);
-  }
+  constexpr std::uint64_t kBeside = 8;  // blocks within which a sector beside was seen
+  for (std::size_t word = 0; word < touched_.size(); ++word)
+    forEachBit(touched_[word], [&](std::size_t bit) {
+      const std::size_t number = word * 64 + bit;
+      const Sector* beside = nullptr;
+      for (const std::size_t other : {(number + 1) % kSectors, (number + kSectors - 1) % kSectors})
+        if (sectors_[other].block != 0 && block_number_ - sectors_[other].block < kBeside) beside = &sectors_[other];
+      profile.follow(sectors_[number], ground::directionOf(number), beside);
+    });
 }
 
-void GroundFilter::State::classify() {
-  for (std::size_t i = 0; i < block_.size; ++i) {
-    block_.ground[i] = 0;
-    if (block_.cell[i] == Block::kNoCell || !plane_estimator_.isKnown()) continue;
-    const Cell& cell = sectors_[Block::sectorOf(block_.cell[i])].cells[Block::binOf(block_.cell[i])];
-    const float above = block_.height[i] - (cell.ground + cell.slope * (block_.rho[i] - cell.low_rho));
-    block_.ground[i] = above < cell.tolerance && above > -0.5F;
-  }
+void GroundFilter::State::classify(std::size_t count, std::uint8_t* ground, std::size_t stride) const {
+  constexpr float kMostBelow = -0.5F;  // metres
+  const bool is_known = plane_estimator_.isKnown();
+  std::int32_t current = Block::kNoCell;
+  float tolerance = 0.0F, slope = 0.0F, offset = 0.0F;
+  for (std::size_t laser = 0; laser < lasers_; ++laser)
+    for (std::size_t column = 0; column < count; ++column) {
+      const std::size_t i = laser * Block::kColumns + column;
+      std::uint8_t& decision = ground[laser * stride + column];
+      decision = 0;
+      if (block_.cell[i] == Block::kNoCell || !is_known) continue;
+      if (Block::withoutLevel(block_.cell[i]) != current) {
+        current = Block::withoutLevel(block_.cell[i]);
+        const Cell& cell = sectors_[Block::sectorOf(current)].cells[Block::binOf(current)];
+        tolerance = cell.tolerance;
+        slope = cell.slope;
+        offset = cell.ground - cell.slope * cell.low_rho;
+      }
+      const float above = block_.height[i] - slope * block_.rho[i] - offset;
+      decision = static_cast<std::uint8_t>((above < tolerance) & (above > kMostBelow));
+    }
 }
 
 GroundParameters estimateGround(std::size_t columns, std::size_t lasers, const std::array<float, 3>& declared_origin,
                                 const CellSource& cells) {
   GroundParameters parameters;
   parameters.sensor = estimateSensor(columns, lasers, declared_origin, cells);
+  Columns sampled;
+  sampled.resize(lasers, Block::kColumns);
   Block block;
   block.resize(lasers);
   PlaneEstimator estimator;
   estimator.begin(parameters, maxSlope(parameters));
   const std::size_t samples = std::min(columns, PlaneEstimator::kMemory);
-  for (std::size_t sample = 0; sample < samples; sample += Block::kColumns) {
-    const std::size_t count = std::min(Block::kColumns, samples - sample);
-    std::fill(block.z.begin(), block.z.end(), std::numeric_limits<float>::quiet_NaN());
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t column = (2 * (sample + i) + 1) * columns / (2 * samples);
-      for (std::size_t laser = 0; laser < lasers; ++laser) {
-        const Return cell = cells.at(laser, column);
-        const std::size_t to = laser * Block::kColumns + i;
-        block.x[to] = cell.x;
-        block.y[to] = cell.y;
-        block.z[to] = cell.z;
-      }
+  for (std::size_t sample = 0; sample < samples; ++sample) {
+    const std::size_t to = sample % Block::kColumns;
+    const std::size_t column = (2 * sample + 1) * columns / (2 * samples);
+    for (std::size_t laser = 0; laser < lasers; ++laser) {
+      const Return cell = cells.at(laser, column);
+      const std::size_t i = laser * Block::kColumns + to;
+      sampled.x[i] = cell.x;
+      sampled.y[i] = cell.y;
+      sampled.z[i] = cell.z;
     }
-    block.measure(parameters.sensor);
-    for (std::size_t i = 0; i < count; ++i) estimator.add(block, i);
+    if (to + 1 < Block::kColumns && sample + 1 < samples) continue;
+    block.measure(sampled, 0, parameters.sensor);
+    for (std::size_t i = 0; i <= to; ++i) estimator.add(block, i);
   }
   estimator.update();
   if (!estimator.isKnown()) return parameters;
@@ -238,14 +288,7 @@ void GroundFilter::decideRest(const GroundVisitor& visit) {
 void GroundFilter::filterAll(const GroundParameters& parameters, std::size_t columns, std::size_t lasers,
                              const CellSource& cells, std::uint8_t* ground) {
   state_->begin(parameters, lasers);
-  for (std::size_t first = 0; first < columns; first += Block::kColumns) {
-    const std::size_t count = std::min(Block::kColumns, columns - first);
-    state_->addColumns(first, count, cells);
-    state_->decide();
-    for (std::size_t laser = 0; laser < lasers; ++laser)
-      std::copy_n(state_->ground() + laser * Block::kColumns, count, ground + laser * columns + first);
-  }
-  state_->clear();
+  state_->addAll(columns, cells, ground);
 }
 
 }  // namespace lisco

@@ -2,43 +2,94 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "core/ground/block.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
 #include "core/ground/polar_grid.h"
 #include "core/pi.h"
 
-namespace lisco::ground {
-namespace {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/ground/block.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
 
-/// Beyond, coordinates are no measurements.
-constexpr float kMaxCoordinate = 1e6F;
+HWY_BEFORE_NAMESPACE();
+namespace lisco {
+namespace HWY_NAMESPACE {
 
-/// Of an azimuth, 0 to 8 for a turn, within 0.005 of proportional to the angle.
-inline float octants(float x, float y) {
-  const float ax = std::fabs(x);
-  const float ay = std::fabs(y);
-  const float most = ax > ay ? ax : ay;
-  const float least = ax > ay ? ay : ax;
-  const float ratio = least / (most + 1e-30F);
-  float angle = ratio * (1.2732F - 0.2732F * ratio);
-  angle = ay > ax ? 2.0F - angle : angle;
-  angle = x < 0.0F ? 4.0F - angle : angle;
-  return y < 0.0F ? 8.0F - angle : angle;
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// A laser's cells of a block, or a part of them.
+using RowFloats = hn::CappedTag<float, ground::Block::kColumns>;
+using RowInts = hn::RebindToSigned<RowFloats>;
+constexpr RowFloats kRow{};
+constexpr RowInts kRowInts{};
+
+void measureRows(ground::Block& block, const ground::Columns& columns, std::size_t first, const SensorHints& sensor) {
+  constexpr float kMaxCoordinate = 1e6F;  // metres; beyond, coordinates are no measurements
+  constexpr float kSectorsPerOctant = static_cast<float>(ground::kSectors) / 8.0F;
+  constexpr std::int32_t kFirstBin = (127 - 2) << 3;  // 0.25 m2
+  constexpr auto kLastBin = static_cast<std::int32_t>(ground::kBins) - 1;
+  const auto set = [](float value) { return hn::Set(kRow, value); };
+  const auto setInt = [](std::int32_t value) { return hn::Set(kRowInts, value); };
+  const auto zero = hn::Zero(kRow);
+  const auto most = set(kMaxCoordinate);
+  const std::size_t rows = block.size / ground::Block::kColumns;
+  for (std::size_t row = 0; row < rows; ++row)
+    for (std::size_t k = 0; k < ground::Block::kColumns; k += hn::Lanes(kRow)) {
+      const std::size_t from = row * columns.stride + first + k;
+      const std::size_t to = row * ground::Block::kColumns + k;
+      const auto x_read = hn::LoadU(kRow, columns.x.data() + from);
+      const auto y_read = hn::LoadU(kRow, columns.y.data() + from);
+      const auto z_read = hn::LoadU(kRow, columns.z.data() + from);
+      auto x = hn::Sub(x_read, set(sensor.origin[0]));
+      auto y = hn::Sub(y_read, set(sensor.origin[1]));
+      auto z = hn::Sub(z_read, set(sensor.origin[2]));
+      const auto finite =
+          hn::And(hn::Lt(hn::Abs(x), most), hn::And(hn::Lt(hn::Abs(y), most), hn::Lt(hn::Abs(z), most)));
+      const auto none = hn::And(hn::Eq(x_read, zero), hn::And(hn::Eq(y_read, zero), hn::Eq(z_read, zero)));
+      const auto valid = hn::AndNot(none, finite);
+      x = hn::IfThenElseZero(valid, x);
+      y = hn::IfThenElseZero(valid, y);
+      z = hn::IfThenElseZero(valid, z);
+      const auto squared = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
+      hn::StoreU(hn::Sqrt(squared), kRow, block.rho.data() + to);
+      const auto horizon = hn::Add(hn::Mul(set(sensor.tilt[0]), x), hn::Mul(set(sensor.tilt[1]), y));
+      const auto height = hn::Sub(z, horizon);
+      hn::StoreU(height, kRow, block.height.data() + to);
+
+      // Eighths of an octave of the squared distance: the exponent and three bits of the mantissa.
+      auto bin = hn::Sub(hn::ShiftRight<20>(hn::BitCast(kRowInts, squared)), setInt(kFirstBin));
+      bin = hn::Min(hn::Max(bin, hn::Zero(kRowInts)), setInt(kLastBin));
+      // The azimuth in octants, within 0.005 of proportional to the angle.
+      const auto east = hn::Abs(x);
+      const auto north = hn::Abs(y);
+      const auto ratio = hn::Div(hn::Min(east, north), hn::Add(hn::Max(east, north), set(1e-30F)));
+      auto azimuth = hn::Mul(ratio, hn::Sub(set(1.2732F), hn::Mul(set(0.2732F), ratio)));
+      azimuth = hn::IfThenElse(hn::Gt(north, east), hn::Sub(set(2.0F), azimuth), azimuth);
+      azimuth = hn::IfThenElse(hn::Lt(x, zero), hn::Sub(set(4.0F), azimuth), azimuth);
+      azimuth = hn::IfThenElse(hn::Lt(y, zero), hn::Sub(set(8.0F), azimuth), azimuth);
+      auto sector = hn::ConvertTo(kRowInts, hn::Mul(azimuth, set(kSectorsPerOctant)));
+      sector = hn::And(sector, setInt(static_cast<std::int32_t>(ground::kSectors) - 1));
+      auto level = hn::ConvertTo(kRowInts, hn::Floor(hn::Mul(height, set(ground::kLevelsPerMetre))));
+      level = hn::And(level, setInt(63));
+      const auto cell = hn::Or(hn::ShiftLeft<16>(level), hn::Or(hn::ShiftLeft<8>(sector), bin));
+      const auto is_valid = hn::RebindMask(kRowInts, valid);
+      hn::StoreU(hn::IfThenElse(is_valid, cell, setInt(ground::Block::kNoCell)), kRowInts, block.cell.data() + to);
+    }
 }
 
-/// Octaves of the squared distance, divided into eight: the exponent and three bits of the mantissa.
-inline std::int32_t logBinOf(float squared) {
-  constexpr std::int32_t kFirst = (127 - 2) << 3;  // 0.25 m2
-  std::int32_t bits;
-  std::memcpy(&bits, &squared, sizeof bits);
-  const std::int32_t bin = (bits >> 20) - kFirst;
-  const std::int32_t most = static_cast<std::int32_t>(kBins) - 1;
-  return bin < 0 ? 0 : bin > most ? most : bin;
-}
+}  // namespace HWY_NAMESPACE
+}  // namespace lisco
+HWY_AFTER_NAMESPACE();
 
-}  // namespace
+#if HWY_ONCE
+namespace lisco {
+
+HWY_EXPORT(measureRows);
+
+namespace ground {
 
 Direction directionOf(std::size_t sector) {
   static const auto directions = [] {
@@ -52,41 +103,28 @@ Direction directionOf(std::size_t sector) {
   return directions[sector];
 }
 
+void Columns::resize(std::size_t lasers, std::size_t columns) {
+  stride = columns;
+  for (auto* values : {&x, &y, &z}) values->resize(std::max(values->size(), lasers * columns));
+}
+
+void Columns::clear(std::size_t column, std::size_t lasers) {
+  for (std::size_t laser = 0; laser < lasers; ++laser)
+    for (auto* values : {&x, &y, &z}) (*values)[laser * stride + column] = 0.0F;
+}
+
 void Block::resize(std::size_t lasers) {
   size = lasers * kColumns;
-  if (x.size() >= size) return;
-  for (auto* values : {&x, &y, &z, &rho, &height}) values->resize(size);
+  if (cell.size() >= size) return;
+  rho.resize(size);
+  height.resize(size);
   cell.resize(size);
-  ground.resize(size);
 }
 
-void Block::measure(const SensorHints& sensor) {
-  const float ox = sensor.origin[0], oy = sensor.origin[1], oz = sensor.origin[2];
-  const float tilt_x = sensor.tilt[0], tilt_y = sensor.tilt[1];
-  constexpr float kScale = static_cast<float>(kSectors) / 8.0F;
-  constexpr std::int32_t kMask = static_cast<std::int32_t>(kSectors) - 1;
-  const float* const px = x.data();
-  const float* const py = y.data();
-  const float* const pz = z.data();
-  float* const to_rho = rho.data();
-  float* const to_height = height.data();
-  std::int32_t* const to_cell = cell.data();
-  for (std::size_t i = 0; i < size; ++i) {
-    const float dx = px[i] - ox;
-    const float dy = py[i] - oy;
-    const float dz = pz[i] - oz;
-    // NaN fails all comparisons; (0, 0, 0) is no return.
-    const bool zero = (px[i] == 0.0F) & (py[i] == 0.0F) & (pz[i] == 0.0F);
-    const bool valid =
-        (std::fabs(dx) < kMaxCoordinate) & (std::fabs(dy) < kMaxCoordinate) & (std::fabs(dz) < kMaxCoordinate) & !zero;
-    const float x_valid = valid ? dx : 0.0F;
-    const float y_valid = valid ? dy : 0.0F;
-    const float squared = x_valid * x_valid + y_valid * y_valid;
-    const std::int32_t sector = static_cast<std::int32_t>(octants(x_valid, y_valid) * kScale) & kMask;
-    to_rho[i] = std::sqrt(squared);
-    to_height[i] = dz - tilt_x * x_valid - tilt_y * y_valid;
-    to_cell[i] = valid ? sector << 8 | logBinOf(squared) : kNoCell;
-  }
+void Block::measure(const Columns& columns, std::size_t first, const SensorHints& sensor) {
+  HWY_DYNAMIC_DISPATCH(measureRows)(*this, columns, first, sensor);
 }
 
-}  // namespace lisco::ground
+}  // namespace ground
+}  // namespace lisco
+#endif

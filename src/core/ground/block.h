@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -11,27 +10,38 @@
 
 namespace lisco::ground {
 
-/// Columns whose decisions are made together, laser by laser: cell (laser, column) is element laser * kColumns +
-/// column.
+/// Returns as received, laser by laser: cell (laser, column) is element laser * stride + column.
+struct Columns {
+  std::vector<float> x, y, z;  ///< metres
+  std::size_t stride = 0;
+
+  /// Allocates only if there are more cells than ever before.
+  void resize(std::size_t lasers, std::size_t columns);
+  /// Makes the cells of a column no returns.
+  void clear(std::size_t column, std::size_t lasers);
+};
+
+/// Columns whose decisions are made together, measured in the sensor's frame: cell (laser, column) is element
+/// laser * kColumns + column.
 struct Block {
   static constexpr std::size_t kColumns = 8;
   static constexpr std::int32_t kNoCell = -1;
 
-  std::vector<float> x, y, z;        ///< as received, metres
-  std::vector<float> rho;            ///< horizontal distance from the sensor, metres
-  std::vector<float> height;         ///< above the sensor's horizon, metres
-  std::vector<std::int32_t> cell;    ///< of the polar grid, see sectorOf and binOf; kNoCell if there is no return
-  std::vector<std::uint8_t> ground;  ///< the decisions
-  std::size_t size = 0;              ///< number of elements
+  std::vector<float> rho;          ///< horizontal distance from the sensor, metres
+  std::vector<float> height;       ///< above the sensor's horizon, metres
+  std::vector<std::int32_t> cell;  ///< where in the polar grid, see sectorOf and so on; kNoCell if there is no return
+  std::size_t size = 0;            ///< number of elements
 
-  static std::size_t sectorOf(std::int32_t cell) { return static_cast<std::size_t>(cell) >> 8; }
+  static std::size_t sectorOf(std::int32_t cell) { return static_cast<std::size_t>(cell) >> 8 & 255; }
   static std::size_t binOf(std::int32_t cell) { return static_cast<std::size_t>(cell) & 255; }
+  static unsigned levelOf(std::int32_t cell) { return static_cast<unsigned>(cell) >> 16; }
+  static std::int32_t withoutLevel(std::int32_t cell) { return cell & 0xFFFF; }
 
   /// Allocates only if there are more lasers than ever before.
   void resize(std::size_t lasers);
 
-  /// Fills rho, height and cell.
-  void measure(const SensorHints& sensor);
+  /// Measures kColumns columns from the first one on.
+  void measure(const Columns& columns, std::size_t first, const SensorHints& sensor);
 };
 
 }  // namespace lisco::ground

@@ -27,9 +27,11 @@ struct Cell {
   std::int8_t confidence;
 };
 
-/// Number of the level of a height, modulo 64; levels are 0.25 m high.
+inline constexpr float kLevelsPerMetre = 4.0F;  ///< of height
+
+/// Number of the level of a height, modulo 64.
 inline unsigned levelOf(float height) {
-  return static_cast<unsigned>(static_cast<std::int32_t>(std::floor(height * 4.0F)) & 63);
+  return static_cast<unsigned>(static_cast<std::int32_t>(std::floor(height * kLevelsPerMetre)) & 63);
 }
 
 /// The cells of one azimuth, from the sensor outwards.
@@ -40,20 +42,16 @@ struct Sector {
 
   bool has(std::size_t bin) const { return (occupied[bin / 64] >> (bin % 64) & 1) != 0; }
 
-  void add(std::size_t bin, float rho, float height) {
+  /// \param levels of the returns, the lowest of which has this distance and height
+  void add(std::size_t bin, float rho, float height, std::uint64_t levels) {
     std::uint64_t& word = occupied[bin / 64];
     const std::uint64_t bit = std::uint64_t{1} << (bin % 64);
     Cell& cell = cells[bin];
-    const std::uint64_t level = std::uint64_t{1} << levelOf(height);
-    if ((word & bit) == 0) {
-      word |= bit;
-      cell.levels = level;
-      cell.low = height;
-      cell.low_rho = rho;
-      return;
-    }
-    cell.levels |= level;
-    if (height < cell.low) {
+    const bool is_new = (word & bit) == 0;
+    word |= bit;
+    cell.levels = is_new ? levels : cell.levels | levels;
+    if (is_new) cell.confidence = 0;  // until the sector is followed
+    if (is_new || height < cell.low) {
       cell.low = height;
       cell.low_rho = rho;
     }

@@ -29,13 +29,27 @@ struct Outwards {
     }
   }
 
-  /// The first bare cell clearly beyond one; nullptr if there is none.
-  const Cell* beyond(std::size_t i) const {
+  /// The first bare cell clearly beyond one; `size` if there is none nearby.
+  std::size_t beyond(std::size_t i) const {
     const float rho = 1.12F * cells[i]->low_rho + 0.2F;
     constexpr std::size_t kMost = 6;
     for (std::size_t j = i + 1; j < size && j < i + kMost; ++j)
-      if (bare[j] && cells[j]->low_rho >= rho) return cells[j];
-    return nullptr;
+      if (bare[j] && cells[j]->low_rho >= rho) return j;
+    return size;
+  }
+
+  float slope(std::size_t i, std::size_t j) const {
+    return (cells[j]->low - cells[i]->low) / (cells[j]->low_rho - cells[i]->low_rho);
+  }
+
+  /// Whether a cell and two beyond it lie on a line about as steep as given.
+  bool isOnLine(std::size_t i, float expected_slope) const {
+    const std::size_t j = beyond(i);
+    if (j >= size) return false;
+    const std::size_t k = beyond(j);
+    if (k >= size) return false;
+    const float slope_here = slope(i, j);
+    return std::fabs(slope_here - expected_slope) < 0.15F && std::fabs(slope(j, k) - slope_here) < 0.08F;
   }
 };
 
@@ -79,19 +93,22 @@ void Profile::follow(Sector& sector, const Direction& direction, const Sector* b
     const float rise = cell.low - reached.back_ground;
     bool found;
     if (first)
-      found = std::fabs(above) < (bare ? 0.1F + 0.04F * distance : 0.1F + 0.03F * distance);
+      found =
+          std::fabs(above) < (bare ? 0.1F + 0.04F * distance : 0.1F + 0.03F * distance) ||
+          (bare && std::fabs(above) < 0.12F + 0.09F * std::min(distance, 8.0F) && outwards.isOnLine(i, first_slope));
     else if (bare)
       found = above < 0.12F + std::min(max_slope_ * distance, 0.12F + 0.015F * distance) &&
               above > -0.2F - std::min(max_slope_ * distance, 0.3F) && rise < 0.15F + max_slope_ * from_back;
     else
-      found = above < 0.1F + std::min(0.15F * distance, 0.06F) && above > -0.2F - std::min(max_slope_ * distance, 0.3F) &&
-              rise < 0.12F + max_slope_ * from_back;
+      found = above < 0.1F + std::min(0.15F * distance, 0.06F) &&
+              above > -0.2F - std::min(max_slope_ * distance, 0.3F) && rise < 0.12F + max_slope_ * from_back;
     if (!found && !first && bare && std::fabs(cell.low - reached.ground) < 0.1F + max_slope_ * distance) {
       // A change of slope, if the next cell continues it.
-      if (const Cell* const next = outwards.beyond(i)) {
+      const std::size_t next = outwards.beyond(i);
+      if (next < outwards.size) {
         const float here = (cell.low - reached.ground) / std::max(distance, 0.5F);
-        const float step = next->low_rho - cell.low_rho;
-        const float further = (next->low - cell.low) / step;
+        const float step = outwards.cells[next]->low_rho - cell.low_rho;
+        const float further = outwards.slope(i, next);
         found = std::fabs(further) < max_slope_ && std::fabs(further - here) < 0.07F + 0.03F / step;
       }
     }

@@ -39,7 +39,8 @@ void PlaneEstimator::add(const Block& block, std::size_t column) {
   Direction sum{0.0F, 0.0F};
   for (std::size_t i = column; i < block.size; i += Block::kColumns)
     if (block.cell[i] != Block::kNoCell && block.rho[i] < kNear) {
-      sector.add(Block::binOf(block.cell[i]), block.rho[i], block.height[i]);
+      sector.add(Block::binOf(block.cell[i]), block.rho[i], block.height[i],
+                 std::uint64_t{1} << Block::levelOf(block.cell[i]));
       const Direction direction = directionOf(Block::sectorOf(block.cell[i]));
       sum.x += direction.x;
       sum.y += direction.y;
