@@ -236,6 +236,11 @@ GroundParameters estimateGround(std::size_t columns, std::size_t lasers, const s
                                 const CellSource& cells) {
   GroundParameters parameters;
   parameters.sensor = estimateSensor(columns, lasers, declared_origin, cells);
+  return estimateGround(columns, lasers, parameters, cells);
+}
+
+GroundParameters estimateGround(std::size_t columns, std::size_t lasers, GroundParameters parameters,
+                                const CellSource& cells) {
   Columns sampled;
   sampled.resize(lasers, Block::kColumns);
   Block block;
@@ -259,7 +264,7 @@ GroundParameters estimateGround(std::size_t columns, std::size_t lasers, const s
   }
   estimator.update();
   if (!estimator.isKnown()) return parameters;
-  parameters.sensor_height = -estimator.plane().height;
+  if (std::isnan(parameters.sensor_height)) parameters.sensor_height = -estimator.plane().height;
   parameters.slope = {estimator.plane().slope_x + parameters.sensor.tilt[0],
                       estimator.plane().slope_y + parameters.sensor.tilt[1]};
   return parameters;

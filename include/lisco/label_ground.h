@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include "lisco/cxx17.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "lisco/export.h"
+
+namespace lisco {
+
+/// How points are labelled as ground.
+struct LabelGroundParameters {
+  /// Of the sensor above the ground beneath it, metres; NaN: estimated.
+  float sensor_height = std::numeric_limits<float>::quiet_NaN();
+  float max_slope = 20.0F;        ///< steepest ground, degrees, 1 to 60
+  std::size_t lasers = 1;         ///< rows of an organized cloud, stored row by row; 1: unorganized
+  std::array<float, 3> origin{};  ///< position of the sensor, metres, if not (0, 0, 0)
+};
+
+/// Labels the points of a scan that lie on the ground, by GroundFilter. The columns of a rotating sensor's organized
+/// scan are filtered as they are. The points of other clouds, in any order, are sorted into columns of equal azimuth as
+/// seen from the origin first.
+/// \param points the first point: x, y and z as floats, metres; NaN, infinite or all 0 where there is no return
+/// \param count number of points, below 2^31
+/// \param stride bytes from one point to the next, at least 12; points need not be aligned
+/// \param ground receives `count` bytes: 1 on the ground, else 0
+/// \throws std::invalid_argument if the stride is below 12, count is 2^31 or more, lasers do not divide count, a
+///         pointer is null while count is not 0, or a parameter is as GroundFilter::begin rejects it
+LISCO_EXPORT void labelGround(const void* points, std::size_t count, std::size_t stride,
+                              const LabelGroundParameters& parameters, std::uint8_t* ground);
+
+}  // namespace lisco

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include "lisco/cxx17.h"
+
+#include <limits>
+
+#include <pcl/filters/filter_indices.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include "lisco/export.h"
+
+namespace pcl {
+
+/** \brief Removes the ground from a rotating LiDAR's scan.
+ *
+ * \code
+ * pcl::LiscoGroundFilter<pcl::PointXYZI> filter;
+ * filter.setInputCloud (cloud);
+ * filter.filter (*objects);                         // all but the ground
+ * filter.setNegative (true);
+ * filter.filter (*ground);                          // the ground
+ * \endcode
+ *
+ * As in pcl::PassThrough, points that are no measurements (a NaN or infinite coordinate, or exactly (0, 0, 0)) are
+ * always removed. setIndices (), getRemovedIndices (), setKeepOrganized () and setUserFilterValue () act as in all
+ * filters; only the indexed points are looked at. Indices stay in the order given.
+ *
+ * The cloud's z axis points up, to within about 10 degrees. Organized scans (height = lasers, width = steps of the
+ * rotation) are filtered column by column, as lisco::GroundFilter does it; the sensor's position and tilt are estimated.
+ * Unorganized clouds, in any order, are sorted by azimuth about sensor_origin_ first. \ingroup filters
+ */
+template <typename PointT>
+class LiscoGroundFilter : public FilterIndices<PointT> {
+ public:
+  using PointCloud = typename FilterIndices<PointT>::PointCloud;  ///< as in all filters
+  using Ptr = shared_ptr<LiscoGroundFilter<PointT>>;              ///< the same
+  using ConstPtr = shared_ptr<const LiscoGroundFilter<PointT>>;   ///< the same
+
+  /** \brief Constructor.
+   * \param[in] extract_removed_indices whether getRemovedIndices () is to be filled
+   */
+  explicit LiscoGroundFilter(bool extract_removed_indices = false) : FilterIndices<PointT>(extract_removed_indices) {
+    this->filter_name_ = "LiscoGroundFilter";
+  }
+
+  /** \brief Set the height of the sensor above the ground beneath it.
+   * \param[in] height metres; NaN (the default): estimated from the cloud
+   */
+  inline void setSensorHeight(float height) { sensor_height_ = height; }
+  /** \brief Get the height of the sensor in metres, as it was set. */
+  inline float getSensorHeight() const { return (sensor_height_); }
+
+  /** \brief Set the steepest ground.
+   * \param[in] degrees against the x-y plane of the cloud, 1 to 60 (default 20)
+   */
+  inline void setMaxSlope(float degrees) { max_slope_ = degrees; }
+  /** \brief Get the steepest ground in degrees. */
+  inline float getMaxSlope() const { return (max_slope_); }
+
+ protected:
+  /** \brief Filter, by indices. With an infinite sensor height or a slope out of range: a PCL_ERROR, and no indices.
+   * \param[out] indices the points that remain, in the order of the input's indices
+   */
+  void applyFilter(Indices& indices) override;
+  using FilterIndices<PointT>::applyFilter;
+
+ private:
+  float sensor_height_ = std::numeric_limits<float>::quiet_NaN();  // metres
+  float max_slope_ = 20.0F;                                        // degrees
+};
+
+}  // namespace pcl
+
+#ifdef PCL_NO_PRECOMPILE
+#include <pcl/filters/impl/lisco_ground_filter.hpp>
+#endif

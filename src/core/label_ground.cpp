@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "lisco/label_ground.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <vector>
+
+#include "core/pi.h"
+#include "lisco/ground_filter.h"
+
+namespace lisco {
+namespace {
+
+void check(const void* points, std::size_t count, std::size_t stride, const LabelGroundParameters& parameters,
+           const std::uint8_t* ground) {
+  if (stride < 3 * sizeof(float))
+    throw std::invalid_argument("lisco::labelGround: the stride must be 12 bytes or more");
+  if (count >= std::size_t{1} << 31)
+    throw std::invalid_argument("lisco::labelGround: the number of points must be below 2^31");
+  if (parameters.lasers == 0 || count % parameters.lasers != 0)
+    throw std::invalid_argument("lisco::labelGround: the number of points must be a multiple of the lasers");
+  if (count > 0 && (points == nullptr || ground == nullptr))
+    throw std::invalid_argument("lisco::labelGround: points and ground must not be null");
+}
+
+/// The returns among points, sorted into columns of the same azimuth and of limited length.
+class AzimuthColumns {
+ public:
+  template <typename PointAt>
+  AzimuthColumns(std::size_t count, const std::array<float, 3>& origin, const PointAt& point_at) {
+    constexpr std::size_t kBins = 2048;  // of azimuth
+    std::vector<std::uint16_t> bin_of(count);
+    std::vector<std::uint32_t> ends(kBins + 1, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Return point = point_at(i);
+      if (!isReturn(point.x, point.y, point.z)) {
+        bin_of[i] = kBins;
+        continue;
+      }
+      const double azimuth = std::atan2(static_cast<double>(point.y) - static_cast<double>(origin[1]),
+                                        static_cast<double>(point.x) - static_cast<double>(origin[0]));
+      const double part = (azimuth + kPi) / (2.0 * kPi) * static_cast<double>(kBins);
+      bin_of[i] = static_cast<std::uint16_t>(std::clamp(part, 0.0, static_cast<double>(kBins - 1)));
+      ++ends[bin_of[i] + 1U];
+    }
+    for (std::size_t bin = 0; bin < kBins; ++bin) ends[bin + 1] += ends[bin];
+    const std::size_t returns = ends[kBins];
+    // Columns are about as long as bins are on average, so that few cells stay empty.
+    rows_ = std::max<std::size_t>(16, 3 * returns / (2 * kBins) + 1);
+    points_.resize(returns);
+    std::vector<std::uint32_t> next(ends.begin(), ends.end() - 1);
+    for (std::size_t i = 0; i < count; ++i)
+      if (bin_of[i] < kBins) points_[next[bin_of[i]]++] = static_cast<std::uint32_t>(i);
+    for (std::size_t bin = 0; bin < kBins; ++bin)
+      for (std::size_t begin = ends[bin]; begin < ends[bin + 1]; begin += rows_)
+        columns_.push_back({begin, std::min<std::size_t>(begin + rows_, ends[bin + 1])});
+  }
+
+  std::size_t rows() const { return rows_; }
+  std::size_t columns() const { return columns_.size(); }
+
+  static constexpr std::size_t kNone = ~std::size_t{0};
+  /// The number of the point in a cell, or kNone.
+  std::size_t pointAt(std::size_t row, std::size_t column) const {
+    const std::size_t i = columns_[column].begin + row;
+    return i < columns_[column].end ? points_[i] : kNone;
+  }
+
+ private:
+  struct Range {
+    std::size_t begin, end;
+  };
+  std::size_t rows_ = 0;
+  std::vector<std::uint32_t> points_;  // column by column
+  std::vector<Range> columns_;
+};
+
+}  // namespace
+
+void labelGround(const void* points, std::size_t count, std::size_t stride, const LabelGroundParameters& parameters,
+                 std::uint8_t* ground) {
+  check(points, count, stride, parameters, ground);
+  const auto* const bytes = static_cast<const unsigned char*>(points);
+  const auto point_at = [=](std::size_t point) {
+    float xyz[3];
+    std::memcpy(xyz, bytes + point * stride, sizeof xyz);
+    return Return{xyz[0], xyz[1], xyz[2], static_cast<std::uint32_t>(point)};
+  };
+  // Also rejects parameters without points.
+  GroundParameters filter_parameters;
+  filter_parameters.sensor_height = parameters.sensor_height;
+  filter_parameters.max_slope = parameters.max_slope;
+  GroundFilter filter;
+  filter.begin(filter_parameters, 0);
+  if (count == 0) return;
+  const auto run = [&](std::size_t columns, std::size_t lasers, const SensorHints& sensor, const auto& cell_at,
+                       std::uint8_t* decisions) {
+    filter_parameters.sensor = sensor;
+    filter.filter(estimateGround(columns, lasers, filter_parameters, CellSource(cell_at)), columns, lasers, cell_at,
+                  decisions);
+  };
+
+  const std::size_t width = count / parameters.lasers;
+  const auto cell_at = [=](std::size_t laser, std::size_t column) { return point_at(laser * width + column); };
+  SensorHints sensor;
+  if (parameters.lasers > 1) sensor = estimateSensor(width, parameters.lasers, parameters.origin, CellSource(cell_at));
+  if (sensor.steps_per_turn != 0) {
+    run(width, parameters.lasers, sensor, cell_at, ground);
+    return;
+  }
+  std::fill_n(ground, count, std::uint8_t{0});
+  const AzimuthColumns sorted(count, parameters.origin, point_at);
+  const auto sorted_cell_at = [&](std::size_t row, std::size_t column) {
+    const std::size_t point = sorted.pointAt(row, column);
+    return point == AzimuthColumns::kNone ? kNoReturn : point_at(point);
+  };
+  sensor = SensorHints();
+  sensor.origin = parameters.origin;
+  std::vector<std::uint8_t> decisions(sorted.rows() * sorted.columns());
+  run(sorted.columns(), sorted.rows(), sensor, sorted_cell_at, decisions.data());
+  for (std::size_t row = 0; row < sorted.rows(); ++row)
+    for (std::size_t column = 0; column < sorted.columns(); ++column)
+      if (const std::size_t point = sorted.pointAt(row, column); point != AzimuthColumns::kNone)
+        ground[point] = decisions[row * sorted.columns() + column];
+}
+
+}  // namespace lisco
