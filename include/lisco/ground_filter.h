@@ -37,8 +37,8 @@ LISCO_EXPORT GroundParameters estimateGround(std::size_t columns, std::size_t la
 
 /// The same for a known sensor.
 /// \param parameters those returned, but for the slope, and for the height if it is NaN
-LISCO_EXPORT GroundParameters estimateGround(std::size_t columns, std::size_t lasers, GroundParameters parameters,
-                                             const CellSource& cells);
+LISCO_EXPORT GroundParameters estimateGroundPlane(std::size_t columns, std::size_t lasers, GroundParameters parameters,
+                                                  const CellSource& cells);
 
 /// Receives the decisions on whole columns. Refers to the callable that it is made of.
 class GroundVisitor {

@@ -47,7 +47,6 @@ class GroundFilter::State {
   void decideWaiting(const GroundVisitor& visit);
   void decide(std::size_t first, std::size_t count, std::uint8_t* ground, std::size_t stride);
   void insert();
-  void insert(std::int32_t cell, float rho, float height, std::uint64_t levels);
   void findGround();
   void classify(std::size_t count, std::uint8_t* ground, std::size_t stride) const;
 
@@ -79,9 +78,9 @@ void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t 
   received_.resize(lasers, Block::kColumns);
   waiting_ground_.resize(std::max(waiting_ground_.size(), lasers * Block::kColumns));
   column_ground_.resize(std::max(column_ground_.size(), lasers));
-  sectors_.resize(kSectors);
+  sectors_.resize(kSectors + 1);  // one for cells without a return
   for (Sector& sector : sectors_) {
-    sector.occupied = {};
+    sector.clear();
     sector.block = 0;
   }
   waiting_ = decided_ = 0;
@@ -149,44 +148,21 @@ void GroundFilter::State::decide(std::size_t first, std::size_t count, std::uint
   classify(count, ground, stride);
 }
 
-/// Adds the block's returns to the grid, those that follow each other in one of its cells together.
+/// Adds the block's returns to the grid; cells without one go to a sector that is not followed.
 void GroundFilter::State::insert() {
+  constexpr std::uint64_t kFresh = 16;  // blocks after which a sector shows the rotation before
   touched_ = {};
-  std::int32_t current = Block::kNoCell;
-  float low = 0.0F, low_rho = 0.0F;
-  std::uint64_t levels = 0;
   for (std::size_t i = 0; i < block_.size; ++i) {
     const std::int32_t cell = block_.cell[i];
-    if (cell == Block::kNoCell) continue;
-    const float height = block_.height[i];
-    const std::uint64_t level = std::uint64_t{1} << Block::levelOf(cell);
-    if (Block::withoutLevel(cell) == current) {
-      levels |= level;
-      if (height < low) {
-        low = height;
-        low_rho = block_.rho[i];
-      }
-      continue;
+    const std::size_t number = Block::sectorOf(cell);
+    Sector& sector = sectors_[number];
+    if (sector.block != block_number_) {
+      if (block_number_ - sector.block > kFresh) sector.clear();
+      sector.block = block_number_;
+      if (number < kSectors) touched_[number / 64] |= std::uint64_t{1} << (number % 64);
     }
-    if (current != Block::kNoCell) insert(current, low_rho, low, levels);
-    current = Block::withoutLevel(cell);
-    low = height;
-    low_rho = block_.rho[i];
-    levels = level;
+    sector.add(Block::binOf(cell), block_.rho[i], block_.height[i], Block::levelOf(cell));
   }
-  if (current != Block::kNoCell) insert(current, low_rho, low, levels);
-}
-
-void GroundFilter::State::insert(std::int32_t cell, float rho, float height, std::uint64_t levels) {
-  constexpr std::uint64_t kFresh = 16;  // blocks after which a sector shows the rotation before
-  const std::size_t number = Block::sectorOf(cell);
-  Sector& sector = sectors_[number];
-  if (sector.block != block_number_) {
-    if (block_number_ - sector.block > kFresh) sector.occupied = {};
-    sector.block = block_number_;
-    touched_[number / 64] |= std::uint64_t{1} << (number % 64);
-  }
-  sector.add(Block::binOf(cell), rho, height, levels);
 }
 
 void GroundFilter::State::findGround() {
@@ -211,24 +187,18 @@ void GroundFilter::State::findGround() {
 
 void GroundFilter::State::classify(std::size_t count, std::uint8_t* ground, std::size_t stride) const {
   constexpr float kMostBelow = -0.5F;  // metres
-  const bool is_known = plane_estimator_.isKnown();
-  std::int32_t current = Block::kNoCell;
-  float tolerance = 0.0F, slope = 0.0F, offset = 0.0F;
+  if (!plane_estimator_.isKnown()) {
+    for (std::size_t laser = 0; laser < lasers_; ++laser) std::fill_n(ground + laser * stride, count, std::uint8_t{0});
+    return;
+  }
   for (std::size_t laser = 0; laser < lasers_; ++laser)
     for (std::size_t column = 0; column < count; ++column) {
       const std::size_t i = laser * Block::kColumns + column;
-      std::uint8_t& decision = ground[laser * stride + column];
-      decision = 0;
-      if (block_.cell[i] == Block::kNoCell || !is_known) continue;
-      if (Block::withoutLevel(block_.cell[i]) != current) {
-        current = Block::withoutLevel(block_.cell[i]);
-        const Cell& cell = sectors_[Block::sectorOf(current)].cells[Block::binOf(current)];
-        tolerance = cell.tolerance;
-        slope = cell.slope;
-        offset = cell.ground - cell.slope * cell.low_rho;
-      }
-      const float above = block_.height[i] - slope * block_.rho[i] - offset;
-      decision = static_cast<std::uint8_t>((above < tolerance) & (above > kMostBelow));
+      const Cell& cell = sectors_[Block::sectorOf(block_.cell[i])].cells[Block::binOf(block_.cell[i])];
+      const float above = block_.height[i] - cell.slope * block_.rho[i] - cell.offset;
+      const bool is_return = block_.cell[i] != Block::kNoCell;
+      ground[laser * stride + column] =
+          static_cast<std::uint8_t>((above < cell.tolerance) & (above > kMostBelow) & is_return);
     }
 }
 
@@ -236,11 +206,11 @@ GroundParameters estimateGround(std::size_t columns, std::size_t lasers, const s
                                 const CellSource& cells) {
   GroundParameters parameters;
   parameters.sensor = estimateSensor(columns, lasers, declared_origin, cells);
-  return estimateGround(columns, lasers, parameters, cells);
+  return estimateGroundPlane(columns, lasers, parameters, cells);
 }
 
-GroundParameters estimateGround(std::size_t columns, std::size_t lasers, GroundParameters parameters,
-                                const CellSource& cells) {
+GroundParameters estimateGroundPlane(std::size_t columns, std::size_t lasers, GroundParameters parameters,
+                                     const CellSource& cells) {
   Columns sampled;
   sampled.resize(lasers, Block::kColumns);
   Block block;

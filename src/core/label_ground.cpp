@@ -99,8 +99,8 @@ void labelGround(const void* points, std::size_t count, std::size_t stride, cons
   const auto run = [&](std::size_t columns, std::size_t lasers, const SensorHints& sensor, const auto& cell_at,
                        std::uint8_t* decisions) {
     filter_parameters.sensor = sensor;
-    filter.filter(estimateGround(columns, lasers, filter_parameters, CellSource(cell_at)), columns, lasers, cell_at,
-                  decisions);
+    filter.filter(estimateGroundPlane(columns, lasers, filter_parameters, CellSource(cell_at)), columns, lasers,
+                  cell_at, decisions);
   };
 
   const std::size_t width = count / parameters.lasers;

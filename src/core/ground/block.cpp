@@ -74,7 +74,7 @@ void measureRows(ground::Block& block, const ground::Columns& columns, std::size
       sector = hn::And(sector, setInt(static_cast<std::int32_t>(ground::kSectors) - 1));
       auto level = hn::ConvertTo(kRowInts, hn::Floor(hn::Mul(height, set(ground::kLevelsPerMetre))));
       level = hn::And(level, setInt(63));
-      const auto cell = hn::Or(hn::ShiftLeft<16>(level), hn::Or(hn::ShiftLeft<8>(sector), bin));
+      const auto cell = hn::Or(hn::ShiftLeft<17>(level), hn::Or(hn::ShiftLeft<8>(sector), bin));
       const auto is_valid = hn::RebindMask(kRowInts, valid);
       hn::StoreU(hn::IfThenElse(is_valid, cell, setInt(ground::Block::kNoCell)), kRowInts, block.cell.data() + to);
     }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "core/bits.h"
 
@@ -17,15 +18,39 @@ inline constexpr std::size_t kBins = 192;
 
 /// What the returns in a cell of the polar grid show. Heights are metres above the sensor's horizon.
 struct Cell {
-  float low;             ///< lowest height
-  float low_rho;         ///< its horizontal distance from the sensor, metres
-  std::uint64_t levels;  ///< occupied heights: bit i for level i modulo 64
-  float ground;          ///< height of the ground at low_rho
-  float slope;           ///< of the ground there, metres per metre outwards
-  float tolerance;       ///< returns up to this far above the ground are on it
+  /// Of the lowest return, so that a return below it has a lower number: its height (see orderedHeight) in the upper
+  /// half, its horizontal distance from the sensor in the lower half.
+  std::uint64_t lowest = ~std::uint64_t{0};
+  std::uint64_t levels = 0;  ///< occupied heights: bit i for level i modulo 64
+  float offset = 0.0F;       ///< height of the ground, extended to beneath the sensor
+  float slope = 0.0F;        ///< of the ground, metres per metre outwards
+  float tolerance = 0.0F;    ///< returns up to this far above the ground are on it
   /// 0: the lowest return is not on the ground; otherwise how many sectors may still follow this one's example
-  std::int8_t confidence;
+  std::int32_t confidence = 0;
+
+  float low() const;  ///< lowest height
+  float lowRho() const {
+    const auto bits = static_cast<std::uint32_t>(lowest);
+    float rho;
+    std::memcpy(&rho, &bits, sizeof rho);
+    return rho;
+  }
 };
+
+/// The bits of a height as an integer that grows with it.
+inline std::uint32_t orderedHeight(float height) {
+  std::uint32_t bits;
+  std::memcpy(&bits, &height, sizeof bits);
+  return bits ^ ((bits >> 31) * 0x7FFFFFFFU | 0x80000000U);
+}
+
+inline float Cell::low() const {
+  const auto ordered = static_cast<std::uint32_t>(lowest >> 32);
+  const std::uint32_t bits = ordered ^ ((~ordered >> 31) * 0x7FFFFFFFU | 0x80000000U);
+  float height;
+  std::memcpy(&height, &bits, sizeof height);
+  return height;
+}
 
 inline constexpr float kLevelsPerMetre = 4.0F;  ///< of height
 
@@ -37,25 +62,22 @@ inline unsigned levelOf(float height) {
 /// The cells of one azimuth, from the sensor outwards.
 struct Sector {
   std::array<Cell, kBins> cells;
-  std::array<std::uint64_t, kBins / 64> occupied{};  ///< the cells with returns; the others are not initialized
+  std::array<std::uint64_t, kBins / 64> occupied{};  ///< the cells with returns; the others are as when made
   std::uint64_t block = 0;                           ///< the last one that added returns, from 1 on; 0: none
 
   bool has(std::size_t bin) const { return (occupied[bin / 64] >> (bin % 64) & 1) != 0; }
 
-  /// \param levels of the returns, the lowest of which has this distance and height
-  void add(std::size_t bin, float rho, float height, std::uint64_t levels) {
-    std::uint64_t& word = occupied[bin / 64];
-    const std::uint64_t bit = std::uint64_t{1} << (bin % 64);
+  void add(std::size_t bin, float rho, float height, unsigned level) {
     Cell& cell = cells[bin];
-    const bool is_new = (word & bit) == 0;
-    word |= bit;
-    cell.levels = is_new ? levels : cell.levels | levels;
-    if (is_new) cell.confidence = 0;  // until the sector is followed
-    if (is_new || height < cell.low) {
-      cell.low = height;
-      cell.low_rho = rho;
-    }
+    std::uint32_t rho_bits;
+    std::memcpy(&rho_bits, &rho, sizeof rho_bits);
+    const std::uint64_t number = std::uint64_t{orderedHeight(height)} << 32 | rho_bits;
+    cell.lowest = number < cell.lowest ? number : cell.lowest;
+    cell.levels |= std::uint64_t{1} << level;
+    occupied[bin / 64] |= std::uint64_t{1} << (bin % 64);
   }
+
+  void clear();
 };
 
 /// A unit vector.
@@ -71,6 +93,11 @@ template <typename Visit>
 void forEachBin(const Sector& sector, Visit&& visit) {
   for (std::size_t word = 0; word < sector.occupied.size(); ++word)
     forEachBit(sector.occupied[word], [&](std::size_t bit) { visit(word * 64 + bit); });
+}
+
+inline void Sector::clear() {
+  forEachBin(*this, [this](std::size_t bin) { cells[bin] = Cell(); });
+  occupied = {};
 }
 
 /// Whether none of the occupied levels is up to about 2 m above a height.

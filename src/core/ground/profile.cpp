@@ -12,6 +12,7 @@ namespace {
 /// Cells of a sector with returns, from the sensor outwards.
 struct Outwards {
   std::array<Cell*, kBins> cells;
+  std::array<float, kBins> low, rho;
   std::array<bool, kBins> bare;
   std::array<std::uint8_t, kBins> bins;
   std::size_t size = 0;
@@ -20,27 +21,27 @@ struct Outwards {
     forEachBin(sector, [&](std::size_t bin) {
       cells[size] = &sector.cells[bin];
       bins[size] = static_cast<std::uint8_t>(bin);
+      low[size] = cells[size]->low();
+      rho[size] = cells[size]->lowRho();
       ++size;
     });
     for (std::size_t i = 0; i < size; ++i) {
       std::uint64_t levels = cells[i]->levels;
       if (i + 1 < size && bins[i + 1] == bins[i] + 1) levels |= cells[i + 1]->levels;
-      bare[i] = isBare(cells[i]->low, levels);
+      bare[i] = isBare(low[i], levels);
     }
   }
 
   /// The first bare cell clearly beyond one; `size` if there is none nearby.
   std::size_t beyond(std::size_t i) const {
-    const float rho = 1.12F * cells[i]->low_rho + 0.2F;
+    const float least = 1.12F * rho[i] + 0.2F;
     constexpr std::size_t kMost = 6;
     for (std::size_t j = i + 1; j < size && j < i + kMost; ++j)
-      if (bare[j] && cells[j]->low_rho >= rho) return j;
+      if (bare[j] && rho[j] >= least) return j;
     return size;
   }
 
-  float slope(std::size_t i, std::size_t j) const {
-    return (cells[j]->low - cells[i]->low) / (cells[j]->low_rho - cells[i]->low_rho);
-  }
+  float slope(std::size_t i, std::size_t j) const { return (low[j] - low[i]) / (rho[j] - rho[i]); }
 
   /// Whether a cell and two beyond it lie on a line about as steep as given.
   bool isOnLine(std::size_t i, float expected_slope) const {
@@ -62,10 +63,10 @@ struct Reached {
   float slope(float max_slope) const {
     return rho > back_rho ? std::clamp((ground - back_ground) / (rho - back_rho), -max_slope, max_slope) : 0.0F;
   }
-  void advance(const Cell& cell) {
+  void advance(float new_rho, float new_ground) {
     constexpr float kBaseline = 1.5F;  // metres
-    rho = cell.low_rho;
-    ground = cell.low;
+    rho = new_rho;
+    ground = new_ground;
     if (rho - next_rho < kBaseline + 0.1F * rho) return;
     back_rho = next_rho;
     back_ground = next_ground;
@@ -83,14 +84,16 @@ void Profile::follow(Sector& sector, const Direction& direction, const Sector* b
   bool first = true;
   for (std::size_t i = 0; i < outwards.size; ++i) {
     Cell& cell = *outwards.cells[i];
+    const float low = outwards.low[i];
+    const float rho = outwards.rho[i];
     const bool bare = outwards.bare[i];
-    const float distance = std::max(cell.low_rho - reached.rho, 0.0F);
+    const float distance = std::max(rho - reached.rho, 0.0F);
     const float slope = first ? first_slope : reached.slope(max_slope_);
-    const float baseline = first ? cell.low_rho : reached.rho - reached.back_rho;
+    const float baseline = first ? rho : reached.rho - reached.back_rho;
     const float expected = reached.ground + slope * std::min(distance, 2.0F * baseline);
-    const float above = cell.low - expected;
-    const float from_back = std::max(cell.low_rho - reached.back_rho, 0.0F);
-    const float rise = cell.low - reached.back_ground;
+    const float above = low - expected;
+    const float from_back = std::max(rho - reached.back_rho, 0.0F);
+    const float rise = low - reached.back_ground;
     bool found;
     if (first)
       found =
@@ -102,12 +105,12 @@ void Profile::follow(Sector& sector, const Direction& direction, const Sector* b
     else
       found = above < 0.1F + std::min(0.15F * distance, 0.06F) &&
               above > -0.2F - std::min(max_slope_ * distance, 0.3F) && rise < 0.12F + max_slope_ * from_back;
-    if (!found && !first && bare && std::fabs(cell.low - reached.ground) < 0.1F + max_slope_ * distance) {
+    if (!found && !first && bare && std::fabs(low - reached.ground) < 0.1F + max_slope_ * distance) {
       // A change of slope, if the next cell continues it.
       const std::size_t next = outwards.beyond(i);
       if (next < outwards.size) {
-        const float here = (cell.low - reached.ground) / std::max(distance, 0.5F);
-        const float step = outwards.cells[next]->low_rho - cell.low_rho;
+        const float here = (low - reached.ground) / std::max(distance, 0.5F);
+        const float step = outwards.rho[next] - rho;
         const float further = outwards.slope(i, next);
         found = std::fabs(further) < max_slope_ && std::fabs(further - here) < 0.07F + 0.03F / step;
       }
@@ -116,25 +119,25 @@ void Profile::follow(Sector& sector, const Direction& direction, const Sector* b
     const std::size_t bin = outwards.bins[i];
     if (!found && beside != nullptr && beside->has(bin) && beside->cells[bin].confidence > 1) {
       const Cell& other = beside->cells[bin];
-      const float above_beside = cell.low - (other.ground + other.slope * (cell.low_rho - other.low_rho));
-      const float width = 0.0245F * cell.low_rho;
+      const float above_beside = low - (other.offset + other.slope * rho);
+      const float width = 0.0245F * rho;
       found = std::fabs(above_beside) < (bare ? 0.1F + 0.1F * width : 0.08F) &&
-              std::fabs(cell.low - reached.ground) < 0.2F + max_slope_ * distance;
+              std::fabs(low - reached.ground) < 0.2F + max_slope_ * distance;
       if (found) confidence = other.confidence - 1;
     }
-    cell.confidence = static_cast<std::int8_t>(confidence);
+    cell.confidence = confidence;
     if (found) {
       first = false;
-      reached.advance(cell);
-      cell.ground = cell.low;
+      reached.advance(rho, low);
       cell.slope = reached.slope(max_slope_);
+      cell.offset = low - cell.slope * rho;
       cell.tolerance = bare ? 0.15F : 0.05F;
     } else if (above < 0.0F) {  // a reflection, perhaps
-      cell.ground = expected;
       cell.slope = slope;
+      cell.offset = expected - slope * rho;
       cell.tolerance = 0.1F;
     } else {
-      cell.ground = cell.low;
+      cell.offset = low;
       cell.slope = 0.0F;
       cell.tolerance = -1e30F;
     }

@@ -39,8 +39,7 @@ void PlaneEstimator::add(const Block& block, std::size_t column) {
   Direction sum{0.0F, 0.0F};
   for (std::size_t i = column; i < block.size; i += Block::kColumns)
     if (block.cell[i] != Block::kNoCell && block.rho[i] < kNear) {
-      sector.add(Block::binOf(block.cell[i]), block.rho[i], block.height[i],
-                 std::uint64_t{1} << Block::levelOf(block.cell[i]));
+      sector.add(Block::binOf(block.cell[i]), block.rho[i], block.height[i], Block::levelOf(block.cell[i]));
       const Direction direction = directionOf(Block::sectorOf(block.cell[i]));
       sum.x += direction.x;
       sum.y += direction.y;
@@ -52,7 +51,7 @@ void PlaneEstimator::add(const Block& block, std::size_t column) {
   std::size_t size = 0;
   forEachBin(sector, [&](std::size_t bin) {
     const Cell& cell = sector.cells[bin];
-    if (size < kMostCells && isBare(cell.low, cell.levels)) lows[size++] = {cell.low_rho, cell.low};
+    if (size < kMostCells && isBare(cell.low(), cell.levels)) lows[size++] = {cell.lowRho(), cell.low()};
   });
   const auto beyond = [&](std::size_t i) {
     std::size_t j = i + 1;
@@ -63,7 +62,7 @@ void PlaneEstimator::add(const Block& block, std::size_t column) {
     return (lows[j].height - lows[i].height) / (lows[j].rho - lows[i].rho);
   };
   // Lines through three cells, or through two that are nearly level.
-  std::array<Line, kMostCells> lines;
+  std::array<Line, kMostCells> lines{};
   std::size_t line_count = 0;
   for (std::size_t i = 0; i < size; ++i) {
     const std::size_t j = beyond(i);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdio>
 
+#include <pcl/filters/lisco_ground_filter.h>
 #include <pcl/io/lisco_point_cloud2.h>
 #include <pcl/point_types.h>
 #include <pcl/segmentation/lisco_cluster_extraction.h>
@@ -16,6 +17,7 @@
 #include "lisco/endless_clusterer.h"
 #include "lisco/ground_filter.h"
 #include "lisco/label_clusters.h"
+#include "lisco/label_ground.h"
 #include "lisco/return.h"
 #include "lisco/sensor_hints.h"
 #include "lisco/window_clusterer.h"
@@ -32,6 +34,7 @@ int main() {
   PRINT(lisco::GroundFilter);
   PRINT(lisco::GroundParameters);
   PRINT(lisco::GroundVisitor);
+  PRINT(lisco::LabelGroundParameters);
   PRINT(lisco::LabelParameters);
   PRINT(lisco::Parameters);
   PRINT(lisco::Return);
@@ -46,6 +49,8 @@ int main() {
   PRINT(pcl::LiscoEndlessCluster<pcl::PointXYZI>);
   PRINT(pcl::LiscoEndlessExtraction<pcl::PointXYZ>);
   PRINT(pcl::LiscoEndlessExtraction<pcl::PointXYZI>);
+  PRINT(pcl::LiscoGroundFilter<pcl::PointXYZ>);
+  PRINT(pcl::LiscoGroundFilter<pcl::PointXYZI>);
   PRINT(pcl::LiscoStreamExtraction<pcl::PointXYZ>);
   PRINT(pcl::LiscoStreamExtraction<pcl::PointXYZI>);
   PRINT(pcl::LiscoWindowExtraction<pcl::PointXYZ>);
