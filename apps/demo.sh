@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs missing dependencies, builds the programs, simulates a scan (the paper's third scene), clusters it by PCL and
-# by Lisco side by side, and draws it. The results are in demo/ (or the folder given).
+# by Lisco side by side, and draws it. The results are in demo/ (or the folder given); the last line names a page that
+# shows the scene in a browser.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/cmake/script_tools.sh"
@@ -14,3 +15,5 @@ mkdir -p "$results"
 "$programs/lisco_simulate" --scene 3 -o "$results/scan.pcd"
 "$programs/lisco_cluster" "$results/scan.pcd" --tolerance 0.4 --ground-z -1.6 -o "$results"
 "$programs/lisco_compare" "$results/scan.pcd" --tolerance 0.4 --ground-z -1.6 --baselines pcl,grid,paper,lisco --runs 10
+echo
+echo "the scene, for a browser: $(realpath "$results/view.html")"

@@ -71,8 +71,9 @@ bool parse(int argc, char** argv, Options& options) {
     ("threads", countOption("--threads", options.threads, 0),
      "cluster N files at the same time (default 1; 0: one per processor)")
     ("output,o", pathOption("DIR", "--output", options.output),
-     "folder for labels.pcd, clusters.csv, range_image.png and top_view.png; with several inputs, a folder in it for "
-     "each; of a recording, a folder in it for each message or rotation, of its number and time")
+     "folder for labels.pcd, clusters.csv, range_image.png, top_view.png and view.html, a page for browsers; with "
+     "several inputs, a folder in it for each; of a recording, a folder in it for each message or rotation, of its "
+     "number and time")
     ("bag", pathOption("FILE.mcap", "--bag", options.bag),
      "write the labelled clouds (sensor_msgs/PointCloud2) and boxes (visualization_msgs/MarkerArray) as a recording of "
      "ROS 2; scans without a time are 0.1 s apart")

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs Debian's (or Ubuntu's) packages for building, running and testing. Does nothing, and needs no network, if all
-# are installed.
+# Installs Debian's (or Ubuntu's) packages for building, running and testing, and those given as arguments. Does nothing,
+# and needs no network, if all are installed.
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config libpcl-dev libhwy-dev libboost-program-options-dev nlohmann-json3-dev
-          libcairo2-dev libpcap-dev libsqlite3-dev liblz4-dev libzstd-dev libbz2-dev fonts-dejavu-core gnuplot-nox
-          libgtest-dev doxygen dpkg-dev file help2man binutils)
+          libcairo2-dev libpcap-dev libsqlite3-dev liblz4-dev libzstd-dev libbz2-dev zlib1g-dev fonts-dejavu-core
+          gnuplot-nox libgtest-dev doxygen dpkg-dev file help2man binutils "$@")
 
 missing=()
 for package in "${packages[@]}"; do

@@ -8,6 +8,8 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/cmake/script_tools.sh"
 
 "$root/cmake/install_dependencies.sh"
+# 120 MB to download, for the tests of pages only.
+"$root/cmake/install_dependencies.sh" chromium || echo "no Chromium: the tests of pages in a browser are skipped"
 
 # run_tests NAME CTEST-OPTION... -- CMAKE-OPTION...
 run_tests() {

@@ -45,8 +45,8 @@ inline ClusterShape shapeOf(const Cloud& cloud, const pcl::PointIndices& cluster
   return shape;
 }
 
-/// Writes labels.pcd (organized as the input; x y z label), clusters.csv, range_image.png and top_view.png into a
-/// folder, and with `cloud_per_cluster` also clusters/cluster_0001.pcd and so on, largest first. All or nothing;
+/// Writes labels.pcd (organized as the input; x y z label), clusters.csv, range_image.png, top_view.png and view.html
+/// into a folder, and with `cloud_per_cluster` also clusters/cluster_0001.pcd and so on, largest first. All or nothing;
 /// replaces the files of an earlier run and refuses to replace any other file of these names, see writeOwnFolder ().
 /// \throws std::runtime_error with one line on what cannot be written, or would be overwritten
 void writeResults(const ClusteredScan& scan, const fs::path& folder, bool cloud_per_cluster);

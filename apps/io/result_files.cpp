@@ -12,11 +12,13 @@
 #include "drawing/scan_pictures.h"
 #include "io/output_file.h"
 #include "io/text.h"
+#include "view/clustered_view.h"
 
 namespace lisco_apps {
 namespace {
 
-const std::vector<std::string> kResults{"labels.pcd", "clusters.csv", "range_image.png", "top_view.png", "clusters"};
+const std::vector<std::string> kResults{"labels.pcd",   "clusters.csv", "range_image.png",
+                                        "top_view.png", "view.html",    "clusters"};
 
 template <typename AnyCloud>
 void writePcd(const AnyCloud& cloud, const fs::path& file) {
@@ -73,6 +75,7 @@ void writeResults(const ClusteredScan& scan, const fs::path& folder, bool cloud_
           writeTable(scan, aside / "clusters.csv");
           drawRangeImage(scan.arranged ? *scan.arranged : scan, aside / "range_image.png");
           drawTopView(scan, aside / "top_view.png");
+          writeView(scan, scan.clustered, aside / "view.html");
           if (cloud_per_cluster) writeClusterClouds(scan, aside / "clusters");
         } catch (const pcl::IOException&) {
           fail(folder, "cannot be written");

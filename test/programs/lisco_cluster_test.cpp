@@ -286,7 +286,7 @@ TEST_F(LiscoCluster, GivesEqualResultsOnAnyNumberOfThreads) {
         run("a.pcd b.pcd c.pcd d.pcd e.pcd --tolerance 0.3 --threads " + std::string(threads) + " -o " + folder);
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     for (const char* name : {"a", "b", "c", "d", "e"})
-      for (const char* result : {"labels.pcd", "clusters.csv", "range_image.png", "top_view.png"})
+      for (const char* result : {"labels.pcd", "clusters.csv", "range_image.png", "top_view.png", "view.html"})
         EXPECT_EQ(textOf(folder_ / folder / name / result), textOf(folder_ / "one" / name / result))
             << name << ' ' << result;
   }
