@@ -50,27 +50,52 @@ bool skipLink(Bytes& frame, std::size_t type_at, std::size_t header) {
   return type == kIpv4 || type == kIpv6;
 }
 
-bool skipIpv4(Bytes& packet) {
+void setKey(Fragment& fragment, const std::uint8_t* addresses, std::size_t size, const std::uint8_t* identification,
+            std::size_t identification_size) {
+  std::copy_n(addresses, size, fragment.key.begin());
+  std::copy_n(identification, identification_size, fragment.key.begin() + 32);
+}
+
+bool skipIpv4(Bytes& packet, std::optional<Fragment>& part) {
   if (packet.size < 20) return false;
   const std::size_t header = 4UL * (packet.u8(0) & 0xFU);
-  const unsigned fragment = packet.u16(6) & 0x3FFFU;  // the offset, and whether more fragments follow
-  if (header < 20 || fragment != 0 || packet.u8(9) != kUdp) return false;
+  const unsigned position = packet.u16(6);  // flags and offset
+  if (header < 20 || packet.u8(9) != kUdp) return false;
+  if ((position & 0x3FFFU) != 0) {
+    part.emplace();
+    setKey(*part, packet.data + 12, 8, packet.data + 4, 2);
+    part->offset = 8UL * (position & 0x1FFFU);
+    part->is_last = (position & 0x2000U) == 0;
+    // A fragment's length is not checked by UDP's.
+    if (packet.size < packet.u16(2)) return false;
+  }
   // Position packets of the VLP-16 declare a longer total than they have; the UDP length is checked instead.
   packet.size = std::min<std::size_t>(packet.size, packet.u16(2));
   return packet.skip(header);
 }
 
-bool skipIpv6(Bytes& packet) {
+bool skipIpv6(Bytes& packet, std::optional<Fragment>& part) {
   if (packet.size < 40) return false;
   const std::size_t length = packet.u16(4);
+  const std::uint8_t* const addresses = packet.data + 8;
   unsigned next = packet.u8(6);
   packet.skip(40);
+  const bool is_whole = packet.size >= length;
   packet.size = std::min(packet.size, length);
-  constexpr unsigned kHopByHop = 0, kRouting = 43, kOptions = 60;
-  while (next == kHopByHop || next == kRouting || next == kOptions) {
+  constexpr unsigned kHopByHop = 0, kRouting = 43, kFragment = 44, kOptions = 60;
+  while (next == kHopByHop || next == kRouting || next == kFragment || next == kOptions) {
     if (packet.size < 8) return false;
+    const bool is_part = next == kFragment;
     next = packet.u8(0);
-    if (!packet.skip(8 * (packet.u8(1) + 1UL))) return false;
+    const unsigned position = packet.u16(2);  // offset and flags
+    if (is_part && (position & 0xFFF9U) != 0) {
+      part.emplace();
+      setKey(*part, addresses, 32, packet.data + 4, 4);
+      part->offset = position & 0xFFF8U;
+      part->is_last = (position & 1U) == 0;
+      return next == kUdp && is_whole && packet.skip(8);
+    }
+    if (!packet.skip(is_part ? 8 : 8 * (packet.u8(1) + 1UL))) return false;
   }
   return next == kUdp;
 }
@@ -88,11 +113,15 @@ bool skipToIp(Bytes& frame, int link_type) {
   return !has_family || frame.skip(4);
 }
 
-/// Reduces a frame to its UDP payload. \return false if it holds no whole UDP packet to this port
-bool skipToPayload(Bytes& frame, int link_type, std::optional<std::uint16_t> port) {
+/// Reduces a frame to the content of its IP packet, of which it may be a part. \return false if it holds no UDP
+bool skipToUdp(Bytes& frame, int link_type, std::optional<Fragment>& part) {
   if (!skipToIp(frame, link_type) || frame.size == 0) return false;
   const unsigned version = frame.u8(0) >> 4U;
-  if (!(version == 4 ? skipIpv4(frame) : version == 6 && skipIpv6(frame))) return false;
+  return version == 4 ? skipIpv4(frame, part) : version == 6 && skipIpv6(frame, part);
+}
+
+/// \return false if it is no whole UDP packet to this port
+bool skipToPayload(Bytes& frame, std::optional<std::uint16_t> port) {
   if (frame.size < 8 || (port && frame.u16(2) != *port)) return false;
   const std::size_t length = frame.u16(4);
   if (length > frame.size) return false;
@@ -138,15 +167,28 @@ PacketSource::Arrival CaptureFile::next(Packet& packet) {
   pcap_pkthdr* header = nullptr;
   const u_char* data = nullptr;
   while (error_.empty() && pcap_next_ex(capture_.get(), &header, &data) == 1) {
+    const std::int64_t time_us = std::int64_t{1000000} * header->ts.tv_sec + header->ts.tv_usec;
     Bytes payload{data, header->caplen};
-    if (!skipToPayload(payload, link_type_, port_)) {
-      ++foreign_;
+    std::optional<Fragment> part;
+    const bool is_udp = skipToUdp(payload, link_type_, part);
+    if (is_udp && part) {
+      part->content = {reinterpret_cast<const char*>(payload.data), payload.size};
+      part->time_us = time_us;
+      const std::string_view whole = fragments_.add(*part);
+      foreign_ = foreign_frames_ + fragments_.lost();
+      if (whole.empty()) continue;
+      payload = {reinterpret_cast<const std::uint8_t*>(whole.data()), whole.size()};
+    }
+    if (!is_udp || !skipToPayload(payload, port_)) {
+      foreign_ = ++foreign_frames_ + fragments_.lost();
       continue;
     }
     ++packets_;
-    packet = {payload.data, payload.size, std::int64_t{1000000} * header->ts.tv_sec + header->ts.tv_usec};
+    packet = {payload.data, payload.size, time_us};
     return Arrival::kPacket;
   }
+  fragments_.clear();
+  foreign_ = foreign_frames_ + fragments_.lost();
   if (const char* const why = pcap_geterr(capture_.get()); error_.empty() && *why != '\0')
     error_ = file_.string() + ": breaks off: " + why;
   return Arrival::kEnd;

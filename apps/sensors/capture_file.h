@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "fragment_assembler.h"
 #include "io/text.h"
 #include "packet_source.h"
 
@@ -14,8 +15,8 @@ struct pcap;
 namespace lisco_apps {
 
 /// The UDP packets of a capture, without pauses: pcap or pcapng, of Ethernet (also with VLAN tags), Linux "cooked",
-/// loopback or raw IP, over IPv4 or IPv6. Fragments are not reassembled and count as foreign. A truncated or damaged
-/// file ends where the damage begins, with error () set.
+/// loopback or raw IP, over IPv4 or IPv6, also in fragments. A truncated or damaged file ends where the damage begins,
+/// with error () set.
 class CaptureFile : public PacketSource {
  public:
   /// \param port only packets to this port; nullopt: to any
@@ -34,6 +35,8 @@ class CaptureFile : public PacketSource {
   std::optional<std::uint16_t> port_;
   std::unique_ptr<pcap, Close> capture_;
   int link_type_ = 0;
+  FragmentAssembler fragments_;
+  std::uint64_t foreign_frames_ = 0;
 };
 
 }  // namespace lisco_apps

@@ -8,8 +8,8 @@
 
 namespace lisco_apps {
 
-/// No sensor's packet is longer than an Ethernet frame.
-inline constexpr std::size_t kMaxPacketBytes = 2048;
+/// The longest UDP payload.
+inline constexpr std::size_t kMaxPacketBytes = 65527;
 
 /// A UDP payload.
 struct Packet {
@@ -37,7 +37,7 @@ class PacketSource {
 
   /// Packets that next () has given.
   std::uint64_t packets() const { return packets_; }
-  /// Frames left out: not UDP, to another port, or fragments.
+  /// Frames left out: not UDP, to another port, or fragments of which others are missing.
   std::uint64_t foreign() const { return foreign_; }
   /// One line: why the packets ended early; empty if they did not.
   const std::string& error() const { return error_; }

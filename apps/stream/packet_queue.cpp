@@ -24,7 +24,8 @@ std::thread startWithoutSignals(void (*run)(void*), void* what) {
 
 }  // namespace
 
-PacketQueue::PacketQueue(std::unique_ptr<PacketSource> source) : source_(std::move(source)), slots_(kCapacity) {
+PacketQueue::PacketQueue(std::unique_ptr<PacketSource> source)
+    : source_(std::move(source)), bytes_(new std::uint8_t[kMaxBytes]), slots_(kMaxPackets) {
   thread_ = startWithoutSignals([](void* queue) { static_cast<PacketQueue*>(queue)->receive(); }, this);
 }
 
@@ -39,6 +40,16 @@ void PacketQueue::stop() {
   ended_ = true;
 }
 
+/// Where a packet of this size fits in behind the last one; nullopt if the queue is full.
+std::optional<std::size_t> PacketQueue::spaceFor(std::size_t size) const {
+  if (slots_.empty()) return 0;
+  if (slots_.full()) return std::nullopt;
+  const std::size_t first = slots_.front().begin, end = slots_.back().begin + slots_.back().size;
+  if (slots_.back().begin < first) return end + size <= first ? std::optional(end) : std::nullopt;
+  if (end + size <= kMaxBytes) return end;
+  return size < first ? std::optional<std::size_t>(0) : std::nullopt;
+}
+
 void PacketQueue::receive() {
   Packet packet;
   while (!stop_) {
@@ -48,12 +59,10 @@ void PacketQueue::receive() {
     ended_ = arrival == Arrival::kEnd;
     filled_.notify_one();
     if (ended_) return;
-    if (slots_.full()) continue;
-    slots_.push_back({});
-    Slot& slot = slots_.back();
-    slot.size = std::min(packet.size, slot.data.size());
-    std::memcpy(slot.data.data(), packet.data, slot.size);
-    slot.time_us = packet.time_us;
+    const std::optional<std::size_t> begin = spaceFor(packet.size);
+    if (!begin) continue;
+    if (packet.size > 0) std::memcpy(bytes_.get() + *begin, packet.data, packet.size);
+    slots_.push_back({*begin, packet.size, packet.time_us});
   }
 }
 
@@ -66,7 +75,7 @@ PacketSource::Arrival PacketQueue::next(Packet& packet) {
   const Slot& slot = slots_.front();
   holds_slot_ = true;
   ++packets_;
-  packet = {slot.data.data(), slot.size, slot.time_us};
+  packet = {bytes_.get() + slot.begin, slot.size, slot.time_us};
   return Arrival::kPacket;
 }
 

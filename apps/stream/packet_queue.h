@@ -2,13 +2,13 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include <boost/circular_buffer.hpp>
@@ -32,16 +32,19 @@ class PacketQueue : public PacketSource {
   void stop();
 
  private:
-  static constexpr std::size_t kCapacity = 8192;  ///< packets: more than any of these sensors sends in a second
+  /// More than any of these sensors sends in a second.
+  static constexpr std::size_t kMaxPackets = 16384, kMaxBytes = std::size_t{48} << 20;
+  /// A packet in the ring of bytes, in one piece.
   struct Slot {
-    std::array<std::uint8_t, kMaxPacketBytes> data;
-    std::size_t size;
-    std::int64_t time_us;
+    std::size_t begin = 0, size = 0;
+    std::int64_t time_us = 0;
   };
 
   void receive();
+  std::optional<std::size_t> spaceFor(std::size_t size) const;
 
   std::unique_ptr<PacketSource> source_;
+  std::unique_ptr<std::uint8_t[]> bytes_;  ///< of the packets in slots_, in their order, around the end
   boost::circular_buffer<Slot> slots_;
   std::mutex mutex_;  ///< guards the slots and the next three
   std::condition_variable filled_;

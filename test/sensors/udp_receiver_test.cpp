@@ -44,8 +44,8 @@ TEST(UdpReceiver, GivesPackets) {
   UdpReceiver receiver(0);
   ASSERT_NE(receiver.port(), 0);
   const auto before = std::chrono::system_clock::now().time_since_epoch();
-  for (const std::size_t size : {1206U, 512U, 0U, 5000U}) send(Bytes(size, 7), receiver.port());
-  for (const std::size_t size : {1206U, 512U, 0U, 2048U}) {  // the last is longer than any sensor's
+  for (const std::size_t size : {1206U, 512U, 0U, 33000U}) send(Bytes(size, 7), receiver.port());
+  for (const std::size_t size : {1206U, 512U, 0U, 33000U}) {
     Packet packet;
     ASSERT_EQ(receiver.next(packet), Arrival::kPacket);
     EXPECT_EQ(Bytes(packet.data, packet.data + packet.size), Bytes(size, 7));

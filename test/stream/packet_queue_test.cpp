@@ -77,5 +77,35 @@ TEST(PacketQueue, LosesOnlyPacketsBeyondItsCapacity) {
   EXPECT_GE(queue.packets(), 1000U);
 }
 
+/// Packets of many sizes, each filled with a byte, faster than they can be taken.
+class Sizes : public PacketSource {
+ public:
+  Arrival next(Packet& packet) override {
+    if (packets_ == kCount) return Arrival::kEnd;
+    const std::size_t size = packets_ * 7919 % 65508;
+    content_.assign(size, static_cast<std::uint8_t>(packets_));
+    packet = {content_.data(), size, static_cast<std::int64_t>(packets_++)};
+    return Arrival::kPacket;
+  }
+  static constexpr std::uint64_t kCount = 8000;
+
+ private:
+  std::vector<std::uint8_t> content_;
+};
+
+TEST(PacketQueue, KeepsPacketsOfAnySize) {
+  PacketQueue queue(std::make_unique<Sizes>());
+  Packet packet;
+  std::int64_t last = -1;
+  while (queue.next(packet) == PacketSource::Arrival::kPacket) {
+    EXPECT_GT(packet.time_us, last);
+    last = packet.time_us;
+    ASSERT_EQ(packet.size, static_cast<std::size_t>(packet.time_us) * 7919 % 65508);
+    for (std::size_t i = 0; i < packet.size; ++i)
+      ASSERT_EQ(packet.data[i], static_cast<std::uint8_t>(packet.time_us)) << packet.time_us;
+  }
+  EXPECT_GE(queue.packets(), 1000U);
+}
+
 }  // namespace
 }  // namespace lisco_test
