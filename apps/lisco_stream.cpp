@@ -110,6 +110,8 @@ bool parse(int argc, char** argv, Options& options) {
      "rotation or endless (default rotation)")
     ("calibration", textOption("FILE", [&](const std::string& text) { options.decoder.calibration = text; }),
      "the calibration (db.xml) of the hdl64e, each of which has its own")
+    ("metadata", textOption("FILE", [&](const std::string& text) { options.decoder.metadata = text; }),
+     "the metadata (JSON) of the ouster, as its software records it beside a capture")
     ("rotations", countOption("--rotations", options.stream.rotations, 1), "end after N rotations")
     ("realtime", po::bool_switch(&options.realtime),
      "read a capture at the pace of its recording, without breaks of more than ten seconds (default: as fast as "
@@ -241,6 +243,7 @@ void takePackets(const Input& input, Decoder& decoder, OtherSensors& others, Str
     if (interrupted != 0 && input.queue == nullptr) return;
     if (interrupted != 0) input.queue->stop();  // packets received so far are still clustered
     const PacketSource::Arrival arrival = input.source->next(packet);
+    if (arrival != PacketSource::Arrival::kPacket) decoder.flush(take);
     if (arrival == PacketSource::Arrival::kEnd) return;
     if (arrival == PacketSource::Arrival::kNothing) {
       stream.wait();

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,6 +22,9 @@ struct Cell {
   float intensity;  ///< as the sensor counts it, >= 0
 };
 
+inline constexpr Cell kNoCell{std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::quiet_NaN(),
+                              std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::quiet_NaN()};
+
 /// One firing of all lasers.
 struct Column {
   const std::vector<Cell>& cells;  ///< from the top laser to the bottom one; with two returns each, 2 * laser + return
@@ -29,7 +33,8 @@ struct Column {
   bool after_break;  ///< at least a whole turn is missing before it, or an unknown part, or its number of cells differs
 };
 
-/// Which of the two returns of a laser and firing are given, if a packet carries two.
+/// Which of the returns of a laser and firing are given, if a packet carries several: the strongest, the last, which is
+/// the farthest, or all of them.
 enum class ReturnChoice { kStrongest, kLast, kBoth };
 
 /// What a decoder must know of its sensor.
@@ -37,7 +42,8 @@ struct DecoderOptions {
   std::string sensor;  ///< one of sensorNames ()
   fs::path calibration;
   fs::path metadata;
-  ReturnChoice returns = ReturnChoice::kStrongest;
+  std::string metadata_json;  ///< instead of the file, for example of a recording's message; empty: none
+  ReturnChoice returns = ReturnChoice::kBoth;
 };
 
 /// Decodes a sensor's packets to columns:
@@ -72,6 +78,10 @@ class Decoder {
   /// Calls visit for each column of the packet, in the order of time.
   virtual Kind decode(const Packet& packet, const Visitor& visit) = 0;
 
+  /// Gives the columns of packets that wait for others before them: to be called at the end of the packets, and when none
+  /// has come for a while.
+  virtual void flush(const Visitor& /*visit*/) {}
+
   /// Measures on a whole capture, which is read to its end, what is less exact while decoding.
   virtual void prepare(PacketSource& /*capture*/) {}
 
@@ -83,6 +93,8 @@ class Decoder {
   double stagger() const { return stagger_; }
   const Counts& counts() const { return counts_; }
 
+  /// The azimuth at which the sensor's own frames begin, degrees clockwise from +x; nullopt if it has none.
+  virtual std::optional<double> rotationStart() const { return std::nullopt; }
   /// Columns and microseconds of a full turn; 0 if unknown, or if the sensor does not turn.
   virtual double columnsPerTurn() const = 0;
   virtual double turnUs() const = 0;

@@ -20,7 +20,7 @@ template <typename Fits>
 std::vector<std::string> sensorsThat(Fits&& fits) {
   std::vector<std::string> sensors;
   for (const std::string& name : sensorNames()) {
-    if (name == "hdl64e") continue;
+    if (name == "hdl64e" || name == "ouster") continue;
     DecoderOptions options;
     options.sensor = name;
     if (fits(*makeDecoder(options))) sensors.push_back(name);

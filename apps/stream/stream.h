@@ -108,7 +108,7 @@ class Listener {
 class Stream {
  public:
   Stream(const StreamOptions& options, const Decoder& decoder, Listener& listener)
-      : options_(options), decoder_(decoder), listener_(listener) {}
+      : options_(options), decoder_(decoder), listener_(listener), cutter_(decoder.rotationStart()) {}
   virtual ~Stream() = default;
 
   /// Clusters the next column.

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "endless_streams.h"
+#include "pcd_scan.h"
 #include "sensors/capture_file.h"
 #include "sensors/rotation_cutter.h"
 #include "sensors/velodyne_decoder.h"
@@ -49,28 +50,6 @@ const Case kCases[] = {
     {"vlp16_street", "vlp16", "vlp16_street_0", 0, 84, 16, true, 1e-6},
     {"vls128_street", "vls128", "vls128_street_0", 0, 2193, 0, false, 1e-6},
 };
-
-/// x, y, z and intensity, row by row.
-struct Scan {
-  std::size_t width = 0, height = 0;
-  std::vector<Cell> cells;
-};
-
-Scan readPcd(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  Scan scan;
-  for (std::string key; key != "DATA" && stream >> key;) {
-    if (key == "WIDTH") stream >> scan.width;
-    if (key == "HEIGHT") stream >> scan.height;
-  }
-  std::string rest;
-  std::getline(stream, rest);
-  scan.cells.resize(scan.width * scan.height);
-  stream.read(reinterpret_cast<char*>(scan.cells.data()),
-              static_cast<std::streamsize>(scan.cells.size() * sizeof(Cell)));
-  EXPECT_TRUE(stream.good()) << file;
-  return scan;
-}
 
 fs::path dataFolder() {
   const char* const folder = std::getenv("LISCO_TEST_DATA");

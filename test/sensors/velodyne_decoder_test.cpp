@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibration.h"
+#include "columns.h"
 #include "packets.h"
 #include "random.h"
 #include "temporary_folder.h"
@@ -22,18 +23,6 @@ using Kind = VelodyneDecoder::Kind;
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// A copy of a column.
-struct SavedColumn {
-  std::vector<Cell> cells;
-  double azimuth, time_us;
-  bool after_break;
-};
-
-Kind decode(VelodyneDecoder& decoder, const Bytes& payload, std::vector<SavedColumn>& columns) {
-  return decoder.decode(asPacket(payload), [&](const Column& column) {
-    columns.push_back({column.cells, column.azimuth, column.time_us, column.after_break});
-  });
-}
 std::vector<SavedColumn> columnsOf(VelodyneDecoder& decoder, const Bytes& payload) {
   std::vector<SavedColumn> columns;
   EXPECT_EQ(decode(decoder, payload, columns), Kind::kData);
@@ -43,15 +32,6 @@ std::vector<SavedColumn> columnsOf(VelodyneDecoder& decoder, const Bytes& payloa
 /// Clockwise from straight ahead, degrees.
 double azimuthOf(const Cell& cell) {
   return std::atan2(-cell.y, cell.x) * 180 / kPi;
-}
-double rangeOf(const Cell& cell) {
-  return std::hypot(cell.x, cell.y, cell.z);
-}
-bool isReturn(const Cell& cell) {
-  return std::isfinite(cell.x) && std::isfinite(cell.y) && std::isfinite(cell.z) && std::isfinite(cell.intensity);
-}
-bool isNoReturn(const Cell& cell) {
-  return std::isnan(cell.x) && std::isnan(cell.y) && std::isnan(cell.z) && std::isnan(cell.intensity);
 }
 
 class DecoderTest : public InTemporaryFolder {
