@@ -38,8 +38,6 @@ namespace {
 namespace po = boost::program_options;
 using namespace lisco_apps;
 
-constexpr std::uint16_t kDefaultPort = 2368;  // of Velodyne's sensors
-
 struct Options {
   fs::path capture;                   ///< empty: live
   std::optional<std::uint16_t> port;  ///< of a capture: only packets to it
@@ -67,6 +65,13 @@ bool isEndless(const std::string& mode) {
   if (mode != "rotation" && mode != "endless")
     throw std::runtime_error("--mode must be rotation or endless, not '" + mode + "'");
   return mode == "endless";
+}
+
+ReturnChoice returnChoice(const std::string& text) {
+  if (text == "strongest") return ReturnChoice::kStrongest;
+  if (text == "last") return ReturnChoice::kLast;
+  if (text == "both") return ReturnChoice::kBoth;
+  throw std::runtime_error("--return must be strongest, last or both, not '" + text + "'");
 }
 
 /// \return false if --help or --version was given
@@ -104,14 +109,19 @@ bool parse(int argc, char** argv, Options& options) {
     ("sensor", po::value<std::string>(&options.decoder.sensor)->value_name("NAME"), sensors.c_str());
   clustering.addTo(shown);
   shown.add_options()
-    ("port", po::value<std::string>(&port)->value_name("N")->implicit_value(std::to_string(kDefaultPort)),
-     "UDP port to receive from (without a number: 2368; 0: any that is free); with a capture, take only packets to it")
+    ("port", po::value<std::string>(&port)->value_name("N")->implicit_value("default"),
+     "UDP port to receive from (without a number: 2368, or 7502 for the ouster; 0: any that is free); with a capture, "
+     "take only packets to it")
     ("mode", textOption("NAME", [&](const std::string& text) { options.endless = isEndless(text); }),
      "rotation or endless (default rotation)")
     ("calibration", textOption("FILE", [&](const std::string& text) { options.decoder.calibration = text; }),
-     "the calibration (db.xml) of the hdl64e, each of which has its own")
+     "the angles of the sensor's own lasers: of the hdl64e db.xml, or YAML as ROS has it; of the vlp32c YAML; of Hesai's "
+     "sensors (pandar...) the maker's CSV. Without it, those of the manual; the hdl64e and the pandarqt128 need it")
     ("metadata", textOption("FILE", [&](const std::string& text) { options.decoder.metadata = text; }),
      "the metadata (JSON) of the ouster, as its software records it beside a capture")
+    ("return", textOption("WHICH", [&](const std::string& text) { options.decoder.returns = returnChoice(text); }),
+     "strongest, last or both: which returns of a laser and firing are clustered, if the sensor sends two (default "
+     "both: a cloud then has two rows for each laser)")
     ("rotations", countOption("--rotations", options.stream.rotations, 1), "end after N rotations")
     ("realtime", po::bool_switch(&options.realtime),
      "read a capture at the pace of its recording, without breaks of more than ten seconds (default: as fast as "
@@ -130,7 +140,9 @@ bool parse(int argc, char** argv, Options& options) {
   if (inputs.empty() && given.count("port") == 0) throw std::runtime_error("no capture and no --port; see --help");
   if (!inputs.empty()) options.capture = inputs.front();
   if (!inputs.empty() && inputs.front().empty()) throw std::runtime_error("the capture's name is empty");
-  if (given.count("port") != 0)
+  if (port == "default")
+    options.port = defaultPort(options.decoder.sensor);
+  else if (given.count("port") != 0)
     options.port = static_cast<std::uint16_t>(countOf(port, "--port", 0, std::numeric_limits<std::uint16_t>::max()));
   if (options.realtime && options.capture.empty()) throw std::runtime_error("--realtime is for captures only");
   if (options.decoder.sensor.empty()) throw std::runtime_error("--sensor is missing (" + sensors + "); see --help");

@@ -2,8 +2,13 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "decoder.h"
 
+#include <algorithm>
 #include <stdexcept>
 
+#include <boost/algorithm/string/join.hpp>
+
+#include "hesai_decoder.h"
+#include "hesai_model.h"
 #include "ouster_decoder.h"
 #include "ouster_metadata.h"
 #include "velodyne_decoder.h"
@@ -23,15 +28,39 @@ OusterMetadata metadataOf(const DecoderOptions& options) {
   return parseOusterMetadata(options.metadata_json, "the metadata in the recording");
 }
 
+bool isIn(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 }  // namespace
 
 std::vector<std::string> sensorNames() {
   std::vector<std::string> names = velodyneModelNames();
+  for (const std::string& name : hesaiModelNames()) names.push_back(name);
   names.emplace_back(kOuster);
   return names;
 }
 
+std::vector<std::string> sensorsThatSend(const Packet& packet) {
+  std::vector<std::string> sensors;
+  const auto try_one = [&](const std::string& name, Decoder&& decoder) {
+    if (decoder.decode(packet, [](const Column&) {}) == Decoder::Kind::kData) sensors.push_back(name);
+  };
+  for (const std::string& name : velodyneModelNames())
+    if (name != "hdl64e") try_one(name, VelodyneDecoder(makeVelodyneModel(name)));
+  for (const std::string& name : hesaiModelNames()) try_one(name, HesaiDecoder(hesaiLayout(name)));
+  if (OusterDecoder::isFromAny(packet)) sensors.emplace_back(kOuster);
+  return sensors;
+}
+
+std::uint16_t defaultPort(const std::string& sensor) {
+  return sensor == kOuster ? 7502 : 2368;
+}
+
 std::unique_ptr<Decoder> makeDecoder(const DecoderOptions& options) {
+  if (!isIn(sensorNames(), options.sensor))
+    throw std::runtime_error("there is no sensor '" + options.sensor + "': it is one of " +
+                             boost::join(sensorNames(), ", "));
   if (options.sensor == kOuster) {
     if (!options.calibration.empty())
       throw std::runtime_error("the ouster has no calibration file; its metadata is given by --metadata");
@@ -39,7 +68,9 @@ std::unique_ptr<Decoder> makeDecoder(const DecoderOptions& options) {
   }
   if (!options.metadata.empty())
     throw std::runtime_error("a metadata file is for the ouster only, not for the " + options.sensor);
-  return std::make_unique<VelodyneDecoder>(makeVelodyneModel(options.sensor, options.calibration));
+  if (isIn(hesaiModelNames(), options.sensor))
+    return std::make_unique<HesaiDecoder>(makeHesaiModel(options.sensor, options.calibration), options.returns);
+  return std::make_unique<VelodyneDecoder>(makeVelodyneModel(options.sensor, options.calibration), options.returns);
 }
 
 }  // namespace lisco_apps

@@ -123,6 +123,13 @@ class Decoder {
 /// The sensors that makeDecoder () accepts.
 std::vector<std::string> sensorNames();
 
+/// The sensors that send packets of this layout, hdl64e aside, whose layout is another's too; those that need files are
+/// among them.
+std::vector<std::string> sensorsThatSend(const Packet& packet);
+
+/// The UDP port that the sensor's maker has set.
+std::uint16_t defaultPort(const std::string& sensor);
+
 /// \throws std::runtime_error with one line if the sensor is unknown, or if a file it needs is missing, malformed, or
 ///         given to a sensor that has none
 std::unique_ptr<Decoder> makeDecoder(const DecoderOptions& options);

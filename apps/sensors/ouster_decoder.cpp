@@ -162,6 +162,21 @@ bool OusterDecoder::isOurs(const Packet& packet) const {
   return true;
 }
 
+bool OusterDecoder::isFromAny(const Packet& packet) {
+  OusterMetadata metadata;
+  for (const Profile profile : {Profile::kLegacy, Profile::kSingle, Profile::kDual, Profile::kLowBandwidth,
+                                Profile::kFusaDual, Profile::kFiveWords})
+    for (const std::size_t pixels : {16U, 32U, 64U, 128U}) {
+      metadata.profile = profile;
+      metadata.altitudes.resize(pixels);
+      const Layout layout = layoutOf(metadata);
+      if (packet.size != layout.packet) continue;
+      if (layout.type_bytes == 0 || (layout.type_bytes == 1 ? packet.data[0] : u16(packet.data)) == kLidarType)
+        return true;
+    }
+  return false;
+}
+
 std::optional<std::size_t> OusterDecoder::firstColumn(const std::uint8_t* packet) const {
   for (std::size_t i = 0; i < metadata_.columns_per_packet; ++i) {
     const std::uint8_t* const column = packet + layout_.header + i * layout_.column;

@@ -24,6 +24,9 @@ class OusterDecoder : public Decoder {
  public:
   OusterDecoder(const OusterMetadata& metadata, ReturnChoice returns);
 
+  /// Whether any of these sensors sends packets of this size and type.
+  static bool isFromAny(const Packet& packet);
+
   Kind decode(const Packet& packet, const Visitor& visit) override;
   void flush(const Visitor& visit) override;
 

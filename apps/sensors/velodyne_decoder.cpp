@@ -30,11 +30,13 @@ unsigned azimuthOf(const std::uint8_t* block) {
 
 }  // namespace
 
-VelodyneDecoder::VelodyneDecoder(VelodyneModel model)
+VelodyneDecoder::VelodyneDecoder(VelodyneModel model, ReturnChoice returns)
     : Decoder(model.name, elevationsOf(model.lasers), staggerOf(model.lasers)),
       model_(std::move(model)),
+      returns_(returns),
       cells_(model_.lasers.size()),
       packet_period_us_(static_cast<double>(kBlocks) * blockPeriodUs() / static_cast<double>(model_.flags.size())) {
+  cells_.reserve(2 * model_.lasers.size());
   for (const Laser& laser : model_.lasers) {
     const std::size_t block = laser.number / kLasersPerBlock;
     auto direction = std::find_if(directions_.begin(), directions_.end(), [&](const Direction& d) {
@@ -111,24 +113,31 @@ void VelodyneDecoder::decodeFiring(const std::uint8_t* group, const Layout& layo
     direction.sine = std::sin(angle);
   }
   const std::size_t firing_bytes = kMeasurementBytes * (kLasersPerBlock / model_.firings) * firing;
+  const std::size_t cells_per_laser = cells_.size() / rows_.size();
+  Echoes echoes;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const Row& row = rows_[i];
-    const Laser& laser = model_.lasers[i];
-    const Direction& direction = directions_[row.direction];
-    const std::uint8_t* measured = group + kBlockBytes * direction.block * layout.part + firing_bytes + row.offset;
-    const std::uint8_t* const second = measured + kBlockBytes * layout.second;
-    if (u16(second) != 0 && (u16(measured) == 0 || second[2] > measured[2])) measured = second;
-
-    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-    cells_[i] = {kNone, kNone, kNone, kNone};
-    if (u16(measured) == 0) continue;
-    const double distance = u16(measured) * model_.distance_unit + laser.distance_offset;
-    if (distance <= 0) continue;
-    const double across = distance * row.cosine;
-    cells_[i] = {static_cast<float>(across * direction.cosine + laser.side * direction.sine),
-                 static_cast<float>(laser.side * direction.cosine - across * direction.sine),
-                 static_cast<float>(distance * row.sine + laser.height), static_cast<float>(measured[2])};
+    const std::uint8_t* const measured =
+        group + kBlockBytes * directions_[row.direction].block * layout.part + firing_bytes + row.offset;
+    echoes.clear();
+    for (std::size_t j = 0; j < (layout.isDual() ? 2U : 1U); ++j) {
+      const std::uint8_t* const echo = measured + j * kBlockBytes * layout.second;
+      echoes.add({u16(echo), static_cast<float>(echo[2]), echo[2]});
+    }
+    echoes.choose(returns_);
+    for (std::size_t j = 0; j < cells_per_laser; ++j) cells_[i * cells_per_laser + j] = cellOf(echoes[j], i);
   }
+}
+
+Cell VelodyneDecoder::cellOf(const Echo& echo, std::size_t row) const {
+  const Laser& laser = model_.lasers[row];
+  const Direction& direction = directions_[rows_[row].direction];
+  const double distance = echo.distance * model_.distance_unit + laser.distance_offset;
+  if (echo.distance == 0 || distance <= 0) return kNoCell;
+  const double across = distance * rows_[row].cosine;
+  return {static_cast<float>(across * direction.cosine + laser.side * direction.sine),
+          static_cast<float>(laser.side * direction.cosine - across * direction.sine),
+          static_cast<float>(distance * rows_[row].sine + laser.height), echo.intensity};
 }
 
 Decoder::Kind VelodyneDecoder::decode(const Packet& packet, const Visitor& visit) {
@@ -158,7 +167,10 @@ Decoder::Kind VelodyneDecoder::decode(const Packet& packet, const Visitor& visit
 
   measureStep(packet.data, *layout);
   const bool misses_turn = turnUs() > 0 && order_.gap() - packet_period_us_ >= turnUs();
-  bool after_break = place == PacketOrder::Place::kNewClock || misses_turn;
+  const std::size_t cells = model_.lasers.size() * (layout->isDual() && returns_ == ReturnChoice::kBoth ? 2 : 1);
+  const bool is_other_mode = counts_.columns > 0 && cells != cells_.size();
+  cells_.resize(cells);
+  bool after_break = place == PacketOrder::Place::kNewClock || misses_turn || is_other_mode;
   for (std::size_t g = 0; g < layout->groups; ++g)
     for (std::size_t firing = 0; firing < model_.firings; ++firing) {
       const std::uint8_t* const group = packet.data + kBlockBytes * g * layout->group;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "decoder.h"
+#include "echo.h"
 #include "packet_order.h"
 #include "packet_source.h"
 #include "velodyne_model.h"
@@ -19,14 +20,14 @@ namespace lisco_apps {
 /// its GPS; foreign ones are detected by their length, their blocks' flags, or an azimuth of more than 360 degrees.
 ///
 /// The lasers of a column fire one after the other while the sensor turns, so each gets its own azimuth, by the turning
-/// from one block to the next: the median of the latest steps, as a single azimuth is rounded. Of dual returns the
-/// stronger is kept, as the sensor does in single mode. Late packets are dropped, see PacketOrder.
+/// from one block to the next: the median of the latest steps, as a single azimuth is rounded. The strongest of two
+/// returns is that of the greater intensity. Late packets are dropped, see PacketOrder.
 ///
 /// PCL's HDLGrabber and VLPGrabber ignore the delays of the lasers (up to 0.23 m in the tests' captures), drop cells
 /// without a return, report no end of a capture, and do not support the VLS-128.
 class VelodyneDecoder : public Decoder {
  public:
-  explicit VelodyneDecoder(VelodyneModel model);
+  explicit VelodyneDecoder(VelodyneModel model, ReturnChoice returns = ReturnChoice::kBoth);
 
   Kind decode(const Packet& packet, const Visitor& visit) override;
   /// Sets the step to that of the whole capture.
@@ -74,12 +75,14 @@ class VelodyneDecoder : public Decoder {
   void measureStep(const std::uint8_t* data, const Layout& layout);
   double blockPeriodUs() const { return static_cast<double>(model_.firings) * model_.firing_period_us; }
   double azimuthLater(double azimuth, double delay_us) const { return azimuth + step_ * delay_us / blockPeriodUs(); }
+  Cell cellOf(const Echo& echo, std::size_t row) const;
   void decodeFiring(const std::uint8_t* group, const Layout& layout, std::size_t firing);
 
   VelodyneModel model_;
   std::vector<Direction> directions_;
   std::vector<Row> rows_;  ///< as the model's lasers
-  std::vector<Cell> cells_;
+  ReturnChoice returns_;
+  std::vector<Cell> cells_;  ///< two of each laser if both returns of a dual packet are given
   PacketOrder order_;
   double packet_period_us_;
   double step_ = 0;

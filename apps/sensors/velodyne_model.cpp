@@ -4,16 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <optional>
 #include <stdexcept>
 
 #include <boost/algorithm/string/join.hpp>
-#include <boost/lexical_cast/try_lexical_convert.hpp>
-#include <boost/property_tree/ptree.hpp>
-#include <boost/property_tree/xml_parser.hpp>
 
 #include "io/text.h"
+#include "velodyne_calibration.h"
 
 namespace lisco_apps {
 namespace {
@@ -35,10 +31,16 @@ constexpr std::array<double, 128> kVls128{
     -4.52,   0.87,  6.08,  -3.31,  2.08,  -6.65, 1.42,  -10.346, -1.88, 3.51,    -6.06,  -0.67, 4.72,    -3.97, 2.3,
     -6.39,   -1,    4.39,  -5.18,  0.21,  6.98,  -3.09, 4.98,    -3.75, 1.64,    -8.352, -2.54, 2.85,    -5.84, -0.45,
     8.43,    -2.87, 2.52,  -6.17,  -1.66, 3.73,  -4.96, 0.43};
+constexpr std::array<double, 32> kVlp32c{-25,    -1,    -1.667, -15.639, -11.31, 0,     -0.667, -8.843,
+                                         -7.254, 0.333, -0.333, -6.148,  -5.333, 1.333, 0.667,  -4,
+                                         -4.667, 1.667, 1,      -3.667,  -3.333, 3.333, 2.333,  -2.667,
+                                         -3,     7,     4.667,  -2.333,  -2,     15,    10.333, -1.333};
+/// Azimuth offsets of the VLP-32C's lasers, degrees clockwise.
+constexpr std::array<double, 32> kVlp32cDirections{1.4,  -4.2, 1.4,  -1.4, 1.4,  -1.4, 4.2,  -1.4, 1.4,  -4.2, 1.4,
+                                                   -1.4, 4.2,  -1.4, 4.2,  -1.4, 1.4,  -4.2, 1.4,  -4.2, 4.2,  -1.4,
+                                                   1.4,  -1.4, 1.4,  -1.4, 1.4,  -4.2, 4.2,  -1.4, 1.4,  -1.4};
 /// Azimuth offsets of the VLS-128's lasers by the last three bits of their numbers, degrees clockwise.
 constexpr std::array kVls128Directions{6.354, 4.548, 2.732, 0.911, -0.911, -2.732, -4.548, -6.354};
-
-constexpr std::size_t kCalibratedLasers = 64;
 
 /// \param laser_period_us from one laser of a column to the next
 template <std::size_t kCount>
@@ -59,7 +61,15 @@ std::vector<Laser> lasersOf(const std::string& name, const fs::path& calibration
     if (calibration_file.empty())
       throw std::runtime_error(
           "the hdl64e needs its calibration file: each of these sensors has its own; give it by --calibration");
-    return readCalibration(calibration_file);  // which has no delays
+    return readCalibration(calibration_file, 64);  // which has no delays
+  }
+  if (name == "vlp32c") {
+    std::vector<Laser> lasers = lasersAt(kVlp32c, 0.);
+    for (std::size_t i = 0; i < lasers.size(); ++i) lasers[i].azimuth_offset = kVlp32cDirections[i];
+    if (!calibration_file.empty()) lasers = readCalibration(calibration_file, lasers.size());
+    constexpr double kPairPeriodUs = 2.304;  // two lasers fire together
+    for (Laser& laser : lasers) laser.delay_us = static_cast<double>(laser.number / 2) * kPairPeriodUs;
+    return lasers;
   }
   // All lasers take their block's azimuth, as in most drivers.
   std::vector<Laser> lasers = lasersAt(kVls128, 0.);
@@ -70,11 +80,12 @@ std::vector<Laser> lasersOf(const std::string& name, const fs::path& calibration
 }  // namespace
 
 std::vector<std::string> velodyneModelNames() {
-  return {"vlp16", "hdl32e", "hdl64e", "vls128"};
+  return {"vlp16", "vlp32c", "hdl32e", "hdl64e", "vls128"};
 }
 
 VelodyneModel velodynePackets(const std::string& name) {
   if (name == "vlp16") return {name, {}, {kUpperBlock}, 2, 55.296, 0.002, {0x22}};
+  if (name == "vlp32c") return {name, {}, {kUpperBlock}, 1, 55.296, 0.004, {0x28}};
   if (name == "hdl32e") return {name, {}, {kUpperBlock}, 1, 46.08, 0.002, {0x21}};
   // The last two bytes of the packets carry a status.
   if (name == "hdl64e") return {name, {}, {kUpperBlock, kLowerBlock}, 1, 48., 0.002, {}};
@@ -88,54 +99,10 @@ VelodyneModel velodynePackets(const std::string& name) {
 VelodyneModel makeVelodyneModel(const std::string& name, const fs::path& calibration_file) {
   VelodyneModel model = velodynePackets(name);
   model.lasers = lasersOf(name, calibration_file);
-  if (name != "hdl64e" && !calibration_file.empty())
-    throw std::runtime_error("a calibration file is for the hdl64e only, not for the " + name);
+  if (name != "hdl64e" && name != "vlp32c" && !calibration_file.empty())
+    throw std::runtime_error("a calibration file is for the hdl64e or the vlp32c, not for the " + name);
   sortByElevation(model.lasers);
   return model;
-}
-
-// PCL's HDLGrabber uses uninitialized numbers if the file is missing, and writes out of bounds for a laser number of 64
-// or more.
-std::vector<Laser> readCalibration(const fs::path& file) {
-  namespace tree = boost::property_tree;
-  std::vector<std::optional<Laser>> found(kCalibratedLasers);
-  try {
-    tree::ptree document;
-    tree::read_xml(file.string(), document, tree::xml_parser::trim_whitespace);
-    for (const auto& [kind, item] : document.get_child("boost_serialization.DB.points_")) {
-      if (kind != "item") continue;
-      const tree::ptree& values = item.get_child("px");
-      const auto value = [&](const char* name) {
-        const std::string& text = values.get_child(name).data();
-        double read = 0;
-        if (!boost::conversion::try_lexical_convert(text, read) || !std::isfinite(read))
-          fail(file, std::string(name) + " is no number: '" + text + "'");
-        return read;
-      };
-      const double number = value("id_");
-      if (!(number >= 0 && number < static_cast<double>(kCalibratedLasers)) || number != std::floor(number))
-        fail(file, "there is no laser " + values.get_child("id_").data());
-      constexpr double kCentimetre = 0.01;
-      Laser laser;
-      laser.number = static_cast<std::size_t>(number);
-      laser.elevation = value("vertCorrection_");
-      laser.azimuth_offset = -value("rotCorrection_");
-      laser.distance_offset = kCentimetre * value("distCorrection_");
-      laser.height = kCentimetre * value("vertOffsetCorrection_");
-      laser.side = kCentimetre * value("horizOffsetCorrection_");
-      found[laser.number] = laser;
-    }
-  } catch (const tree::xml_parser_error& error) {
-    fail(file, "is no calibration file: " + error.message());
-  } catch (const tree::ptree_error& error) {
-    fail(file, std::string("is no calibration file of an HDL-64E: ") + error.what());
-  }
-  std::vector<Laser> lasers;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (!found[i]) fail(file, "does not describe laser " + std::to_string(i));
-    lasers.push_back(*found[i]);
-  }
-  return lasers;
 }
 
 }  // namespace lisco_apps

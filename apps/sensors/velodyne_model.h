@@ -30,21 +30,18 @@ std::vector<std::string> velodyneModelNames();
 
 /// A sensor by its manual:
 /// - vlp16: VLP-16 (Puck), 16 lasers, +-15 degrees
+/// - vlp32c: VLP-32C (Ultra Puck), 32 lasers, +15 to -25 degrees, in four directions within +-4.2 degrees, fired in
+///   pairs
 /// - hdl32e: HDL-32E, 32 lasers, +10.67 to -30.67 degrees
 /// - hdl64e: HDL-64E, 64 lasers, each sensor with a calibration of its own
 /// - vls128: VLS-128 (Alpha Prime), 128 lasers, +15 to -25 degrees, in eight directions within +-6.354 degrees
-/// \param calibration_file of the hdl64e, see readCalibration ()
-/// \throws std::runtime_error with one line if the name is unknown, if the hdl64e comes without a calibration or
-///         another sensor with one, or if readCalibration () throws
+/// \param calibration_file of the hdl64e, or instead of the manual's angles of the vlp32c, see readCalibration ()
+/// \throws std::runtime_error with one line if the name is unknown, if the hdl64e comes without a calibration or a
+///         sensor with one that has none, or if readCalibration () throws
 VelodyneModel makeVelodyneModel(const std::string& name, const fs::path& calibration_file = {});
 
 /// A sensor's packets: its model without lasers, which needs no calibration.
 /// \throws std::runtime_error with one line if the name is unknown
 VelodyneModel velodynePackets(const std::string& name);
-
-/// The HDL-64E's lasers in the order of their numbers, from the XML file that Velodyne delivers with each sensor
-/// (db.xml) and that PCL's HDLGrabber reads: angles in degrees, lengths in centimetres.
-/// \throws std::runtime_error with one line if it is missing, malformed, or does not describe each of the 64 lasers
-std::vector<Laser> readCalibration(const fs::path& file);
 
 }  // namespace lisco_apps

@@ -10,8 +10,8 @@
 
 namespace lisco_apps {
 
-/// Detects packets of another sensor than the one named, and proposes which. Never proposes the hdl64e, which needs a
-/// calibration.
+/// Detects packets of another sensor than the one named, and proposes which. Never proposes the hdl64e, whose
+/// layout is the vls128's too.
 class OtherSensors {
  public:
   /// \param kind the decoder's result for the packet

@@ -189,8 +189,7 @@ void Report::printStatistics(const PacketSource& source, const Decoder& decoder,
                      number(counts.late));
   if (counts.dual > 0) table += formatted("            %llu with two returns per laser\n", number(counts.dual));
   if (counts.says_other_model > 0)
-    table += formatted("            %llu name another model of sensor in their last byte\n",
-                       number(counts.says_other_model));
+    table += formatted("            %llu name another model of sensor\n", number(counts.says_other_model));
   if (counts.clock_jumps > 0)
     table += formatted("            the sensor's clock was set %llu times\n", number(counts.clock_jumps));
   table += formatted("rotations   %llu\ncolumns     %llu\nreturns     %llu\nclusters    %llu, of %llu returns\n",

@@ -18,6 +18,7 @@ namespace {
 using lisco_apps::Cell;
 using lisco_apps::Column;
 using lisco_apps::makeVelodyneModel;
+using lisco_apps::ReturnChoice;
 using lisco_apps::VelodyneDecoder;
 using Kind = VelodyneDecoder::Kind;
 
@@ -40,9 +41,10 @@ class DecoderTest : public InTemporaryFolder {
     writeFile(folder_ / "db.xml", Bytes(xml.begin(), xml.end()));
     return folder_ / "db.xml";
   }
-  VelodyneDecoder decoderOf(const std::string& name) const {
-    return VelodyneDecoder(makeVelodyneModel(
-        name, name == "hdl64e" ? calibration(calibrationXml(usualCalibration)) : std::filesystem::path()));
+  VelodyneDecoder decoderOf(const std::string& name, ReturnChoice returns = ReturnChoice::kStrongest) const {
+    return VelodyneDecoder(makeVelodyneModel(name, name == "hdl64e" ? calibration(calibrationXml(usualCalibration))
+                                                                    : std::filesystem::path()),
+                           returns);
   }
 };
 
@@ -50,7 +52,7 @@ class EachSensor : public DecoderTest, public testing::WithParamInterface<const 
  protected:
   VelodyneDecoder decoder() const { return decoderOf(GetParam()); }
 };
-INSTANTIATE_TEST_SUITE_P(Sensors, EachSensor, testing::Values("vlp16", "hdl32e", "hdl64e", "vls128"),
+INSTANTIATE_TEST_SUITE_P(Sensors, EachSensor, testing::Values("vlp16", "vlp32c", "hdl32e", "hdl64e", "vls128"),
                          [](const auto& test) { return std::string(test.param); });
 
 TEST_P(EachSensor, GivesAColumnForEachFiring) {
@@ -146,6 +148,41 @@ TEST_P(EachSensor, KeepsTheStrongerOfTwoReturns) {
   EXPECT_TRUE(isNoReturn(only({0, 50}, {0, 60})));
 }
 
+TEST_P(EachSensor, GivesBothReturns) {
+  VelodyneDecoder decoder = decoderOf(GetParam(), ReturnChoice::kBoth);
+  VelodyneDecoder last = decoderOf(GetParam(), ReturnChoice::kLast);
+  VelodyneDecoder strongest = decoderOf(GetParam(), ReturnChoice::kStrongest);
+  PacketEncoder encoder(GetParam(), true);
+  // Of three lasers: two returns, the same one twice, and one.
+  const Bytes payload = encoder.next([](std::size_t, std::size_t laser, bool second) {
+    if (laser % 3 == 0) return second ? Measured{4000, 9} : Measured{6000, 7};
+    if (laser % 3 == 1) return Measured{5000, 8};
+    return second ? Measured{0, 0} : Measured{3000, 6};
+  });
+  const SavedColumn both = columnsOf(decoder, payload).front(), far = columnsOf(last, payload).front(),
+                    strong = columnsOf(strongest, payload).front();
+  ASSERT_EQ(both.cells.size(), 2 * encoder.lasers());
+  ASSERT_EQ(far.cells.size(), encoder.lasers());
+  for (std::size_t row = 0; row < far.cells.size(); ++row) {
+    const std::size_t laser = decoder.model().lasers[row].number;
+    const Cell &first = both.cells[2 * row], &second = both.cells[2 * row + 1];
+    EXPECT_EQ(first.intensity, laser % 3 == 0 ? 7 : laser % 3 == 1 ? 8 : 6);
+    EXPECT_EQ(isReturn(second), laser % 3 == 0);
+    EXPECT_EQ(far.cells[row].x, first.x);
+    EXPECT_EQ(strong.cells[row].x, laser % 3 == 0 ? second.x : first.x);
+    if (laser % 3 == 0) {
+      EXPECT_EQ(second.intensity, 9);
+    }
+  }
+  // The number of cells changes with the mode, which is a break.
+  PacketEncoder single(GetParam(), false);
+  single.time_us = encoder.time_us;
+  const std::vector<SavedColumn> columns = columnsOf(decoder, single.next(constantWorld({5000, 1})));
+  EXPECT_TRUE(columns.front().after_break);
+  EXPECT_FALSE(columns[1].after_break);
+  EXPECT_EQ(columns.front().cells.size(), encoder.lasers());
+}
+
 TEST_P(EachSensor, CountsForeignPackets) {
   VelodyneDecoder decoder = this->decoder();
   PacketEncoder encoder(GetParam());
@@ -174,16 +211,17 @@ TEST_P(EachSensor, CountsForeignPackets) {
 }
 
 TEST_P(EachSensor, DetectsPacketsOfAnotherSensor) {
-  for (const std::string other : {"vlp16", "hdl32e", "hdl64e", "vls128"}) {
+  for (const std::string other : {"vlp16", "vlp32c", "hdl32e", "hdl64e", "vls128"}) {
     if (other == GetParam()) continue;
     VelodyneDecoder decoder = this->decoder();
     PacketEncoder encoder(other);
     std::vector<SavedColumn> columns;
     for (int i = 0; i < 20; ++i) decode(decoder, encoder.next(constantWorld({5000, 1})), columns);
-    const bool same_flags = (other == "vlp16" || other == "hdl32e") && decoder.model().flags.size() == 1;
+    const bool same_flags = decoder.model().flags.size() == 1 && other != "hdl64e" && other != "vls128";
     if (same_flags) {
       EXPECT_EQ(decoder.counts().says_other_model, 20U) << other;
-      EXPECT_GT(std::abs(decoder.order().usualGap() / decoder.packetPeriodUs() - 1), 0.5) << other;
+      // A VLP-32C fires 12 times a packet, as an HDL-32E, but at the pace of a VLP-16.
+      EXPECT_GT(std::abs(decoder.order().usualGap() / decoder.packetPeriodUs() - 1), 0.15) << other;
     } else {
       EXPECT_EQ(decoder.counts().foreign, 20U) << other;
       EXPECT_TRUE(columns.empty());
@@ -307,11 +345,11 @@ TEST_F(DecoderTest, AcceptsWrongFactoryBytes) {
 
 TEST_F(DecoderTest, RefusesUnknownSensorsAndBadCalibrations) {
   EXPECT_EQ(refusalOf([] { makeVelodyneModel("os1"); }),
-            "there is no sensor 'os1': it is one of vlp16, hdl32e, hdl64e, vls128");
+            "there is no sensor 'os1': it is one of vlp16, vlp32c, hdl32e, hdl64e, vls128");
   EXPECT_EQ(refusalOf([] { makeVelodyneModel("hdl64e"); }),
             "the hdl64e needs its calibration file: each of these sensors has its own; give it by --calibration");
   EXPECT_EQ(refusalOf([] { makeVelodyneModel("vlp16", "db.xml"); }),
-            "a calibration file is for the hdl64e only, not for the vlp16");
+            "a calibration file is for the hdl64e or the vlp32c, not for the vlp16");
 
   const auto refusal = [&](const std::string& xml) {
     const std::string said = refusalOf([&] { makeVelodyneModel("hdl64e", calibration(xml)); });
@@ -343,6 +381,45 @@ TEST_F(DecoderTest, RefusesUnknownSensorsAndBadCalibrations) {
               return values;
             })).find("rotCorrection_"),
             std::string::npos);
+}
+
+TEST_F(DecoderTest, ReadsTheYamlOfRos) {
+  const std::filesystem::path file = folder_ / "vlp32c.yaml";
+  const auto refusal = [&](const std::string& yaml) {
+    writeFile(file, Bytes(yaml.begin(), yaml.end()));
+    const std::string said = refusalOf([&] { makeVelodyneModel("vlp32c", file); });
+    return said.find(file.string()) == 0 ? said.substr(file.string().size()) : std::string();
+  };
+  std::string flow = "# a comment\nlasers:\n", block = "num_lasers: 32\nlasers:\n";
+  for (int i = 0; i < 32; ++i) {
+    const std::string values =
+        "dist_correction: 0.5, horiz_offset_correction: 0.02,\n  laser_id: " + std::to_string(i) +
+        ", rot_correction: -0.01, vert_correction: " + std::to_string(0.01 * i) + ", vert_offset_correction: 0.03";
+    flow += "- {" + values + "}\n";
+    std::string lines = "  - " + values + "\n";
+    for (std::size_t at = 0; (at = lines.find(", ")) != std::string::npos;) lines.replace(at, 2, "\n    ");
+    block += lines;
+  }
+  flow += "num_lasers: 32\ndistance_resolution: 0.004\n";
+  for (const std::string& yaml : {flow, block}) {
+    EXPECT_EQ(refusal(yaml), "");
+    const lisco_apps::VelodyneModel model = makeVelodyneModel("vlp32c", file);
+    ASSERT_EQ(model.lasers.size(), 32U);
+    for (std::size_t i = 0; i < 32; ++i) {
+      const lisco_apps::Laser& laser = model.lasers[i];
+      EXPECT_EQ(laser.number, 31 - i) << "from top to bottom";
+      EXPECT_NEAR(laser.elevation, 0.01 * static_cast<double>(laser.number) * 180 / kPi, 1e-6);
+      EXPECT_NEAR(laser.azimuth_offset, 0.01 * 180 / kPi, 1e-9);
+      EXPECT_EQ(laser.distance_offset, 0.5);
+      EXPECT_EQ(laser.height, 0.03);
+      EXPECT_EQ(laser.side, 0.02);
+      EXPECT_NEAR(laser.delay_us, 2.304 * static_cast<double>(laser.number / 2), 1e-9);
+    }
+  }
+  EXPECT_EQ(refusal("lasers:\n"), ": is no calibration file: it has no list of lasers");
+  EXPECT_EQ(refusal("lasers:\n- {laser_id: 32}"), ": is no calibration file: a laser has no vert_correction");
+  EXPECT_EQ(refusal(flow.substr(0, flow.find("- {", 40))), ": does not describe laser 1");
+  EXPECT_EQ(refusal("lasers:\n- {laser_id: x, rot_correction: 1}"), ": laser_id is no number: 'x'");
 }
 
 TEST_F(DecoderTest, DropsNegativeDistances) {

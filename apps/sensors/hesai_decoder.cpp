@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "hesai_decoder.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <boost/endian/conversion.hpp>
+
+namespace lisco_apps {
+namespace {
+
+constexpr std::size_t kPositionBytes = 512;
+constexpr unsigned kTurn = 36000;    ///< hundredths of a degree
+constexpr unsigned kMaxStep = 300;   ///< larger ones have packets missing
+constexpr double kMaxSteps = 16384;  ///< counted; then all counts are halved
+constexpr std::uint32_t kHourUs = 3600U * 1000000U;
+constexpr std::uint32_t kMaxGapUs = 10U * 1000000U;  ///< beyond it, the clock was set
+constexpr std::int32_t kMaxNumbersAhead = 1000000;   ///< beyond it, another recording has begun
+constexpr unsigned kMaxLate = 16;                    ///< in a row; with more, another recording has begun
+
+constexpr auto& u16 = boost::endian::load_little_u16;
+constexpr auto& u32 = boost::endian::load_little_u32;
+
+/// Returns of a laser by the mode of returns; 0 if it is unknown.
+std::size_t returnsOfMode(unsigned mode) {
+  constexpr unsigned kFirstSingle = 0x33, kLastSingle = 0x38, kLastDual = 0x3C, kTriple = 0x3D;
+  if (mode >= kFirstSingle && mode <= kLastSingle) return 1;
+  if (mode > kLastSingle && mode <= kLastDual) return 2;
+  return mode == kTriple ? 3 : 0;
+}
+
+}  // namespace
+
+HesaiDecoder::HesaiDecoder(HesaiModel model, ReturnChoice returns)
+    : Decoder(model.name, elevationsOf(model.lasers), staggerOf(model.lasers)),
+      model_(std::move(model)),
+      returns_choice_(returns),
+      cells_(model_.laserCount()) {
+  cells_.reserve(kMaxEchoes * model_.laserCount());
+  for (const Laser& laser : model_.lasers) {
+    const double elevation = laser.elevation * kRadiansPerDegree, offset = laser.azimuth_offset * kRadiansPerDegree;
+    rows_.push_back({model_.unit_bytes * laser.number, std::cos(elevation), std::sin(elevation), std::cos(offset),
+                     std::sin(offset)});
+  }
+}
+
+double HesaiDecoder::packetPeriodUs() const {
+  return model_.firing_period_us * static_cast<double>(model_.blocks / returns_);
+}
+
+/// From the azimuth on.
+const std::uint8_t* HesaiDecoder::block(const std::uint8_t* packet, std::size_t i) const {
+  const std::size_t flag = model_.header == HesaiModel::Header::kNone ? 2 : 0;
+  return packet + model_.headerBytes() + i * model_.blockBytes() + flag;
+}
+
+bool HesaiDecoder::isOurs(const Packet& packet) const {
+  if (packet.size < model_.leastBytes() || packet.size > model_.leastBytes() + model_.after_tail) return false;
+  if (model_.header != HesaiModel::Header::kNone) {
+    const std::uint8_t* const counts = packet.data + (model_.header == HesaiModel::Header::kLong ? 6 : 2);
+    const std::uint8_t distance_unit = counts[3];
+    if (packet.data[0] != 0xEE || packet.data[1] != 0xFF || counts[0] != model_.laserCount() ||
+        counts[1] != model_.blocks || distance_unit == 0 || distance_unit > 100)
+      return false;
+  }
+  for (std::size_t i = 0; i < model_.blocks; ++i) {
+    const std::uint8_t* const azimuth = block(packet.data, i);
+    if (u16(azimuth) > kTurn) return false;
+    if (model_.header == HesaiModel::Header::kNone && (azimuth[-2] != 0xFF || azimuth[-1] != 0xEE)) return false;
+  }
+  return true;
+}
+
+/// By the mode of returns; if that is unknown, by the blocks of the same azimuth.
+std::size_t HesaiDecoder::returnsOf(const Packet& packet) const {
+  std::size_t returns = returnsOfMode(packet.data[model_.tailAt() + model_.tail.mode]);
+  if (returns == 0)
+    for (returns = 1; returns < kMaxEchoes; ++returns)
+      if (returns == model_.blocks || u16(block(packet.data, returns)) != u16(block(packet.data, 0))) break;
+  return model_.blocks % returns == 0 ? returns : 1;
+}
+
+/// Microseconds past the hour, of the end of the packet. The date is six bytes, or zero and the seconds since 1970.
+std::uint32_t HesaiDecoder::timeOf(const std::uint8_t* packet) const {
+  const std::uint8_t* const date = packet + model_.tailAt() + model_.tail.date;
+  const bool is_since_1970 = date[0] == 0 && model_.header == HesaiModel::Header::kLong;
+  const std::uint32_t seconds = is_since_1970 ? boost::endian::load_big_u32(date + 2) : date[4] * 60U + date[5];
+  return (seconds % 3600 * 1000000U + u32(packet + model_.tailAt() + model_.tail.time) % kHourUs) % kHourUs;
+}
+
+PacketOrder::Place HesaiDecoder::placeOf(const Packet& packet, std::uint32_t time_us) {
+  using Place = PacketOrder::Place;
+  if (!model_.has_sequence || packet.size < model_.leastBytes() + 4) {
+    const Place place = order_.place(time_us, packetPeriodUs());
+    gap_us_ = order_.gap();
+    if (place == Place::kAfterGap)
+      counts_.missing += static_cast<std::uint64_t>(std::llround(gap_us_ / packetPeriodUs()) - 1);
+    return place;
+  }
+  const std::uint32_t number = u32(packet.data + model_.leastBytes());
+  const auto ahead = last_number_ ? static_cast<std::int32_t>(number - *last_number_) : 1;
+  if (ahead <= 0 && ++late_in_a_row_ <= kMaxLate) return Place::kLate;
+  late_in_a_row_ = 0;
+  const std::uint32_t gap = (time_us + kHourUs - last_time_us_) % kHourUs;
+  const bool is_first = !last_number_;
+  const bool is_new_clock = !is_first && (ahead <= 0 || ahead > kMaxNumbersAhead || gap > kMaxGapUs);
+  last_number_ = number;
+  last_time_us_ = time_us;
+  gap_us_ = is_first || is_new_clock ? 0 : gap;
+  if (is_new_clock) return Place::kNewClock;
+  if (ahead == 1) return Place::kNext;
+  counts_.missing += static_cast<std::uint64_t>(ahead) - 1;
+  return Place::kAfterGap;
+}
+
+void HesaiDecoder::measureStep(const std::uint8_t* packet, bool is_next) {
+  if (!is_next) last_azimuth_.reset();
+  for (std::size_t i = 0; i < model_.blocks; i += returns_) {
+    const unsigned azimuth = u16(block(packet, i)) % kTurn;
+    const unsigned step = last_azimuth_ ? (azimuth + kTurn - *last_azimuth_) % kTurn : 0;
+    last_azimuth_ = azimuth;
+    if (step == 0 || step > kMaxStep) continue;
+    step_sum_ += step;
+    if (++step_count_ < kMaxSteps) continue;
+    step_sum_ /= 2;
+    step_count_ /= 2;
+  }
+}
+
+void HesaiDecoder::decodeFiring(const std::uint8_t* first_block, double distance_unit) {
+  const double azimuth = u16(first_block) / 100. * kRadiansPerDegree;
+  const double cosine = std::cos(azimuth), sine = std::sin(azimuth);
+  const std::size_t cells_per_laser = cells_.size() / rows_.size();
+  Echoes echoes;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const Row& row = rows_[i];
+    echoes.clear();
+    for (std::size_t j = 0; j < returns_; ++j) {
+      const std::uint8_t* const measured = first_block + j * model_.blockBytes() + 2 + row.offset;
+      echoes.add({u16(measured), static_cast<float>(measured[2]), measured[2]});
+    }
+    echoes.choose(returns_choice_);
+    for (std::size_t j = 0; j < cells_per_laser; ++j) {
+      Cell& cell = cells_[i * cells_per_laser + j];
+      cell = kNoCell;
+      if (echoes[j].distance == 0) continue;
+      const double distance = echoes[j].distance * distance_unit;
+      const double across = distance * row.elevation_cosine;
+      cell = {static_cast<float>(across * (sine * row.offset_cosine + cosine * row.offset_sine)),
+              static_cast<float>(across * (cosine * row.offset_cosine - sine * row.offset_sine)),
+              static_cast<float>(distance * row.elevation_sine), echoes[j].intensity};
+    }
+  }
+}
+
+Decoder::Kind HesaiDecoder::decode(const Packet& packet, const Visitor& visit) {
+  if (packet.size == kPositionBytes) {
+    ++counts_.position;
+    return Kind::kPosition;
+  }
+  if (!isOurs(packet)) {
+    ++counts_.foreign;
+    return Kind::kForeign;
+  }
+  const std::size_t returns_before = std::exchange(returns_, returnsOf(packet));
+  const std::uint32_t time_us = timeOf(packet.data);
+  const PacketOrder::Place place = placeOf(packet, time_us);
+  if (place == PacketOrder::Place::kLate) {
+    returns_ = returns_before;
+    ++counts_.late;
+    return Kind::kLate;
+  }
+  ++counts_.data;
+  if (returns_ > 1) ++counts_.dual;
+  if (place == PacketOrder::Place::kNewClock) ++counts_.clock_jumps;
+  measureStep(packet.data, place == PacketOrder::Place::kNext);
+
+  const std::size_t cells = model_.laserCount() * (returns_choice_ == ReturnChoice::kBoth ? returns_ : 1);
+  const bool is_other_mode = counts_.columns > 0 && cells != cells_.size();
+  cells_.resize(cells);
+  const bool misses_turn = turnUs() > 0 && gap_us_ - packetPeriodUs() >= turnUs();
+  bool after_break = place == PacketOrder::Place::kNewClock || misses_turn || is_other_mode;
+
+  constexpr double kMillimetre = 0.001, kPandar40Unit = 0.004;
+  const std::size_t unit_at = model_.header == HesaiModel::Header::kLong ? 9 : 5;
+  const double distance_unit =
+      model_.header == HesaiModel::Header::kNone ? kPandar40Unit : packet.data[unit_at] * kMillimetre;
+  for (std::size_t i = 0; i < model_.blocks; i += returns_) {
+    const std::uint8_t* const first = block(packet.data, i);
+    decodeFiring(first, distance_unit);
+    const double azimuth = std::fmod(u16(first) / 100. + 270, 360.);  // from +x, which is to the right
+    const auto later = static_cast<double>((model_.blocks - i) / returns_ - 1) * model_.firing_period_us;
+    const double since_hour_us = time_us - later;
+    ++counts_.columns;
+    visit({cells_, azimuth, since_hour_us < 0 ? since_hour_us + kHourUs : since_hour_us, after_break});
+    after_break = false;
+  }
+  return Kind::kData;
+}
+
+}  // namespace lisco_apps

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "io/text.h"
+#include "laser.h"
+
+namespace lisco_apps {
+
+/// A rotating Hesai sensor and its packets, little-endian: a header, blocks (azimuth in hundredths of a degree, and of
+/// each laser the distance, the reflectivity and in some a spare byte), and a tail.
+struct HesaiModel {
+  /// How a packet begins.
+  enum class Header {
+    kNone,   ///< each block begins with a flag, as of the Pandar40P
+    kShort,  ///< 8 bytes, as of the Pandar64
+    kLong,   ///< 12 bytes
+  };
+  /// Bytes of the tail, from its first one.
+  struct Tail {
+    std::size_t size, mode, date, time;
+  };
+
+  std::string name;
+  std::vector<Laser> lasers;  ///< from top to bottom
+  Header header = Header::kLong;
+  std::size_t blocks = 0;
+  std::size_t unit_bytes = 4;   ///< of a laser in a block
+  std::size_t before_tail = 0;  ///< bytes between the blocks and the tail
+  Tail tail{};
+  std::size_t after_tail = 4;   ///< bytes that may follow the tail
+  bool has_sequence = true;     ///< the first four of them are the packet's number, if they follow
+  double firing_period_us = 0;  ///< from one firing of all lasers to the next
+
+  std::size_t laserCount() const { return lasers.size(); }
+  std::size_t headerBytes() const { return header == Header::kLong ? 12 : header == Header::kShort ? 8 : 0; }
+  std::size_t blockBytes() const { return (header == Header::kNone ? 4 : 2) + unit_bytes * lasers.size(); }
+  std::size_t tailAt() const { return headerBytes() + blocks * blockBytes() + before_tail; }
+  /// Of a packet up to the end of its tail.
+  std::size_t leastBytes() const { return tailAt() + tail.size; }
+};
+
+/// The names that makeHesaiModel () accepts.
+std::vector<std::string> hesaiModelNames();
+
+/// A sensor by its manual: pandar40p, pandar64, pandarqt64, pandarxt16, pandarxt32, pandarxt32m, pandarqt128.
+/// \param calibration_file the angles of the sensor's own lasers, see readHesaiCalibration (); empty: the manual's, which
+///        the pandarqt128 lacks
+/// \throws std::runtime_error with one line if the name is unknown, if the calibration is missing where it is needed,
+///         or if readHesaiCalibration () throws
+HesaiModel makeHesaiModel(const std::string& name, const fs::path& calibration_file = {});
+
+/// A sensor whose lasers lack the angles that its calibration has, which knows its packets.
+HesaiModel hesaiLayout(const std::string& name);
+
+/// The lasers in the order of their numbers, from the CSV file that Hesai delivers with each sensor ("angle correction
+/// file"): lines of the laser's number, from 1, its elevation and its azimuth offset, degrees. Other lines, such as
+/// headings and check sums, are left out.
+/// \throws std::runtime_error with one line if it is missing, malformed, or does not describe each of the lasers
+std::vector<Laser> readHesaiCalibration(const fs::path& file, std::size_t lasers);
+
+}  // namespace lisco_apps
