@@ -458,8 +458,8 @@ TEST_F(LiscoStream, KeepsThePaceOfTheCapture) {
 // --- Simulated drives ----------------------------------------------------------------------------------------------
 
 TEST_F(LiscoStream, FindsTheObjectsOfASimulatedDrive) {
-  const Outcome simulated =
-      runLine(std::string(LISCO_SIMULATE) + " --terrain plane --sensor hdl32e --speed 10 --rotations 3 --pcap -o drive");
+  const Outcome simulated = runLine(std::string(LISCO_SIMULATE) +
+                                    " --terrain plane --sensor hdl32e --speed 10 --rotations 3 --pcap -o drive");
   ASSERT_EQ(simulated.status, 0) << simulated.err;
   const Outcome outcome = run("drive/capture.pcap --sensor hdl32e -t 0.4 --ground-z -1.5 -o clouds");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -618,7 +618,8 @@ TEST_F(LiscoStream, RefusesBadInputInOneLine) {
   expectRefusal("a.pcap a.pcap" + options, {"more than one capture"});
   expectRefusal(options, {"no capture and no --port"});
   expectRefusal("a.pcap -t 0.5", {"--sensor is missing"});
-  expectRefusal("a.pcap -t 0.5 --sensor os1", {"no sensor 'os1'", "vlp16, hdl32e, hdl64e, vls128"});
+  expectRefusal("a.pcap -t 0.5 --sensor os1",
+                {"no sensor 'os1'", "vlp16, vlp32c, hdl32e, hdl64e, vls128, pandar40p", "ouster"});
   expectRefusal("a.pcap --sensor vlp16", {"--tolerance is missing"});
   expectRefusal("a.pcap --sensor vlp16 -t 0", {"--tolerance must be a positive number of metres, not '0'"});
   expectRefusal("a.pcap --sensor vlp16 -t nan", {"--tolerance"});
@@ -629,7 +630,7 @@ TEST_F(LiscoStream, RefusesBadInputInOneLine) {
   expectRefusal("a.pcap" + options + " --rotations 0", {"--rotations"});
   expectRefusal("a.pcap" + options + " --port 65536", {"--port must be a whole number from 0 to 65535"});
   expectRefusal("a.pcap" + options + " --port 99", {"no data packet", "only packets to port 99"});
-  expectRefusal("a.pcap" + options + " --calibration db.xml", {"hdl64e only"});
+  expectRefusal("a.pcap" + options + " --calibration db.xml", {"hdl64e or the vlp32c"});
   expectRefusal("--port --realtime" + options, {"--realtime"});
   expectRefusal("a.pcap" + options + " -o a.pcap", {"a.pcap", "no folder"});
   expectRefusal("a.pcap" + options + " -o a.pcap/b", {"cannot be written"});

@@ -417,7 +417,8 @@ TEST_F(DecoderTest, ReadsTheYamlOfRos) {
     }
   }
   EXPECT_EQ(refusal("lasers:\n"), ": is no calibration file: it has no list of lasers");
-  EXPECT_EQ(refusal("lasers:\n- {laser_id: 32}"), ": is no calibration file: a laser has no vert_correction");
+  EXPECT_EQ(refusal("lasers:\n- {laser_id: 32}"), ": there is no laser 32");
+  EXPECT_EQ(refusal("lasers:\n- {laser_id: 3}"), ": is no calibration file: a laser has no vert_correction");
   EXPECT_EQ(refusal(flow.substr(0, flow.find("- {", 40))), ": does not describe laser 1");
   EXPECT_EQ(refusal("lasers:\n- {laser_id: x, rot_correction: 1}"), ": laser_id is no number: 'x'");
 }
