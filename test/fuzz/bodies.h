@@ -35,7 +35,13 @@ void fuzzReaders(const std::uint8_t* data, std::size_t size);
 /// A recording, one of its messages, or a cloud of floats; the first byte gives the kind.
 void fuzzRecordings(const std::uint8_t* data, std::size_t size);
 
-/// Packets of a sensor, or a capture of them.
+/// Packets of a Velodyne sensor, or a capture of them.
 void fuzzPackets(const std::uint8_t* data, std::size_t size);
+
+/// Packets of a Hesai sensor.
+void fuzzHesai(const std::uint8_t* data, std::size_t size);
+
+/// Packets of an Ouster sensor, or its metadata.
+void fuzzOuster(const std::uint8_t* data, std::size_t size);
 
 }  // namespace lisco_test

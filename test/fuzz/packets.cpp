@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bodies.h"
+#include "columns.h"
 #include "input.h"
 #include "scratch_file.h"
 #include "sensors/capture_file.h"
@@ -19,8 +20,8 @@ namespace {
 constexpr std::size_t kDataBytes = 1206;
 
 /// The sensors; the HDL-64E with a plausible calibration.
-const std::array<lisco_apps::VelodyneModel, 4>& models() {
-  static const std::array<lisco_apps::VelodyneModel, 4> all = [] {
+const std::array<lisco_apps::VelodyneModel, 5>& models() {
+  static const std::array<lisco_apps::VelodyneModel, 5> all = [] {
     lisco_apps::VelodyneModel hdl64e{"hdl64e", {}, {0xEEFF, 0xDDFF}, 1, 48., 0.002, {}};
     for (std::size_t i = 0; i < 64; ++i) {
       lisco_apps::Laser laser;
@@ -32,9 +33,9 @@ const std::array<lisco_apps::VelodyneModel, 4>& models() {
       laser.side = i % 2 == 0 ? 0.026 : -0.026;
       hdl64e.lasers.push_back(laser);
     }
-    return std::array<lisco_apps::VelodyneModel, 4>{lisco_apps::makeVelodyneModel("vlp16"),
-                                                    lisco_apps::makeVelodyneModel("hdl32e"),
-                                                    lisco_apps::makeVelodyneModel("vls128"), hdl64e};
+    return std::array<lisco_apps::VelodyneModel, 5>{
+        lisco_apps::makeVelodyneModel("vlp16"), lisco_apps::makeVelodyneModel("hdl32e"),
+        lisco_apps::makeVelodyneModel("vlp32c"), lisco_apps::makeVelodyneModel("vls128"), hdl64e};
   }();
   return all;
 }
@@ -68,12 +69,13 @@ void makePacket(Input& input, const lisco_apps::VelodyneModel& model, std::vecto
     packet[(input.byte() << 8 | input.byte()) % kDataBytes] = static_cast<std::uint8_t>(input.byte());
 }
 
-void decodePackets(Input& input, const lisco_apps::VelodyneModel& model) {
-  lisco_apps::VelodyneDecoder decoder(model);
+void decodePackets(Input& input, const lisco_apps::VelodyneModel& model, lisco_apps::ReturnChoice returns) {
+  lisco_apps::VelodyneDecoder decoder(model, returns);
   lisco_apps::RotationCutter cutter;
   std::vector<std::uint8_t> bytes;
   std::uint64_t packets = 0;
   std::uint64_t columns = 0;
+  std::size_t cells_before = 0;
   while (input.left() > 0 && packets < 20) {
     const unsigned how = input.byte();
     if (how % 16 == 0) {  // any bytes, of any size
@@ -87,25 +89,16 @@ void decodePackets(Input& input, const lisco_apps::VelodyneModel& model) {
     ++packets;
     const auto kind = decoder.decode({bytes.data(), bytes.size(), 0}, [&](const lisco_apps::Column& column) {
       ++columns;
-      hold(column.cells.size() == model.lasers.size(), "the cells of a column");
-      hold(column.azimuth >= 0 && column.azimuth < 360, "an invalid azimuth");
-      hold(std::isfinite(column.time_us) && column.time_us >= 0, "an invalid time");
-      for (const lisco_apps::Cell& cell : column.cells) {
-        const bool all = std::isfinite(cell.x) && std::isfinite(cell.y) && std::isfinite(cell.z) &&
-                         cell.intensity >= 0 && cell.intensity <= 255;
-        const bool none = std::isnan(cell.x) && std::isnan(cell.y) && std::isnan(cell.z) && std::isnan(cell.intensity);
-        hold(all || none, "half a return");
-        hold(none || std::hypot(cell.x, cell.y, cell.z) < 300, "an implausible return");
-      }
+      const std::size_t lasers = model.lasers.size();
+      hold(column.cells.size() == lasers || column.cells.size() == 2 * lasers, "the cells of a column");
+      hold(cells_before == 0 || column.cells.size() == cells_before || column.after_break, "cells without a break");
+      cells_before = column.cells.size();
+      holdColumn(column);
       cutter.startsRotation(column.azimuth, column.after_break);
     });
     hold((kind == lisco_apps::VelodyneDecoder::Kind::kPosition) == (bytes.size() == 512), "a packet of the GPS");
-    const lisco_apps::VelodyneDecoder::Counts& counts = decoder.counts();
-    hold(counts.data + counts.late + counts.position + counts.foreign == packets, "the number of packets");
-    hold(counts.columns == columns, "the number of columns");
+    holdCounts(decoder, packets, columns);
     hold(decoder.step() >= 0 && decoder.step() < 2.56, "an implausible step");
-    hold(std::isfinite(decoder.turnUs()), "an invalid number");
-    hold(decoder.packetPeriodUs() > 0, "the period of packets");
   }
 }
 
@@ -138,7 +131,9 @@ void fuzzPackets(const std::uint8_t* data, std::size_t size) {
   const unsigned what = data[0];
   if (what % 8 >= 6) return readCapture(data + 1, size - 1, what % 8 == 7);
   Input input(data + 1, size - 1);
-  decodePackets(input, models()[what % 4]);
+  constexpr std::array kChoices{lisco_apps::ReturnChoice::kStrongest, lisco_apps::ReturnChoice::kLast,
+                                lisco_apps::ReturnChoice::kBoth};
+  decodePackets(input, models()[what / 8 % models().size()], kChoices[what / 64 % 3]);
 }
 
 }  // namespace lisco_test
