@@ -287,6 +287,9 @@ int run(const Settings& settings, bool only_lisco, bool with_details) {
   std::vector<std::string> names;
   for (const Filter& rival : rivals) names.emplace_back(rival.name);
   names.emplace_back("Lisco");
+  for (const std::string& terrain : settings.terrains) describeTerrain(terrain);  // throws if unknown
+  for (const std::string& sensor : settings.sensors) makeSensor(sensor);
+  for (const std::string& seed : settings.seeds) countOf(seed, "--seeds", 0);
   std::printf("| terrain | sensor |");
   for (const std::string& name : names) std::printf(" %s |", name.c_str());
   std::printf("\n|---|---|");
