@@ -30,7 +30,8 @@ Body bodyOf(Thing thing, double width, Footing footing, const Vector& at, double
   return body;
 }
 
-/// One side of the street.
+/// One side of the street. At most one argument of a call draws random numbers: the order of arguments would depend on
+/// the compiler.
 class Side {
  public:
   /// \param side 1: left, -1: right
@@ -39,33 +40,61 @@ class Side {
 
   void add() {
     const double along = side_ < 0 ? 0 : kPi;  // cars face as the traffic does
-    for (double x = begin_; x < end_; x += random_.between(5.2, 12))
-      add(car(random_), 0, Footing::kWheels, x, 4.3, along + random_.between(-0.02, 0.02));
-    for (double x = begin_ + random_.between(0, 20); x < end_; x += random_.between(22, 28))
-      add(lampPost(random_), 0.3, Footing::kFounded, x, 6, -side_ * kPi / 2 - kPi / 2);
-    for (double x = begin_ + random_.between(0, 40); x < end_; x += random_.between(30, 50))
-      add(signPost(random_), 0.3, Footing::kFounded, x, 6.3, along);
-    for (double x = begin_ + random_.between(0, 10); x < end_; x += random_.between(6, 16)) {
+    repeat(0, 5.2, 12, [&](double x) {
+      const double heading = along + random_.between(-0.02, 0.02);
+      add(car(random_), 0, Footing::kWheels, x, 4.3, heading);
+    });
+    repeat(20, 22, 28,
+           [&](double x) { add(lampPost(random_), 0.3, Footing::kFounded, x, 6, -side_ * kPi / 2 - kPi / 2); });
+    repeat(40, 30, 50, [&](double x) { add(signPost(random_), 0.3, Footing::kFounded, x, 6.3, along); });
+    repeat(10, 6, 16, [&](double x) {
       const bool ahead = random_.chance(0.5);
-      Body& person =
-          add(lisco_simulation::person(random_), 0.5, Footing::kFounded, x, random_.between(6.8, 7.6), ahead ? 0 : kPi);
-      person.velocity = {(ahead ? 1 : -1) * kWalking, 0, 0};
-    }
-    for (double x = begin_ + random_.between(0, 10); x < end_; x += random_.between(9, 15))
-      add(broadTree(random_), 0.5, Footing::kFounded, x, 8.2, 0);
-    for (double x = begin_; x < end_;) {
+      const double away = random_.between(6.8, 7.6);
+      add(person(random_), 0.5, Footing::kFounded, x, away, ahead ? 0 : kPi).velocity = {(ahead ? 1 : -1) * kWalking, 0,
+                                                                                         0};
+    });
+    repeat(10, 9, 15, [&](double x) { add(broadTree(random_), 0.5, Footing::kFounded, x, 8.2, 0); });
+    for (Lane walls(begin_, end_); walls.isFree();) {
       const double length = random_.between(6, 14);
-      add(wall(random_, length), 0, Footing::kFounded, x + length / 2, 9.3, kPi / 2);
-      x += length + random_.between(3, 15);
+      const double middle = walls.take(length);
+      add(wall(random_, length), 0, Footing::kFounded, middle, 9.3, kPi / 2);
+      walls.take(random_.between(3, 15));
     }
-    for (double x = begin_; x < end_;) {
+    for (Lane houses(begin_, end_); houses.isFree();) {
       const double width = random_.between(8, 14);
-      add(house(random_, width), width, Footing::kFounded, x + width / 2, 16, side_ * kPi / 2);
-      x += width + random_.between(2, 10);
+      const double middle = houses.take(width);
+      add(house(random_, width), width, Footing::kFounded, middle, 16, side_ * kPi / 2);
+      houses.take(random_.between(2, 10));
     }
   }
 
  private:
+  /// A way that is taken from one end to the other.
+  class Lane {
+   public:
+    Lane(double begin, double end) : next_(begin), end_(end) {}
+    bool isFree() const { return next_ < end_; }
+    /// The middle of the next part of this length.
+    double take(double length) {
+      next_ += length;
+      return next_ - length / 2;
+    }
+
+   private:
+    double next_, end_;
+  };
+
+  /// Calls add (x) from the beginning to the end, at random distances, all in metres.
+  /// \param latest of the first from the beginning \param least, most distances
+  template <typename Add>
+  void repeat(double latest, double least, double most, const Add& add) {
+    double x = begin_ + (latest > 0 ? random_.between(0, latest) : 0);
+    while (x < end_) {
+      add(x);
+      x += random_.between(least, most);
+    }
+  }
+
   /// \param away from the middle of the road, metres
   Body& add(Thing thing, double width, Footing footing, double x, double away, double heading) {
     const double y = kRoadMiddle + side_ * away;
@@ -85,11 +114,16 @@ void addTraffic(World& world, Random& random, double speed) {
     world.bodies.push_back(std::move(body));
   };
   const double oncoming = 2 * kRoadMiddle;
-  add(car(random), random.between(13, 18), 0, speed + 2);
-  add(car(random), random.between(-18, -13), 0, std::max(speed - 2, 0.0));
-  add(car(random), random.between(8, 20), oncoming, -9);
-  add(lorry(random), random.between(38, 45), oncoming, -8);
-  add(car(random), random.between(-30, -20), oncoming, -9);
+  const double ahead = random.between(13, 18);
+  add(car(random), ahead, 0, speed + 2);
+  const double behind = random.between(-18, -13);
+  add(car(random), behind, 0, std::max(speed - 2, 0.0));
+  const double near = random.between(8, 20);
+  add(car(random), near, oncoming, -9);
+  const double far = random.between(38, 45);
+  add(lorry(random), far, oncoming, -8);
+  const double past = random.between(-30, -20);
+  add(car(random), past, oncoming, -9);
 }
 
 }  // namespace
