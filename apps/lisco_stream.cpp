@@ -2,8 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 //
 // Clusters a sensor's packets while it turns: of a capture, or live by UDP.
-#include <signal.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -21,9 +19,13 @@
 #include <boost/algorithm/string/join.hpp>
 #include <boost/program_options.hpp>
 
+#include "io/interruption.h"
 #include "io/options.h"
 #include "io/text.h"
-#include "sensors/capture_file.h"
+#include "recordings/cloud_columns.h"
+#include "recordings/options.h"
+#include "recordings/packet_input.h"
+#include "recordings/topic_choice.h"
 #include "sensors/decoder.h"
 #include "sensors/udp_receiver.h"
 #include "stream/endless_stream.h"
@@ -32,17 +34,22 @@
 #include "stream/packet_queue.h"
 #include "stream/report.h"
 #include "stream/rotation_stream.h"
+#include "stream/window_stream.h"
 
 namespace {
 
 namespace po = boost::program_options;
 using namespace lisco_apps;
 
+enum class Mode { kRotation, kEndless, kWindows };
+
 struct Options {
-  fs::path capture;                   ///< empty: live
+  fs::path capture;                   ///< or recording; empty: live
   std::optional<std::uint16_t> port;  ///< of a capture: only packets to it
   DecoderOptions decoder;
-  bool endless = false;
+  RecordingOptions recording;
+  Mode mode = Mode::kRotation;
+  unsigned window = 0, hop = 0;  ///< columns
   StreamOptions stream;
   bool realtime = false;
   fs::path output;
@@ -50,42 +57,30 @@ struct Options {
   bool statistics = false;
 };
 
-/// Set by the first SIGINT or SIGTERM; the second ends the program at once.
-volatile sig_atomic_t interrupted = 0;
-
-void listenToSignals() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { interrupted = 1; };
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
-
-bool isEndless(const std::string& mode) {
-  if (mode != "rotation" && mode != "endless")
-    throw std::runtime_error("--mode must be rotation or endless, not '" + mode + "'");
-  return mode == "endless";
-}
-
-ReturnChoice returnChoice(const std::string& text) {
-  if (text == "strongest") return ReturnChoice::kStrongest;
-  if (text == "last") return ReturnChoice::kLast;
-  if (text == "both") return ReturnChoice::kBoth;
-  throw std::runtime_error("--return must be strongest, last or both, not '" + text + "'");
+Mode modeOf(const std::string& text) {
+  if (text == "rotation") return Mode::kRotation;
+  if (text == "endless") return Mode::kEndless;
+  if (text == "windows") return Mode::kWindows;
+  throw std::runtime_error("--mode must be rotation, endless or windows, not '" + text + "'");
 }
 
 /// \return false if --help or --version was given
 bool parse(int argc, char** argv, Options& options) {
   po::options_description shown(
       "Usage: lisco_stream CAPTURE.pcap --sensor NAME --tolerance M [options]\n"
+      "       lisco_stream RECORDING --tolerance M [options]\n"
       "       lisco_stream --port N --sensor NAME --tolerance M [options]\n\n"
       "Finds the Euclidean clusters in a rotating LiDAR's packets while the sensor turns. The packets are those of\n"
-      "a capture (pcap or pcapng), or come by UDP. There are two modes:\n"
+      "a capture (pcap or pcapng), of messages in a recording (.db3 or .mcap of ROS 2, the folder of such a bag, or\n"
+      ".bag of ROS 1), or come by UDP. A recording's clouds (sensor_msgs/PointCloud2 with rows or rings) are taken\n"
+      "column by column, too: each message is a rotation. There are three modes:\n"
       "  rotation  The clusters of each rotation, as soon as its last column is in: those of PCL's\n"
       "            EuclideanClusterExtraction on the rotation as an organized cloud, in the same order.\n"
       "            Rotations begin at the azimuth of the first column.\n"
       "  endless   Clusters cross the borders of rotations: each is delivered once, as soon as no later column can\n"
       "            reach it. A cluster of a whole turn is cut there, and continued by others.\n"
+      "  windows   The clusters of the last --window columns, after every --hop columns: those of PCL's\n"
+      "            EuclideanClusterExtraction on these columns as an organized cloud, in the same order.\n"
       "Ctrl-C ends the program after the packets received so far; a second one ends it at once.\n\n"
       "With --json, each line of the output is an object. Metres; azimuths in degrees clockwise, 0 ahead;\n"
       "time is when the last packet came, in seconds since 1970.\n"
@@ -93,41 +88,35 @@ bool parse(int argc, char** argv, Options& options) {
       "            (above the ground), lost_packets, latency_ms (from its last column to its clusters), and\n"
       "            clusters, largest first, each with id (from 1), azimuth (of its centroid), size, centroid,\n"
       "            box (min and max) and nearest_range.\n"
+      "  windows   the same, one line per window, whose number is window.\n"
       "  endless   one line per cluster: id (from 1, in the order of delivery), time, first_azimuth,\n"
       "            last_azimuth and turns (of its columns, and from the first to the last), size, centroid,\n"
       "            box, nearest_range, cut, continued, and latency_ms (from the first column that cannot reach\n"
       "            it to its delivery; null if the end of the packets delivered it).\n\n"
-      "Exit code 0; 2 on wrong usage, if no packet is one of the sensor's, or if the capture breaks off (after\n"
+      "Exit code 0; 2 on wrong usage, if no packet is one of the sensor's, or if the recording breaks off (after\n"
       "the packets before it have been clustered).\n\n"
       "Options");
-  const std::string sensors = boost::join(sensorNames(), ", ");
   std::vector<std::string> inputs;
   std::string port;
   ClusterOptions clustering;
-  // clang-format off
-  shown.add_options()
-    ("sensor", po::value<std::string>(&options.decoder.sensor)->value_name("NAME"), sensors.c_str());
+  addSensorOptions(shown, options.decoder);
   clustering.addTo(shown);
+  options.recording.addTo(shown);
+  // clang-format off
   shown.add_options()
     ("port", po::value<std::string>(&port)->value_name("N")->implicit_value("default"),
      "UDP port to receive from (without a number: 2368, or 7502 for the ouster; 0: any that is free); with a capture, "
      "take only packets to it")
-    ("mode", textOption("NAME", [&](const std::string& text) { options.endless = isEndless(text); }),
-     "rotation or endless (default rotation)")
-    ("calibration", textOption("FILE", [&](const std::string& text) { options.decoder.calibration = text; }),
-     "the angles of the sensor's own lasers: of the hdl64e db.xml, or YAML as ROS has it; of the vlp32c YAML; of Hesai's "
-     "sensors (pandar...) the maker's CSV. Without it, those of the manual; the hdl64e and the pandarqt128 need it")
-    ("metadata", textOption("FILE", [&](const std::string& text) { options.decoder.metadata = text; }),
-     "the metadata (JSON) of the ouster, as its software records it beside a capture")
-    ("return", textOption("WHICH", [&](const std::string& text) { options.decoder.returns = returnChoice(text); }),
-     "strongest, last or both: which returns of a laser and firing are clustered, if the sensor sends two (default "
-     "both: a cloud then has two rows for each laser)")
-    ("rotations", countOption("--rotations", options.stream.rotations, 1), "end after N rotations")
+    ("mode", textOption("NAME", [&](const std::string& text) { options.mode = modeOf(text); }),
+     "rotation, endless or windows (default rotation)")
+    ("window", countOption("--window", options.window, 1), "columns of a window, a multiple of the hop")
+    ("hop", countOption("--hop", options.hop, 1), "a window ends after every N columns")
+    ("rotations", countOption("--rotations", options.stream.rotations, 1), "end after N rotations, or windows")
     ("realtime", po::bool_switch(&options.realtime),
      "read a capture at the pace of its recording, without breaks of more than ten seconds (default: as fast as "
      "possible)")
     ("output,o", pathOption("DIR", "--output", options.output),
-     "folder for rotation_000001.pcd and so on: each rotation as an organized cloud of x y z intensity label, where "
+     "folder for rotation_000001.pcd and so on: each rotation (or window) as an organized cloud of x y z intensity label, where "
      "the label is the cluster's id, 0 for none; in mode endless, written once all its clusters have been delivered. "
      "Removes those of an earlier run")
     ("json", po::bool_switch(&options.json), "print JSON lines instead of text")
@@ -145,7 +134,15 @@ bool parse(int argc, char** argv, Options& options) {
   else if (given.count("port") != 0)
     options.port = static_cast<std::uint16_t>(countOf(port, "--port", 0, std::numeric_limits<std::uint16_t>::max()));
   if (options.realtime && options.capture.empty()) throw std::runtime_error("--realtime is for captures only");
-  if (options.decoder.sensor.empty()) throw std::runtime_error("--sensor is missing (" + sensors + "); see --help");
+  if (options.capture.empty() && options.decoder.sensor.empty())
+    throw std::runtime_error("--sensor is missing (" + boost::join(sensorNames(), ", ") + "); see --help");
+  options.recording.check();
+  if (options.capture.empty() && options.recording.areGiven())
+    throw std::runtime_error("--topic, --from, --to and --every are for recordings only");
+  if (options.mode == Mode::kWindows && (options.window == 0 || options.hop == 0 || options.window % options.hop != 0))
+    throw std::runtime_error("--mode windows needs --window and --hop, of which the window is a multiple");
+  if (options.mode != Mode::kWindows && options.window + options.hop > 0)
+    throw std::runtime_error("--window and --hop are for --mode windows only");
 
   clustering.check();
   options.stream.tolerance = static_cast<float>(clustering.tolerance);
@@ -154,16 +151,6 @@ bool parse(int argc, char** argv, Options& options) {
   options.stream.max_size = clustering.max_size;
   return true;
 }
-
-/// A source that ends on a signal.
-class UntilInterrupted : public PacketSource {
- public:
-  explicit UntilInterrupted(PacketSource& source) : source_(source) {}
-  Arrival next(Packet& packet) override { return interrupted != 0 ? Arrival::kEnd : source_.next(packet); }
-
- private:
-  PacketSource& source_;
-};
 
 /// The packets of a capture at the pace of their recording. Breaks of more than ten seconds are skipped.
 class PacedCapture : public PacketSource {
@@ -208,20 +195,49 @@ class PacedCapture : public PacketSource {
 
 struct Input {
   std::unique_ptr<PacketSource> source;
+  std::unique_ptr<Decoder> decoder;
   PacketQueue* queue = nullptr;  ///< the source, if live
+  bool has_clouds = false;       ///< instead of packets
 };
+
+/// The clouds of a recording, if its topic holds clouds.
+std::optional<Input> openClouds(const Options& options, Report& report) {
+  if (!isRecording(options.capture)) return std::nullopt;
+  std::unique_ptr<Recording> recording = openRecording(options.capture);
+  const RecordingOptions& part = options.recording;
+  const std::size_t index = chooseTopic(*recording, options.capture, part.topic, !options.decoder.sensor.empty());
+  const Topic topic = recording->topics()[index];
+  if (kindOf(topic) != TopicKind::kClouds) return std::nullopt;
+  report.warn(options.capture.string() + ": topic " + topic.name);
+  auto reader = std::make_unique<TopicReader>(std::move(recording), index, part.span);
+  Input input;
+  input.source = std::make_unique<RawMessages>(std::move(reader), part.every);
+  input.decoder = std::make_unique<CloudColumns>(topic);
+  input.has_clouds = true;
+  return input;
+}
+
+Input openFile(const Options& options, Report& report) {
+  if (std::optional<Input> clouds = openClouds(options, report)) return std::move(*clouds);
+  if (options.recording.every != 1) throw std::runtime_error("--every is for recordings of clouds only");
+  PacketInput packets =
+      openPackets(options.capture, options.recording, options.decoder, options.port, Interruption::happened);
+  for (const std::string& note : packets.notes) report.warn(options.capture.string() + ": " + note);
+  return {std::move(packets.source), std::move(packets.decoder)};
+}
 
 Input open(const Options& options, Report& report) {
   if (options.capture.empty()) {
+    std::unique_ptr<Decoder> decoder = makeDecoder(options.decoder);
     auto receiver = std::make_unique<UdpReceiver>(*options.port);
     report.warn("listening on UDP port " + std::to_string(receiver->port()));
     auto queue = std::make_unique<PacketQueue>(std::move(receiver));
     PacketQueue* const live = queue.get();
-    return {std::move(queue), live};
+    return {std::move(queue), std::move(decoder), live};
   }
-  auto capture = std::make_unique<CaptureFile>(options.capture, options.port);
-  if (options.realtime) return {std::make_unique<PacedCapture>(std::move(capture))};
-  return {std::move(capture)};
+  Input input = openFile(options, report);
+  if (options.realtime) input.source = std::make_unique<PacedCapture>(std::move(input.source));
+  return input;
 }
 
 /// When a packet was at hand; live ones wait in the queue after that.
@@ -233,16 +249,6 @@ Clock::time_point receivedAt(const Packet& packet, bool is_live) {
   return now - std::max(Clock::duration::zero(), std::chrono::duration_cast<Clock::duration>(since_1970 - arrival));
 }
 
-/// Prepares the decoder by the whole capture. Does nothing for live packets and for pipes, which can be read only once.
-void prepare(const Options& options, Decoder& decoder) {
-  std::error_code unknown;
-  const fs::file_type type = fs::status(options.capture, unknown).type();
-  if (options.capture.empty() || type == fs::file_type::fifo || type == fs::file_type::character) return;
-  CaptureFile capture(options.capture, options.port);
-  UntilInterrupted source(capture);
-  decoder.prepare(source);
-}
-
 /// Clusters packets until the source ends, a signal comes, or the stream has the wanted rotations.
 void takePackets(const Input& input, Decoder& decoder, OtherSensors& others, Stream& stream, Report& report) {
   bool is_open = true;
@@ -252,8 +258,8 @@ void takePackets(const Input& input, Decoder& decoder, OtherSensors& others, Str
     is_open = is_open && stream.add(column, origin);
   };
   while (is_open) {
-    if (interrupted != 0 && input.queue == nullptr) return;
-    if (interrupted != 0) input.queue->stop();  // packets received so far are still clustered
+    if (Interruption::happened() && input.queue == nullptr) return;
+    if (Interruption::happened()) input.queue->stop();  // packets received so far are still clustered
     const PacketSource::Arrival arrival = input.source->next(packet);
     if (arrival != PacketSource::Arrival::kPacket) decoder.flush(take);
     if (arrival == PacketSource::Arrival::kEnd) return;
@@ -269,21 +275,24 @@ void takePackets(const Input& input, Decoder& decoder, OtherSensors& others, Str
   }
 }
 
-int run(const Options& options) {
-  const std::unique_ptr<Decoder> made = makeDecoder(options.decoder);
-  Decoder& decoder = *made;
-  listenToSignals();
-  prepare(options, decoder);
-  std::optional<LabelledClouds> clouds;
-  if (!options.output.empty()) clouds.emplace(options.output);
-  Report report(options.json ? Report::Format::kJson : Report::Format::kText, clouds ? &*clouds : nullptr);
-  const Input input = open(options, report);
+std::unique_ptr<Stream> makeStream(const Options& options, const Decoder& decoder, Report& report) {
+  if (options.mode == Mode::kEndless) return std::make_unique<EndlessStream>(options.stream, decoder, report);
+  if (options.mode == Mode::kWindows)
+    return std::make_unique<WindowStream>(options.stream, decoder, report, options.window, options.hop);
+  return std::make_unique<RotationStream>(options.stream, decoder, report);
+}
 
-  std::unique_ptr<Stream> stream;
-  if (options.endless)
-    stream = std::make_unique<EndlessStream>(options.stream, decoder, report);
-  else
-    stream = std::make_unique<RotationStream>(options.stream, decoder, report);
+int run(const Options& options) {
+  Interruption::listen();
+  std::optional<LabelledClouds> clouds;
+  Report report(options.json ? Report::Format::kJson : Report::Format::kText);
+  const Input input = open(options, report);
+  Decoder& decoder = *input.decoder;
+  if (!options.output.empty()) {
+    clouds.emplace(options.output);
+    report.writeTo(*clouds);
+  }
+  const std::unique_ptr<Stream> stream = makeStream(options, decoder, report);
 
   OtherSensors others;
   takePackets(input, decoder, others, *stream, report);
@@ -293,7 +302,10 @@ int run(const Options& options) {
 
   const std::string& error = input.source->error();
   if (!error.empty()) report.warn(error);
-  const bool was_cut_short = interrupted != 0 && input.queue == nullptr;
+  const bool was_cut_short = Interruption::happened() && input.queue == nullptr;
+  if (decoder.counts().data == 0 && !was_cut_short && input.has_clouds)
+    fail(options.capture, "holds no cloud with rows or a field 'ring'" +
+                              std::string(input.source->packets() > 0 ? "; lisco_cluster takes any cloud" : ""));
   if (decoder.counts().data == 0 && !was_cut_short)
     throw std::runtime_error((options.capture.empty() ? "" : options.capture.string() + ": ") +
                              others.nothingCame(*input.source, decoder) +

@@ -2,9 +2,40 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "recordings/options.h"
 
+#include <stdexcept>
+
+#include <boost/algorithm/string/join.hpp>
+
 #include "io/options.h"
 
 namespace lisco_apps {
+namespace {
+
+ReturnChoice returnChoice(const std::string& text) {
+  if (text == "strongest") return ReturnChoice::kStrongest;
+  if (text == "last") return ReturnChoice::kLast;
+  if (text == "both") return ReturnChoice::kBoth;
+  throw std::runtime_error("--return must be strongest, last or both, not '" + text + "'");
+}
+
+}  // namespace
+
+void addSensorOptions(boost::program_options::options_description& shown, DecoderOptions& decoder) {
+  const std::string sensors = "of packets: the sensor: " + boost::algorithm::join(sensorNames(), ", ");
+  // clang-format off
+  shown.add_options()
+    ("sensor", textOption("NAME", [&decoder](const std::string& text) { decoder.sensor = text; }), sensors.c_str())
+    ("calibration", textOption("FILE", [&decoder](const std::string& text) { decoder.calibration = text; }),
+     "of packets: the angles of the sensor's own lasers: of the hdl64e db.xml, or YAML as ROS has it; of the vlp32c "
+     "YAML; of Hesai's sensors (pandar...) the maker's CSV. Without it, those of the manual; the hdl64e and the "
+     "pandarqt128 need it")
+    ("metadata", textOption("FILE", [&decoder](const std::string& text) { decoder.metadata = text; }),
+     "of packets: the metadata (JSON) of the ouster (default: found in the recording, or beside it by its name)")
+    ("return", textOption("WHICH", [&decoder](const std::string& text) { decoder.returns = returnChoice(text); }),
+     "of packets: strongest, last or both: which returns of a laser and firing are clustered, if the sensor sends two "
+     "(default both: a cloud then has two rows for each laser)");
+  // clang-format on
+}
 
 void RecordingOptions::addTo(boost::program_options::options_description& shown) {
   // clang-format off

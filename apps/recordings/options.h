@@ -8,6 +8,7 @@
 #include <boost/program_options.hpp>
 
 #include "recordings/topic_reader.h"
+#include "sensors/decoder.h"
 
 namespace lisco_apps {
 
@@ -23,5 +24,8 @@ struct RecordingOptions {
   /// Whether any of them was given.
   bool areGiven() const { return !topic.empty() || every != 1 || span.from > 0 || span.to < 1e300; }
 };
+
+/// Adds the options that name a sensor: --sensor, --calibration, --metadata and --return.
+void addSensorOptions(boost::program_options::options_description& shown, DecoderOptions& decoder);
 
 }  // namespace lisco_apps

@@ -2,8 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "recordings/packet_input.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <fstream>
 #include <iterator>
@@ -63,29 +61,6 @@ class FirstPackets : public PacketSource {
  private:
   PacketSource& source_;
   const std::function<bool()>& is_interrupted_;
-};
-
-/// A file that lives as long as this object.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const std::string& content) {
-    std::string name = (fs::temp_directory_path() / "lisco_XXXXXX").string();
-    const int descriptor = mkstemp(name.data());
-    if (descriptor < 0) fail(name, "cannot be written");
-    close(descriptor);
-    path_ = name;
-    std::ofstream(path_, std::ios::binary) << content;
-  }
-  ~TemporaryFile() {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
 };
 
 /// Whether a file is the metadata of an Ouster sensor.
@@ -149,7 +124,6 @@ PacketInput openPackets(const fs::path& input, const RecordingOptions& options, 
   const bool is_recording = isRecording(input);
   std::size_t topic = 0;
   std::string maker;
-  std::optional<TemporaryFile> recorded_metadata;
   if (is_recording) {
     const std::unique_ptr<Recording> recording = openRecording(input);
     topic = chooseTopic(*recording, input, options.topic, true);
@@ -160,8 +134,8 @@ PacketInput openPackets(const fs::path& input, const RecordingOptions& options, 
     const bool is_ouster = decoder.sensor == kOuster || (decoder.sensor.empty() && boost::contains(maker, "Ouster"));
     if (is_ouster && decoder.metadata.empty()) {
       if (const std::string text = metadataIn(input, chosen.name); !text.empty()) {
-        recorded_metadata.emplace(text);
-        decoder.metadata = recorded_metadata->path();
+        decoder.metadata_json = text;
+        packets.notes.emplace_back("an Ouster sensor, by the metadata in the recording");
         decoder.sensor = kOuster;
       }
     }
@@ -174,7 +148,7 @@ PacketInput openPackets(const fs::path& input, const RecordingOptions& options, 
   if (!is_recording) packets.source = open();  // says why it is no capture, before anything is asked for
 
   const bool may_be_ouster = decoder.sensor.empty() && (maker.empty() || boost::contains(maker, "Ouster"));
-  if (decoder.metadata.empty() && (decoder.sensor == kOuster || may_be_ouster)) {
+  if (decoder.metadata.empty() && decoder.metadata_json.empty() && (decoder.sensor == kOuster || may_be_ouster)) {
     MetadataBeside beside = metadataBeside(input);
     if (beside.named.empty() && decoder.sensor == kOuster && beside.all.size() == 1) beside.named = beside.all.front();
     if (!beside.named.empty()) {
@@ -192,6 +166,14 @@ PacketInput openPackets(const fs::path& input, const RecordingOptions& options, 
   if (decoder.sensor.empty())
     fail(input, "holds the packets of " + (maker.empty() ? "a sensor" : maker) + ": name it by --sensor (" +
                     boost::join(sensorNames(), ", ") + ")");
+  if (decoder.calibration.empty() && boost::starts_with(decoder.sensor, "pandar")) {
+    std::error_code unknown;
+    const fs::path beside = fs::path(input).replace_extension(".csv");
+    if (fs::is_regular_file(beside, unknown)) {
+      decoder.calibration = beside;
+      packets.notes.push_back("calibrated by the file beside it: " + beside.filename().string());
+    }
+  }
   packets.decoder = makeDecoder(decoder);
   if (!isPipe(input)) {
     const std::unique_ptr<PacketSource> first = open();

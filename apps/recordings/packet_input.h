@@ -29,6 +29,7 @@ struct PacketInput {
 /// - Without a sensor, it is Ouster's if the sensor's metadata are found; otherwise the error tells what is needed.
 /// - Ouster's metadata are found in the recording, or beside the input: a `.json` of its name, of a beginning of it, or
 ///   of its name and more; for a named sensor also the only one in the folder.
+/// - The calibration of a Hesai's is found beside the input: a `.csv` of its name.
 /// The decoder is prepared on the packets at the beginning.
 /// \param input a pipe is read once: its decoder is not prepared
 /// \param port of a capture: takes only packets to it

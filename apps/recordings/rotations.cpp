@@ -10,6 +10,7 @@ std::optional<Rotation> Rotations::next() {
     const PacketSource::Arrival arrival = input_.source->next(packet);
     if (arrival == PacketSource::Arrival::kEnd) {
       is_over_ = true;
+      input_.decoder->flush([this](const Column& column) { add(column); });
       end();
     } else if (arrival == PacketSource::Arrival::kPacket) {
       packet_time_us_ = packet.time_us;

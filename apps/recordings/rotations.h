@@ -22,7 +22,7 @@ struct Rotation {
 /// Cuts packets into rotations as lisco_stream does. Holds one or two rotations at a time.
 class Rotations {
  public:
-  explicit Rotations(PacketInput input) : input_(std::move(input)) {}
+  explicit Rotations(PacketInput input) : input_(std::move(input)), cutter_(input_.decoder->rotationStart()) {}
 
   /// \return nothing at the end
   std::optional<Rotation> next();

@@ -126,7 +126,7 @@ class ScanSource::Turns : public Sequence {
     }
     const PacketInput& input = rotations_.input();
     if (!input.source->error().empty()) throw std::runtime_error(input.source->error());
-    if (taken_ == 0) fail(file_, "holds no data packet of a " + input.decoder->name());
+    if (taken_ == 0) fail(file_, "holds no data packet of the sensor (" + input.decoder->name() + ")");
     return std::nullopt;
   }
   double share() const override { return rotations_.input().source->share(); }
@@ -140,14 +140,9 @@ class ScanSource::Turns : public Sequence {
 
 void InputOptions::addTo(boost::program_options::options_description& shown) {
   recording.addTo(shown);
-  const std::string sensors = "of packets: the sensor: " + boost::join(sensorNames(), ", ");
+  addSensorOptions(shown, decoder);
   // clang-format off
   shown.add_options()
-    ("sensor", textOption("NAME", [this](const std::string& text) { decoder.sensor = text; }), sensors.c_str())
-    ("calibration", textOption("FILE", [this](const std::string& text) { decoder.calibration = text; }),
-     "of packets: the sensor's calibration, see lisco_stream --help")
-    ("metadata", textOption("FILE", [this](const std::string& text) { decoder.metadata = text; }),
-     "of packets: an Ouster sensor's metadata (default: found in the recording, or beside the capture by its name)")
     ("port", textOption("N", [this](const std::string& text) {
        port = static_cast<std::uint16_t>(countOf(text, "--port", 1, 65535)); }),
      "of a capture: take only packets to this UDP port")

@@ -31,6 +31,8 @@ struct Column {
   double azimuth;    ///< of the sensor as its first laser fires: degrees clockwise from +x, 0 <= azimuth < 360
   double time_us;    ///< then, by the sensor's clock: microseconds past the hour, may pass the next one
   bool after_break;  ///< at least a whole turn is missing before it, or an unknown part, or its number of cells differs
+  /// Whether a rotation starts with it; nullopt: by its azimuth.
+  std::optional<bool> starts_rotation = std::nullopt;
 };
 
 /// Which of the returns of a laser and firing are given, if a packet carries several: the strongest, the last, which is

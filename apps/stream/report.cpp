@@ -92,7 +92,16 @@ std::string Report::countTurn(const char* name, const Turn& turn) {
 }
 
 void Report::rotation(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) {
-  const std::string heading = countTurn("rotation", turn);
+  found("rotation", turn, clusters, latency);
+}
+
+void Report::window(const Turn& window, const std::vector<FoundCluster>& clusters, Clock::duration latency) {
+  found("window", window, clusters, latency);
+}
+
+void Report::found(const char* name, const Turn& turn, const std::vector<FoundCluster>& clusters,
+                   Clock::duration latency) {
+  const std::string heading = countTurn(name, turn);
   for (const FoundCluster& cluster : clusters) count(cluster);
   if (clouds_ != nullptr) clouds_->write(turn);
   if (format_ == Format::kText) {
@@ -101,7 +110,7 @@ void Report::rotation(const Turn& turn, const std::vector<FoundCluster>& cluster
                     millisecondsOf(latency)) +
           lostIn(turn));
   } else {
-    Json json{{"rotation", turn.number},
+    Json json{{name, turn.number},
               {"time", secondsOf(turn.time_us)},
               {"azimuth", azimuthAt(turn.azimuth / 360)},
               {"columns", turn.columns()},

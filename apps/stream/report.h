@@ -22,10 +22,12 @@ class Report : public Listener {
  public:
   enum class Format { kText, kJson };
 
-  /// \param clouds nullptr: none are written
-  Report(Format format, const LabelledClouds* clouds) : format_(format), clouds_(clouds) {}
+  explicit Report(Format format, const LabelledClouds* clouds = nullptr) : format_(format), clouds_(clouds) {}
+  /// Writes labelled clouds from now on.
+  void writeTo(const LabelledClouds& clouds) { clouds_ = &clouds; }
 
   void rotation(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) override;
+  void window(const Turn& window, const std::vector<FoundCluster>& clusters, Clock::duration latency) override;
   void cluster(const DeliveredCluster& cluster) override;
   void turnEnds(const Turn& turn) override;
   void turnIsLabelled(const Turn& turn) override;
@@ -42,6 +44,8 @@ class Report : public Listener {
   void printStatistics(const PacketSource& source, const Decoder& decoder, const Stream& stream);
 
  private:
+  /// Reports a rotation or a window.
+  void found(const char* name, const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency);
   void count(const FoundCluster& cluster);
   /// Counts a turn. \return its number, columns and returns as text
   std::string countTurn(const char* name, const Turn& turn);

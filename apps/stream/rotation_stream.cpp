@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "lisco/sensor_hints.h"
 #include "sensors/laser.h"
@@ -31,7 +30,9 @@ lisco::SensorHints hintsFor(const Decoder& decoder) {
 
 bool RotationStream::add(const Column& column, const Origin& origin) {
   auto start = Clock::now();
-  if (cutter_.startsRotation(column.azimuth, column.after_break) || turn_.columns() == kMaxColumns) {
+  const bool starts = column.starts_rotation.has_value() ? *column.starts_rotation || column.after_break
+                                                         : cutter_.startsRotation(column.azimuth, column.after_break);
+  if (starts || !has_begun_ || turn_.columns() == kMaxColumns) {
     end();
     if (isOver()) return false;
     start = Clock::now();
@@ -76,37 +77,12 @@ void RotationStream::end() {
   has_begun_ = false;
   const auto start = Clock::now();
   clusterer_.update();
-  collect();
+  collector_.collect(
+      clusterer_, options_, [](std::uint32_t index) { return std::size_t{index}; }, turn_, clusters_);
   const auto latency = last_column_took_ + (Clock::now() - start);
   cluster_latency_.add(latency);
   turn_.lost = takeLost();
   listener_.rotation(turn_, clusters_, latency);
-}
-
-/// Numbers the clusters in PCL's order, and labels the cells.
-void RotationStream::collect() {
-  constexpr std::uint32_t kUnseen = ~std::uint32_t{0};
-  candidates_.clear();
-  label_of_subcluster_.assign(clusterer_.subclusterCount(), kUnseen);
-  clusterer_.forEachRun([&](const std::uint32_t*, std::size_t, std::uint32_t subcluster) {
-    if (std::exchange(label_of_subcluster_[subcluster], 0) != kUnseen) return;
-    const std::uint32_t size = clusterer_.sizeOf(subcluster);
-    if (size >= options_.min_size && size <= options_.max_size) candidates_.push_back({size, subcluster});
-  });
-  // The sort is unstable: among equal sizes, only PCL's own call on the same sequence gives PCL's order.
-  std::sort(candidates_.rbegin(), candidates_.rend(),
-            [](const Candidate& a, const Candidate& b) { return a.size < b.size; });
-  clusters_.assign(candidates_.size(), {});
-  for (std::size_t i = 0; i < candidates_.size(); ++i)
-    clusters_[i].id = label_of_subcluster_[candidates_[i].subcluster] = static_cast<std::uint32_t>(i + 1);
-  clusterer_.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-    const std::uint32_t label = label_of_subcluster_[subcluster];
-    if (label == 0) return;
-    for (std::size_t i = 0; i < count; ++i) {
-      turn_.labels[cells[i]] = label;
-      clusters_[label - 1].add(turn_.cells[cells[i]]);
-    }
-  });
 }
 
 }  // namespace lisco_apps

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "cluster_collector.h"
 #include "lisco/column_clusterer.h"
 #include "stream.h"
 
@@ -23,20 +24,13 @@ class RotationStream : public Stream {
  private:
   void begin(const Column& column);
   void end();
-  void collect();
   lisco::Parameters parametersFor(const Column& first) const;
 
   lisco::ColumnClusterer clusterer_;
   Turn turn_;
   Clock::duration last_column_took_{};
   std::vector<FoundCluster> clusters_;
-
-  /// A subcluster of an accepted size.
-  struct Candidate {
-    std::uint32_t size, subcluster;
-  };
-  std::vector<Candidate> candidates_;               ///< by first points, then by size
-  std::vector<std::uint32_t> label_of_subcluster_;  ///< 0: in no cluster
+  ClusterCollector collector_;
 };
 
 }  // namespace lisco_apps

@@ -96,6 +96,10 @@ class Listener {
   /// A rotation has been clustered: clusters largest first, cells labelled.
   virtual void rotation(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) = 0;
 
+  /// A sliding window has been clustered: the same for its columns.
+  virtual void window(const Turn& /*window*/, const std::vector<FoundCluster>& /*clusters*/,
+                      Clock::duration /*latency*/) {}
+
   /// A cluster has been delivered.
   virtual void cluster(const DeliveredCluster& cluster) = 0;
   /// The last column of a turn has been added; some of its clusters may still be open.

@@ -617,7 +617,7 @@ TEST_F(LiscoStream, RefusesBadInputInOneLine) {
   expectRefusal("nothing.pcap" + options, {"nothing.pcap: no data packet of a vlp16"});
   expectRefusal("a.pcap a.pcap" + options, {"more than one capture"});
   expectRefusal(options, {"no capture and no --port"});
-  expectRefusal("a.pcap -t 0.5", {"--sensor is missing"});
+  expectRefusal("a.pcap -t 0.5", {"holds the packets of a sensor", "--sensor (vlp16, "});
   expectRefusal("a.pcap -t 0.5 --sensor os1",
                 {"no sensor 'os1'", "vlp16, vlp32c, hdl32e, hdl64e, vls128, pandar40p", "ouster"});
   expectRefusal("a.pcap --sensor vlp16", {"--tolerance is missing"});

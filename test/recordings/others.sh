@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # others.sh LISCO_CLUSTER FOLDER: recordings written by @mcap/core are read by lisco_cluster, and those of lisco_cluster
 # by @mcap/core and @foxglove/rosmsg2-serialization, which npm installs into the folder. Exit code 77, skipped: there is
-# no npm, or no network.
+# no npm, or no network. Bags written by ROS 1's own library are read, too, if it is installed (Debian's python3-rosbag
+# and python3-sensor-msgs).
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 cluster=$1
@@ -55,3 +56,14 @@ fi
 "$cluster" result.mcap -t 0.5 --min-size 3 >out.txt 2>err.txt
 [ "$(grep -c '^  clusters  2 of' out.txt)" = 5 ]
 echo "5 clouds in 4 recordings, and 1 recording of results"
+
+if ! python3 -c 'import rosbag, sensor_msgs.msg' >npm.log 2>&1; then
+  echo "left out: bags of ROS 1's own library, which is not installed"
+  exit 0
+fi
+python3 "$here/rosbag_writer.py" written
+for method in none bz2 lz4; do
+  "$cluster" "written/$method.bag" -t 0.5 --min-size 3 >out.txt 2>err.txt
+  [ "$(grep -c '^  clusters  2 of' out.txt)" = 5 ] || { cat out.txt; echo "$method: not 2 clusters in each of 5"; exit 1; }
+done
+echo "5 clouds in 3 bags of ROS 1"

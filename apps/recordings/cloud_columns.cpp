@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "recordings/cloud_columns.h"
+
+#include <cmath>
+
+#include "io/point_geometry.h"
+#include "recordings/bytes.h"
+#include "recordings/point_cloud2.h"
+
+namespace lisco_apps {
+
+PacketSource::Arrival RawMessages::next(Packet& packet) {
+  Message message;
+  while (reader_->next(message)) {
+    if (taken_++ % every_ != 0) continue;
+    packet = {message.data, message.size, message.time_ns / 1000};
+    ++packets_;
+    return Arrival::kPacket;
+  }
+  error_ = reader_->error();
+  return Arrival::kEnd;
+}
+
+CloudColumns::CloudColumns(Topic topic) : Decoder("cloud", {}, 180 * kPi / 180), topic_(std::move(topic)) {}
+
+Decoder::Kind CloudColumns::decode(const Packet& packet, const Visitor& visit) {
+  constexpr double kHourUs = 3600e6;
+  Scan scan;
+  try {
+    scan = scanOf(pointCloud2In({0, 1000 * packet.time_us, packet.data, packet.size}, topic_));
+  } catch (const Broken&) {
+    ++counts_.foreign;
+    return Kind::kForeign;
+  }
+  const Cloud& cloud = *scan.clustered();
+  if (cloud.height < 2) {
+    ++counts_.foreign;
+    return Kind::kForeign;
+  }
+  ++counts_.data;
+  const bool has_other_rows = !cells_.empty() && cells_.size() != cloud.height;
+  cells_.resize(cloud.height);
+  for (std::size_t column = 0; column < cloud.width; ++column) {
+    double x = 0;
+    double y = 0;
+    for (std::size_t row = 0; row < cloud.height; ++row) {
+      const pcl::PointXYZ& point = cloud[row * cloud.width + column];
+      const bool is_return = isReturn(point);
+      cells_[row] = is_return ? Cell{point.x, point.y, point.z, 0} : kNoCell;
+      if (!is_return) continue;
+      const double azimuth = azimuthOf(point);
+      x += std::cos(azimuth);
+      y += std::sin(azimuth);
+    }
+    if (x != 0 || y != 0) azimuth_ = std::fmod(360 - std::atan2(y, x) * 180 / kPi, 360.);
+    ++counts_.columns;
+    visit({cells_, azimuth_, std::fmod(static_cast<double>(packet.time_us), kHourUs), has_other_rows && column == 0,
+           column == 0});
+  }
+  return Kind::kData;
+}
+
+}  // namespace lisco_apps

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "recordings/topic_reader.h"
+#include "sensors/decoder.h"
+#include "sensors/packet_source.h"
+
+namespace lisco_apps {
+
+/// The messages of a topic, each as one packet.
+class RawMessages : public PacketSource {
+ public:
+  /// \param every takes the first of so many messages
+  RawMessages(std::unique_ptr<TopicReader> reader, unsigned every) : reader_(std::move(reader)), every_(every) {}
+
+  Arrival next(Packet& packet) override;
+  double share() const override { return reader_->share(); }
+
+ private:
+  std::unique_ptr<TopicReader> reader_;
+  unsigned every_;
+  std::uint64_t taken_ = 0;
+};
+
+/// Takes sensor_msgs/PointCloud2 messages for packets, and gives the columns of each: a rotation begins with each
+/// message. The frame is the message's; an azimuth is that of a column's returns in the mean. Messages that are
+/// malformed, or have no rows, neither by themselves nor by their rings, are foreign.
+class CloudColumns : public Decoder {
+ public:
+  explicit CloudColumns(Topic topic);
+
+  Kind decode(const Packet& packet, const Visitor& visit) override;
+
+  // Unknown: a message says nothing about the sensor.
+  double columnsPerTurn() const override { return 0; }
+  double turnUs() const override { return 0; }
+  double packetPeriodUs() const override { return 0; }
+  double gapUs() const override { return 0; }
+  double usualGapUs() const override { return 0; }
+
+ private:
+  Topic topic_;
+  std::vector<Cell> cells_;
+  double azimuth_ = 0;  ///< of the last column
+};
+
+}  // namespace lisco_apps

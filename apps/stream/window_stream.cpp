@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "window_stream.h"
+
+#include <algorithm>
+
+namespace lisco_apps {
+
+void WindowStream::begin(std::size_t lasers) {
+  lasers_ = lasers;
+  columns_ = 0;
+  clusterer_.begin({options_.tolerance, window_, hop_, lasers});
+  cells_.assign(window_ * lasers, kNoCell);
+  azimuths_.assign(window_, 0);
+  lost_.assign(window_, 0);
+}
+
+bool WindowStream::add(const Column& column, const Origin& origin) {
+  const auto start = Clock::now();
+  if (isOver()) return false;
+  if (columns_ == 0 || column.cells.size() != lasers_) begin(column.cells.size());
+  const std::size_t slot = columns_ % window_;
+  std::copy(column.cells.begin(), column.cells.end(), cells_.begin() + static_cast<std::ptrdiff_t>(slot * lasers_));
+  azimuths_[slot] = column.azimuth;
+  lost_[slot] = takeLost();
+  returns_.resize(lasers_);
+  for (std::size_t laser = 0; laser < lasers_; ++laser) {
+    const Cell& cell = column.cells[laser];
+    const bool is_clustered = lisco::isReturn(cell.x, cell.y, cell.z) && cell.z >= options_.ground_z;
+    const auto index = static_cast<std::uint32_t>(slot * lasers_ + laser);
+    returns_[laser] = is_clustered ? lisco::Return{cell.x, cell.y, cell.z, index} : lisco::kNoReturn;
+  }
+  ++columns_;
+  const bool window_ends = clusterer_.addColumn(returns_.data(), lasers_);
+  const auto took = Clock::now() - start;
+  column_latency_.add(took);
+  turn_.time_us = origin.time_us;
+  if (window_ends) deliver(took);
+  return true;
+}
+
+void WindowStream::deliver(Clock::duration took) {
+  const auto start = Clock::now();
+  const std::size_t columns = clusterer_.columnCount();
+  const std::size_t first = (columns_ - columns) % window_;  // slot
+  const std::int64_t time_us = turn_.time_us;
+  turn_.begin(++rotations_, lasers_, azimuths_[first]);
+  turn_.time_us = time_us;
+  turn_.returns = clusterer_.returnCount();
+  for (std::size_t column = 0; column < columns; ++column) {
+    const std::size_t slot = (first + column) % window_;
+    const auto from = cells_.begin() + static_cast<std::ptrdiff_t>(slot * lasers_);
+    turn_.cells.insert(turn_.cells.end(), from, from + static_cast<std::ptrdiff_t>(lasers_));
+    turn_.lost += lost_[slot];
+  }
+  turn_.labels.assign(turn_.cells.size(), 0);
+  collector_.collect(
+      clusterer_, options_,
+      [&](std::uint32_t index) {
+        const std::size_t slot = index / lasers_;
+        return (slot + window_ - first) % window_ * lasers_ + index % lasers_;
+      },
+      turn_, clusters_);
+  const auto latency = took + (Clock::now() - start);
+  cluster_latency_.add(latency);
+  listener_.window(turn_, clusters_, latency);
+}
+
+}  // namespace lisco_apps

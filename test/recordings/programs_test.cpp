@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+// The programs on recordings.
+#include <cmath>
+#include <cstdlib>
+#include <set>
+#include <sstream>
+
+#include "../programs/program_test.h"
+#include "bags.h"
+#include "recordings/recording.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using lisco_test::TestPoint;
+using lisco_test::TestRecording;
+
+class Programs : public ProgramTest {
+ protected:
+  Programs() : ProgramTest(LISCO_CLUSTER) {}
+
+  /// Clouds of two walls, 0.1 s apart, in firing order; a second topic of texts.
+  static TestRecording walls(std::size_t clouds) {
+    TestRecording recording{{{"/points", "sensor_msgs/msg/PointCloud2"}, {"/text", "std_msgs/msg/String"}}, {}};
+    for (std::size_t i = 0; i < clouds; ++i) {
+      std::vector<TestPoint> points;
+      for (unsigned column = 0; column < 60; ++column)
+        for (unsigned ring = 0; ring < 4; ++ring) {
+          const double azimuth = (column < 30 ? 0 : 3.1) - 0.02 * (column % 30);
+          points.push_back({static_cast<float>(10 * std::cos(azimuth)), static_cast<float>(10 * std::sin(azimuth)),
+                            0.1F * static_cast<float>(ring), static_cast<std::uint16_t>(ring),
+                            1e-3F * static_cast<float>(column)});
+        }
+      const std::int64_t time = 1'600'000'000'000'000'000 + 100'000'000 * static_cast<std::int64_t>(i);
+      recording.messages.push_back({1, time, "text"});
+      recording.messages.push_back({0, time, lisco_test::pointCloud2(points)});
+    }
+    return recording;
+  }
+  void writeMcap(const TestRecording& recording, const std::string& name) const {
+    lisco_test::writeMcap(recording, folder_ / name);
+  }
+  static std::size_t countOf(const std::string& part, const std::string& text) {
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; ++at) ++count;
+    return count;
+  }
+  static fs::path data() {
+    const char* const folder = std::getenv("LISCO_TEST_DATA");
+    return folder != nullptr ? folder : LISCO_TEST_DATA_DEFAULT;
+  }
+};
+
+TEST_F(Programs, ClusterEachCloudOfARecording) {
+  writeMcap(walls(7), "a.mcap");
+  lisco_test::writeDb3(walls(7), folder_ / "a.db3");
+  for (const char* const name : {"a.mcap", "a.db3"}) {
+    const Outcome outcome = run(std::string(name) + " -t 0.5 -o results");
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(countOf("clusters  2 of at least 10", outcome.out), 7U) << outcome.out;
+    EXPECT_EQ(countOf("arranged by ring in 4 rows x 60 columns", outcome.out), 7U);
+    EXPECT_TRUE(fs::exists(folder_ / "results/000001_1600000000.000000/labels.pcd"));
+    EXPECT_TRUE(fs::exists(folder_ / "results/000007_1600000000.600000/clusters.csv"));
+    fs::remove_all(folder_ / "results");
+  }
+}
+
+TEST_F(Programs, TakeAPartOfARecording) {
+  writeMcap(walls(20), "a.mcap");
+  Outcome outcome = run("a.mcap -t 0.5 --from 0.45 --to 1.35 --every 3");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* const item : {"a.mcap 6 at 1600000000.5", "a.mcap 9 at ", "a.mcap 12 at "})
+    EXPECT_NE(outcome.out.find(item), std::string::npos) << outcome.out;
+  EXPECT_EQ(countOf("a.mcap ", outcome.out), 3U);
+  outcome = runLine(std::string(LISCO_STREAM) + " a.mcap -t 0.5 --from 0.45 --to 1.35 --every 3");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(countOf("60 columns, 240 returns, 2 clusters, largest 120", outcome.out), 3U) << outcome.out;
+  expectRefusal("a.mcap -t 0.5 --from 3 --to 2", {"--to is before --from"});
+}
+
+TEST_F(Programs, StreamCloudsColumnByColumn) {
+  writeMcap(walls(5), "a.mcap");
+  const std::string stream = std::string(LISCO_STREAM) + " a.mcap -t 0.5";
+  Outcome outcome = runLine(stream + " --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(countOf("{\"rotation\":", outcome.out), 5U);
+  EXPECT_EQ(countOf("\"size\":120", outcome.out), 10U);
+  outcome = runLine(stream + " --mode endless --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_GT(countOf("\"size\":", outcome.out), 1U);
+}
+
+TEST_F(Programs, CompareTheCloudsOfARecording) {
+  writeMcap(walls(3), "a.mcap");
+  const Outcome outcome =
+      runLine(std::string(LISCO_COMPARE) + " a.mcap -t 0.5 --check-only --baselines pcl,lisco --json all.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(countOf("4 rows x 60 columns, 240 returns", outcome.out), 3U) << outcome.out;
+  EXPECT_NE(outcome.out.find("3/3"), std::string::npos) << outcome.out;
+  EXPECT_EQ(countOf("\"a_00000", textOf(folder_ / "all.json")), 3U);
+}
+
+TEST_F(Programs, ListTheTopicsWhereThereIsAChoice) {
+  TestRecording recording = walls(2);
+  recording.topics.push_back({"/rear", "sensor_msgs/msg/PointCloud2"});
+  recording.messages.push_back({2, 1, recording.messages[1].data});
+  writeMcap(recording, "a.mcap");
+  const Outcome outcome = run("a.mcap -t 0.5");
+  EXPECT_EQ(outcome.status, 2);
+  for (const char* const part : {"--topic", "/points ", "/rear ", "/text "})
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+  EXPECT_EQ(run("a.mcap -t 0.5 --topic /rear").status, 0);
+}
+
+TEST_F(Programs, KeepWhatComesBeforeABreak) {
+  writeMcap(walls(2000), "a.mcap");
+  fs::resize_file(folder_ / "a.mcap", fs::file_size(folder_ / "a.mcap") * 6 / 10);
+  const Outcome outcome = run("a.mcap -t 0.5 --bag out.mcap");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_GT(countOf("clusters  2 of", outcome.out), 200U);
+  EXPECT_EQ(countOf("a.mcap: breaks off at byte", outcome.err), 1U) << outcome.err;
+  const auto bag = lisco_apps::openRecording(folder_ / "out.mcap");
+  EXPECT_EQ(bag->topics()[0].messages, countOf("clusters  2 of", outcome.out));
+  EXPECT_EQ(lisco_test::messagesOf(*bag).size(), 2 * bag->topics()[0].messages);
+  EXPECT_EQ(bag->error(), "");
+}
+
+TEST_F(Programs, LeaveWholeResultsWhenInterrupted) {
+  writeMcap(walls(30000), "a.mcap");
+  const Outcome outcome =
+      runLine("sh -c '" + program_ + " a.mcap -t 0.5 --bag out.mcap & p=$!; sleep 1; kill -INT $p; wait $p'");
+  EXPECT_EQ(outcome.status, 2) << outcome.err;
+  const std::size_t done = countOf("clusters  2 of", outcome.out);
+  EXPECT_GT(done, 0U);
+  EXPECT_LT(done, 30000U);
+  EXPECT_EQ(countOf("interrupted after " + std::to_string(done) + " scans", outcome.err), 1U) << outcome.err;
+  const auto bag = lisco_apps::openRecording(folder_ / "out.mcap");
+  EXPECT_EQ(bag->topics()[0].messages, done);
+  EXPECT_EQ(lisco_test::messagesOf(*bag).size(), 2 * done);
+}
+
+TEST_F(Programs, RefuseToReplaceAForeignRecording) {
+  writeMcap(walls(1), "a.mcap");
+  writeMcap(walls(1), "precious.mcap");
+  const std::string before = textOf(folder_ / "precious.mcap");
+  expectRefusal("a.mcap -t 0.5 --bag precious.mcap", {"precious.mcap", "not written by this program"});
+  EXPECT_EQ(textOf(folder_ / "precious.mcap"), before);
+  ASSERT_EQ(run("a.mcap -t 0.5 --bag own.mcap").status, 0);
+  EXPECT_EQ(run("a.mcap -t 0.5 --bag own.mcap").status, 0);
+}
+
+TEST_F(Programs, StreamSlidingWindows) {
+  const fs::path capture = data() / "captures/vlp16_street.pcap";
+  if (!fs::exists(capture)) GTEST_SKIP() << "no " << capture;
+  const std::string command =
+      std::string(LISCO_STREAM) + " " + capture.string() + " --sensor vlp16 -t 0.4 --mode windows";
+  const Outcome outcome = runLine(command + " --window 600 --hop 200 --json -o windows");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(countOf("{\"window\":", outcome.out), 10U);
+  // Each window's clusters are those of its columns as a cloud.
+  for (const char* const number : {"000001", "000002", "000005", "000010"}) {
+    SCOPED_TRACE(number);
+    const std::string file = "windows/rotation_" + std::string(number) + ".pcd";
+    const Outcome batch = run(file + " -t 0.4 -o batch");
+    ASSERT_EQ(batch.status, 0) << batch.err;
+    std::multiset<std::string> sizes;
+    std::istringstream table(textOf(folder_ / "batch/clusters.csv"));
+    std::string line;
+    std::getline(table, line);
+    while (std::getline(table, line))
+      sizes.insert(line.substr(line.find(',') + 1, line.find(',', line.find(',') + 1) - line.find(',') - 1));
+    std::multiset<std::string> streamed;
+    std::istringstream windows(outcome.out);
+    while (std::getline(windows, line)) {
+      if (line.rfind("{\"window\":" + std::to_string(std::atoi(number)) + ",", 0) != 0) continue;
+      for (std::size_t at = 0; (at = line.find("\"size\":", at)) != std::string::npos; ++at)
+        streamed.insert(line.substr(at + 7, line.find(',', at) - at - 7));
+    }
+    EXPECT_GT(sizes.size(), 5U);
+    EXPECT_EQ(streamed, sizes);
+  }
+  for (const char* const sizes : {"", " --window 600", " --window 600 --hop 250"}) {
+    const Outcome refusal = runLine(command + sizes);
+    EXPECT_EQ(refusal.status, 2);
+    EXPECT_NE(refusal.err.find("--mode windows needs --window and --hop"), std::string::npos) << refusal.err;
+  }
+}
+
+}  // namespace
