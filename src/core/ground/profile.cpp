@@ -43,14 +43,15 @@ struct Outwards {
 
   float slope(std::size_t i, std::size_t j) const { return (low[j] - low[i]) / (rho[j] - rho[i]); }
 
-  /// Whether a cell and two beyond it lie on a line about as steep as given.
-  bool isOnLine(std::size_t i, float expected_slope) const {
+  /// Whether a cell and two beyond it lie on a line that meets a height beneath the sensor.
+  bool isOnLineFrom(float height, std::size_t i, float max_slope) const {
     const std::size_t j = beyond(i);
     if (j >= size) return false;
     const std::size_t k = beyond(j);
     if (k >= size) return false;
-    const float slope_here = slope(i, j);
-    return std::fabs(slope_here - expected_slope) < 0.15F && std::fabs(slope(j, k) - slope_here) < 0.08F;
+    const float all = slope(i, k);
+    return std::fabs(slope(j, k) - slope(i, j)) < 0.08F && std::fabs(all) < max_slope &&
+           std::fabs(low[i] - all * rho[i] - height) < 0.12F + 0.02F * rho[i];
   }
 };
 
@@ -96,9 +97,10 @@ void Profile::follow(Sector& sector, const Direction& direction, const Sector* b
     const float rise = low - reached.back_ground;
     bool found;
     if (first)
-      found =
-          std::fabs(above) < (bare ? 0.1F + 0.04F * distance : 0.1F + 0.03F * distance) ||
-          (bare && std::fabs(above) < 0.12F + 0.09F * std::min(distance, 8.0F) && outwards.isOnLine(i, first_slope));
+      found = above > -0.2F - 0.12F * distance &&
+              (above < (bare ? 0.1F + 0.04F * distance : 0.1F + 0.03F * distance) ||
+               (bare && std::min(above, low - plane_.height) < 0.12F + 0.09F * std::min(distance, 8.0F) &&
+                outwards.isOnLineFrom(plane_.height, i, max_slope_)));
     else if (bare)
       found = above < 0.12F + std::min(max_slope_ * distance, 0.12F + 0.015F * distance) &&
               above > -0.2F - std::min(max_slope_ * distance, 0.3F) && rise < 0.15F + max_slope_ * from_back;
