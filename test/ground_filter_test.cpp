@@ -4,9 +4,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <stdexcept>
 #include <vector>
+
+#include "lisco/label_ground.h"
 
 namespace {
 
@@ -87,9 +96,258 @@ TEST(GroundFilter, FindsAPlaneAndLeavesAWall) {
   EXPECT_EQ(lost, 0U);
 }
 
+/// What a ray hits: its horizontal distance, or a negative one for nothing.
+using Distance = std::function<double(double azimuth, double slope)>;
+
+/// A scan of a sensor at the origin, elevations from 10 degrees down to -25.
+Scan scanOf(std::size_t lasers, std::size_t columns, const Distance& distance) {
+  Scan scan{lasers, columns, {}};
+  for (std::size_t laser = 0; laser < lasers; ++laser)
+    for (std::size_t column = 0; column < columns; ++column) {
+      const double azimuth = 2.0 * kPi * static_cast<double>(column) / static_cast<double>(columns);
+      const double slope =
+          std::tan((10.0 - 35.0 * static_cast<double>(laser) / static_cast<double>(lasers)) * kPi / 180.0);
+      const double rho = distance(azimuth, slope);
+      scan.cells.push_back(rho < 0.0 ? lisco::kNoReturn
+                                     : lisco::Return{static_cast<float>(rho * std::cos(azimuth)),
+                                                     static_cast<float>(rho * std::sin(azimuth)),
+                                                     static_cast<float>(rho * slope), 0});
+    }
+  return scan;
+}
+
+/// Where a ray of this slope meets the plane z = rise * x - height, within 100 m; -1: nowhere.
+double meetsPlane(double azimuth, double slope, double height, double rise = 0.0) {
+  const double descent = rise * std::cos(azimuth) - slope;
+  const double rho = descent > 0.0 ? height / descent : -1.0;
+  return rho < 100.0 ? rho : -1.0;
+}
+
+/// Shares of the returns called ground: of those for which `chosen` holds.
+template <typename Chosen>
+double share(const Scan& scan, const std::vector<std::uint8_t>& ground, Chosen&& chosen) {
+  double count = 0, called = 0;
+  for (std::size_t i = 0; i < scan.cells.size(); ++i) {
+    const lisco::Return& cell = scan.cells[i];
+    if (!lisco::isReturn(cell.x, cell.y, cell.z) || !chosen(cell)) continue;
+    ++count;
+    called += ground[i];
+  }
+  EXPECT_GT(count, 100);
+  return called / count;
+}
+
+bool all(const lisco::Return& /*cell*/) {
+  return true;
+}
+
 TEST(GroundFilter, BatchEqualsColumnByColumn) {
   const Scan scan = planeWithWall(32, 1003, 20.0);
   EXPECT_EQ(filterAll(scan), filterByColumns(scan));
+}
+
+TEST(GroundFilter, BatchEqualsColumnByColumnOnRandomReturns) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> coordinate(-30.0F, 30.0F);
+  std::uniform_int_distribution<int> kind(0, 19);
+  constexpr float kOdd[] = {
+      std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1e30F, -3e38F, 0.0F, 1e-40F};
+  for (std::size_t round = 0; round < 20; ++round) {
+    Scan scan{1 + round * 7 % 130, 1 + round * 37 % 300, {}};
+    for (std::size_t i = 0; i < scan.lasers * scan.columns; ++i) {
+      lisco::Return cell{coordinate(random), coordinate(random), 0.1F * coordinate(random), 0};
+      if (const int k = kind(random); k < 6) (k % 3 == 0 ? cell.x : k % 3 == 1 ? cell.y : cell.z) = kOdd[k];
+      scan.cells.push_back(cell);
+    }
+    lisco::GroundParameters parameters;
+    if (round % 2 == 1) parameters.sensor_height = 2.0F;
+    EXPECT_EQ(filterAll(scan, parameters), filterByColumns(scan, parameters)) << "round " << round;
+  }
+}
+
+TEST(GroundFilter, FindsSlopesOfFifteenDegrees) {
+  for (const double degrees : {-15.0, -8.0, 8.0, 15.0}) {
+    const double rise = std::tan(degrees * kPi / 180.0);
+    const Scan scan =
+        scanOf(64, 1800, [&](double azimuth, double slope) { return meetsPlane(azimuth, slope, 1.8, rise); });
+    lisco::GroundParameters parameters;
+    parameters.sensor_height = 1.8F;
+    EXPECT_GT(share(scan, filterAll(scan, parameters), all), 0.97) << degrees;
+    EXPECT_GT(share(scan, filterAll(scan), all), 0.95) << degrees << ", height unknown";
+  }
+}
+
+TEST(GroundFilter, FindsThePlaneOfAnyNumberOfLasersTurningEitherWay) {
+  for (const std::size_t lasers : {16U, 32U, 64U, 128U})
+    for (const double turn : {1.0, -1.0}) {
+      const Scan scan =
+          scanOf(lasers, 1500, [&](double azimuth, double slope) { return meetsPlane(azimuth, slope, 1.8); });
+      Scan turned = scan;
+      for (lisco::Return& cell : turned.cells) cell.y *= static_cast<float>(turn);
+      EXPECT_GT(share(turned, filterAll(turned), all), 0.98) << lasers << " lasers, " << turn;
+    }
+}
+
+TEST(GroundFilter, AcceptsRowsInAnyOrder) {
+  const Scan scan = planeWithWall(64, 900, 25.0);
+  std::vector<std::size_t> order(scan.lasers);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::mt19937 random(3);
+  std::shuffle(order.begin(), order.end(), random);
+  Scan shuffled = scan;
+  const std::vector<std::uint8_t> ground = filterAll(scan);
+  for (std::size_t laser = 0; laser < scan.lasers; ++laser)
+    for (std::size_t column = 0; column < scan.columns; ++column)
+      shuffled.cells[laser * scan.columns + column] = scan.cells[order[laser] * scan.columns + column];
+  const std::vector<std::uint8_t> shuffled_ground = filterAll(shuffled);
+  for (std::size_t laser = 0; laser < scan.lasers; ++laser)
+    for (std::size_t column = 0; column < scan.columns; ++column)
+      ASSERT_EQ(shuffled_ground[laser * scan.columns + column], ground[order[laser] * scan.columns + column]);
+}
+
+TEST(GroundFilter, LeavesABridgeAndFindsTheGroundBeneath) {
+  // A deck 4 m above the ground, from 15 m on; rays that rise end at it.
+  const Scan scan = scanOf(64, 1800, [&](double azimuth, double slope) {
+    if (slope > 0.0) return std::max(15.0, 2.2 / slope) < 60.0 ? std::max(15.0, 2.2 / slope) : -1.0;
+    return meetsPlane(azimuth, slope, 1.8);
+  });
+  const std::vector<std::uint8_t> ground = filterAll(scan);
+  EXPECT_EQ(share(scan, ground, [](const lisco::Return& cell) { return cell.z > 0.0F; }), 0.0);
+  EXPECT_GT(share(scan, ground, [](const lisco::Return& cell) { return cell.z < -1.7F; }), 0.98);
+}
+
+TEST(GroundFilter, LeavesAWallWhoseFootIsHidden) {
+  // Cars, 1.4 m high, 8 m away hide the foot of a wall 14 m away.
+  const Scan scan = scanOf(64, 1800, [&](double azimuth, double slope) {
+    const double rho = meetsPlane(azimuth, slope, 1.8);
+    if (rho >= 0.0 && rho < 8.0) return rho;
+    return 8.0 * slope < -0.4 ? 8.0 : 14.0;
+  });
+  const std::vector<std::uint8_t> ground = filterAll(scan);
+  EXPECT_EQ(share(scan, ground, [](const lisco::Return& cell) { return cell.z > -1.3F; }), 0.0);
+}
+
+TEST(GroundFilter, IsNotMisledByReflectionsBelowTheGround) {
+  std::mt19937 random(5);
+  std::uniform_int_distribution<int> one_of(0, 29);
+  Scan scan = scanOf(64, 1800, [&](double azimuth, double slope) { return meetsPlane(azimuth, slope, 1.8); });
+  std::vector<bool> is_reflected;
+  for (lisco::Return& cell : scan.cells) {
+    is_reflected.push_back(cell.z < -1.0F && one_of(random) == 0);
+    if (is_reflected.back()) {  // along its ray
+      cell.x *= 1.7F;
+      cell.y *= 1.7F;
+      cell.z *= 1.7F;
+    }
+  }
+  const std::vector<std::uint8_t> ground = filterAll(scan);
+  double plane = 0, found = 0, reflections = 0, called = 0;
+  for (std::size_t i = 0; i < scan.cells.size(); ++i) {
+    if (is_reflected[i]) {
+      ++reflections;
+      called += ground[i];
+    } else if (scan.cells[i].z < -1.7F) {
+      ++plane;
+      found += ground[i];
+    }
+  }
+  EXPECT_GT(reflections, 1000);
+  EXPECT_LT(called / reflections, 0.02);
+  EXPECT_GT(found / plane, 0.97);
+}
+
+TEST(GroundFilter, GoesOnAfterARotationWithoutAnotherBegin) {
+  const Scan scan = planeWithWall(32, 1000, 20.0);
+  lisco::GroundFilter filter;
+  filter.begin({}, scan.lasers);
+  std::vector<lisco::Return> cells(scan.lasers);
+  std::size_t columns = 0, ground = 0, missed = 0;
+  const auto visit = [&](std::size_t column, const std::uint8_t* decisions, std::size_t lasers) {
+    EXPECT_EQ(column, columns++);
+    for (std::size_t laser = 0; laser < lasers; ++laser) {
+      if (scan.cells[laser * scan.columns + column % scan.columns].z > -1.79F) continue;
+      ++ground;
+      missed += decisions[laser] == 0;
+    }
+  };
+  for (std::size_t column = 0; column < 5 * scan.columns; ++column) {
+    for (std::size_t laser = 0; laser < scan.lasers; ++laser)
+      cells[laser] = scan.cells[laser * scan.columns + column % scan.columns];
+    filter.addColumn(cells.data(), scan.lasers, visit);
+    if (column == 1234) filter = lisco::GroundFilter(filter);  // a copy goes on
+  }
+  filter.finish(visit);
+  EXPECT_EQ(columns, 5 * scan.columns);
+  EXPECT_GT(ground, 10000U);
+  EXPECT_EQ(missed, 0U);
+}
+
+TEST(GroundFilter, FindsNothingWithoutReturns) {
+  Scan scan{16, 100, std::vector<lisco::Return>(1600, lisco::kNoReturn)};
+  for (const std::uint8_t decision : filterAll(scan)) ASSERT_EQ(decision, 0);
+  const Scan empty{0, 0, {}};
+  EXPECT_TRUE(filterAll(empty).empty());
+}
+
+TEST(GroundFilter, EstimatesTheSensorsHeight) {
+  const Scan scan = planeWithWall(64, 1800, 30.0);
+  const auto cells = [&](std::size_t laser, std::size_t column) { return scan.cells[laser * scan.columns + column]; };
+  const lisco::GroundParameters estimated =
+      lisco::estimateGround(scan.columns, scan.lasers, {0.0F, 0.0F, 0.0F}, lisco::CellSource(cells));
+  EXPECT_NEAR(estimated.sensor_height, 1.8F, 0.05F);
+  EXPECT_NEAR(estimated.slope[0], 0.0F, 0.02F);
+  EXPECT_NEAR(estimated.slope[1], 0.0F, 0.02F);
+}
+
+TEST(GroundFilter, RejectsBadCallsAndParameters) {
+  const auto ignore = [](std::size_t, const std::uint8_t*, std::size_t) {};
+  const std::vector<lisco::Return> cells(5, lisco::kNoReturn);
+  lisco::GroundFilter filter;
+  EXPECT_THROW(filter.addColumn(cells.data(), 4, ignore), std::logic_error);
+  filter.begin({}, 4);
+  EXPECT_THROW(filter.addColumn(cells.data(), 5, ignore), std::invalid_argument);
+  EXPECT_NO_THROW(filter.addColumn(cells.data(), 3, ignore));
+  lisco::GroundParameters parameters;
+  for (const float slope : {0.0F, 61.0F, -5.0F, std::numeric_limits<float>::quiet_NaN()}) {
+    parameters.max_slope = slope;
+    EXPECT_THROW(filter.begin(parameters, 4), std::invalid_argument) << slope;
+  }
+  parameters.max_slope = 20.0F;
+  parameters.sensor_height = std::numeric_limits<float>::infinity();
+  EXPECT_THROW(filter.begin(parameters, 4), std::invalid_argument);
+}
+
+TEST(LabelGround, SortsUnorganizedPoints) {
+  const Scan scan = planeWithWall(32, 1000, 20.0);
+  std::vector<std::array<float, 3>> points;
+  for (const lisco::Return& cell : scan.cells) points.push_back({cell.x, cell.y, cell.z});
+  std::mt19937 random(9);
+  std::shuffle(points.begin(), points.end(), random);
+  std::vector<std::uint8_t> ground(points.size(), 7);
+  lisco::labelGround(points.data(), points.size(), sizeof points[0], {}, ground.data());
+  std::size_t plane = 0, missed = 0, lost = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const float z = points[i][2];
+    if (z == 0.0F) continue;
+    plane += z < -1.799F;
+    missed += z < -1.799F && ground[i] == 0;
+    lost += z > -1.4F && ground[i] == 1;
+  }
+  EXPECT_GT(plane, 5000U);
+  EXPECT_EQ(missed, 0U);
+  EXPECT_EQ(lost, 0U);
+}
+
+TEST(LabelGround, RejectsBadArguments) {
+  float point[3] = {1.0F, 2.0F, 3.0F};
+  std::uint8_t ground = 0;
+  lisco::LabelGroundParameters parameters;
+  EXPECT_THROW(lisco::labelGround(point, 1, 8, parameters, &ground), std::invalid_argument);
+  EXPECT_THROW(lisco::labelGround(nullptr, 1, 12, parameters, &ground), std::invalid_argument);
+  EXPECT_THROW(lisco::labelGround(point, 1, 12, parameters, nullptr), std::invalid_argument);
+  EXPECT_NO_THROW(lisco::labelGround(nullptr, 0, 12, parameters, nullptr));
+  parameters.lasers = 0;
+  EXPECT_THROW(lisco::labelGround(point, 1, 12, parameters, &ground), std::invalid_argument);
 }
 
 }  // namespace
