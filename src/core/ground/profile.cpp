@@ -102,7 +102,7 @@ void Profile::follow(Sector& sector, const Direction& direction, const Sector* b
                (bare && std::min(above, low - plane_.height) < 0.12F + 0.09F * std::min(distance, 8.0F) &&
                 outwards.isOnLineFrom(plane_.height, i, max_slope_)));
     else if (bare)
-      found = above < 0.12F + std::min(max_slope_ * distance, 0.12F + 0.015F * distance) &&
+      found = above < 0.12F + std::min(max_slope_ * distance, 0.15F + 0.02F * distance) &&
               above > -0.2F - std::min(max_slope_ * distance, 0.3F) && rise < 0.15F + max_slope_ * from_back;
     else
       found = above < 0.1F + std::min(0.15F * distance, 0.06F) &&
@@ -115,6 +115,10 @@ void Profile::follow(Sector& sector, const Direction& direction, const Sector* b
         const float step = outwards.rho[next] - rho;
         const float further = outwards.slope(i, next);
         found = std::fabs(further) < max_slope_ && std::fabs(further - here) < 0.07F + 0.03F / step;
+        if (found && distance > 3.0F + 0.15F * rho) {
+          const std::size_t last = outwards.beyond(next);
+          found = last < outwards.size && std::fabs(outwards.slope(next, last) - further) < 0.1F;
+        }
       }
     }
     int confidence = found ? 8 : 0;
@@ -123,7 +127,7 @@ void Profile::follow(Sector& sector, const Direction& direction, const Sector* b
       const Cell& other = beside->cells[bin];
       const float above_beside = low - (other.offset + other.slope * rho);
       const float width = 0.0245F * rho;
-      found = std::fabs(above_beside) < (bare ? 0.1F + 0.1F * width : 0.08F) &&
+      found = std::fabs(above_beside) < (bare ? 0.08F + 0.05F * width : 0.06F) &&
               std::fabs(low - reached.ground) < 0.2F + max_slope_ * distance;
       if (found) confidence = other.confidence - 1;
     }
