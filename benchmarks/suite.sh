@@ -7,12 +7,12 @@
 #   benchmarks/suite.sh [--runs N] [SECTION...]     --runs: timed runs of each baseline (default 5)
 #
 # Sections: real recordings vehicle worst growth memory threads stages; latency, whose tables and picture are in
-# doc/streaming.md; and ground, whose tables are in doc/ground.md
+# doc/streaming.md; ground and ground_real, whose tables are in doc/ground.md
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/benchmarks/tools.sh"
 
-all_sections=(real recordings vehicle worst growth memory threads stages latency ground)
+all_sections=(real recordings vehicle worst growth memory threads stages latency ground ground_real)
 runs=5
 sections=()
 while [ $# -gt 0 ]; do
@@ -178,6 +178,13 @@ measure_latency() {
 measure_ground() {
   report "$out/ground.txt" "$build/benchmarks/ground_truth" &&
     replace_section "$root/doc/ground.md" "ground truth" <"$out/ground.txt" && cat "$out/ground.txt"
+}
+
+# The ground filter on real scans.
+measure_ground_real() {
+  report "$out/ground_real.txt" "$build/benchmarks/ground_real" "${rotating[@]}" &&
+    code_block <"$out/ground_real.txt" | replace_section "$root/doc/ground.md" "ground real" &&
+    cat "$out/ground_real.txt"
 }
 
 measure_threads() { measure_engine threads; }

@@ -13,7 +13,7 @@
 #include "core/ground/block.h"
 #include "core/ground/polar_grid.h"
 #include "core/ground/profile.h"
-#include "core/ground/start.h"
+#include "core/ground/plane_estimator.h"
 #include "core/pi.h"
 
 namespace lisco {

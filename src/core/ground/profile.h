@@ -2,8 +2,8 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include "core/ground/plane_estimator.h"
 #include "core/ground/polar_grid.h"
-#include "core/ground/start.h"
 
 namespace lisco::ground {
 

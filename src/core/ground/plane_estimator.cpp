@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "core/ground/start.h"
+#include "core/ground/plane_estimator.h"
 
 #include <algorithm>
 #include <cmath>
