@@ -225,7 +225,7 @@ bool parse(int argc, char** argv, Options& options) {
 }
 
 Sensor sensorFor(const Options& options) {
-  checkKnown(options.sensor, sensorNames(), "sensor");
+  if (!options.pcap) checkKnown(options.sensor, sensorNames(), "sensor");
   const auto check = [](std::size_t lasers, std::size_t steps) {
     if (std::max<std::size_t>(lasers, 1) > kMaxCells / std::max<std::size_t>(steps, 1))
       throw std::runtime_error("more than " + std::to_string(kMaxCells) + " cells: fewer --lasers or --steps");

@@ -54,7 +54,9 @@ TEST_P(DrivePackets, DecodeToTheReturnsTheyWereMadeOf) {
     }
     packets.finish();
 
-    const auto decoder = makeDecoder({GetParam(), {}, {}, ReturnChoice::kStrongest});
+    DecoderOptions options;
+    options.sensor = GetParam();
+    const auto decoder = makeDecoder(options);
     CaptureFile whole(file);
     decoder->prepare(whole);
     CaptureFile capture(file);
