@@ -25,6 +25,7 @@
 #include "recordings/cloud_columns.h"
 #include "recordings/options.h"
 #include "recordings/packet_input.h"
+#include "recordings/result_bag.h"
 #include "recordings/topic_choice.h"
 #include "sensors/decoder.h"
 #include "sensors/udp_receiver.h"
@@ -52,7 +53,7 @@ struct Options {
   unsigned window = 0, hop = 0;  ///< columns
   StreamOptions stream;
   bool realtime = false;
-  fs::path output;
+  fs::path output, bag;
   bool json = false;
   bool statistics = false;
 };
@@ -119,6 +120,9 @@ bool parse(int argc, char** argv, Options& options) {
      "folder for rotation_000001.pcd and so on: each rotation (or window) as an organized cloud of x y z intensity label, where "
      "the label is the cluster's id, 0 for none; in mode endless, written once all its clusters have been delivered. "
      "Removes those of an earlier run")
+    ("bag", pathOption("FILE.mcap", "--bag", options.bag),
+     "write each rotation or window as a recording of ROS 2: the labelled cloud (sensor_msgs/PointCloud2) and boxes "
+     "(visualization_msgs/MarkerArray)")
     ("json", po::bool_switch(&options.json), "print JSON lines instead of text")
     ("stats", po::bool_switch(&options.statistics),
      "print a table of packets, columns, clusters and latencies at the end (with --json, on stderr)");
@@ -141,6 +145,8 @@ bool parse(int argc, char** argv, Options& options) {
     throw std::runtime_error("--topic, --from, --to and --every are for recordings only");
   if (options.mode == Mode::kWindows && (options.window == 0 || options.hop == 0 || options.window % options.hop != 0))
     throw std::runtime_error("--mode windows needs --window and --hop, of which the window is a multiple");
+  if (options.mode == Mode::kEndless && !options.bag.empty())
+    throw std::runtime_error("--bag is for rotations and windows only");
   if (options.mode != Mode::kWindows && options.window + options.hop > 0)
     throw std::runtime_error("--window and --hop are for --mode windows only");
 
@@ -275,6 +281,23 @@ void takePackets(const Input& input, Decoder& decoder, OtherSensors& others, Str
   }
 }
 
+/// A rotation or window as a recording has it: a row for each laser.
+LabelledScan labelledScanOf(const Turn& turn, const std::vector<FoundCluster>& clusters) {
+  LabelledScan scan;
+  scan.time_ns = 1000 * turn.time_us;
+  scan.frame = "lidar";
+  scan.rows = turn.lasers;
+  scan.columns = turn.columns();
+  for (std::size_t row = 0; row < scan.rows; ++row)
+    for (std::size_t column = 0; column < scan.columns; ++column) {
+      const std::size_t cell = column * turn.lasers + row;
+      scan.points.push_back({turn.cells[cell].x, turn.cells[cell].y, turn.cells[cell].z});
+      scan.labels.push_back(turn.labels[cell]);
+    }
+  for (const FoundCluster& cluster : clusters) scan.boxes.push_back({cluster.id, cluster.lo(), cluster.hi()});
+  return scan;
+}
+
 std::unique_ptr<Stream> makeStream(const Options& options, const Decoder& decoder, Report& report) {
   if (options.mode == Mode::kEndless) return std::make_unique<EndlessStream>(options.stream, decoder, report);
   if (options.mode == Mode::kWindows)
@@ -292,12 +315,20 @@ int run(const Options& options) {
     clouds.emplace(options.output);
     report.writeTo(*clouds);
   }
+  std::optional<ResultBag> bag;
+  if (!options.bag.empty()) {
+    bag.emplace(options.bag, "lisco_stream");
+    report.callWith([&bag](const Turn& turn, const std::vector<FoundCluster>& clusters) {
+      bag->write(labelledScanOf(turn, clusters));
+    });
+  }
   const std::unique_ptr<Stream> stream = makeStream(options, decoder, report);
 
   OtherSensors others;
   takePackets(input, decoder, others, *stream, report);
   stream->finish();
   report.flush();
+  if (bag) bag->finish();
   if (options.statistics) report.printStatistics(*input.source, decoder, *stream);
 
   const std::string& error = input.source->error();

@@ -104,6 +104,7 @@ void Report::found(const char* name, const Turn& turn, const std::vector<FoundCl
   const std::string heading = countTurn(name, turn);
   for (const FoundCluster& cluster : clusters) count(cluster);
   if (clouds_ != nullptr) clouds_->write(turn);
+  if (on_found_) on_found_(turn, clusters);
   if (format_ == Format::kText) {
     print(heading +
           formatted(", %zu clusters, largest %zu, after %.2f ms", clusters.size(), largest_of_turn_,

@@ -6,7 +6,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/terminal_line.h"
@@ -25,6 +27,9 @@ class Report : public Listener {
   explicit Report(Format format, const LabelledClouds* clouds = nullptr) : format_(format), clouds_(clouds) {}
   /// Writes labelled clouds from now on.
   void writeTo(const LabelledClouds& clouds) { clouds_ = &clouds; }
+  /// Called with each rotation or window from now on.
+  using OnFound = std::function<void(const Turn& turn, const std::vector<FoundCluster>& clusters)>;
+  void callWith(OnFound on_found) { on_found_ = std::move(on_found); }
 
   void rotation(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) override;
   void window(const Turn& window, const std::vector<FoundCluster>& clusters, Clock::duration latency) override;
@@ -53,6 +58,7 @@ class Report : public Listener {
 
   Format format_;
   const LabelledClouds* clouds_;
+  OnFound on_found_;
   TerminalLine status_;
   const bool shares_terminal_ = isatty(STDOUT_FILENO) != 0;  ///< stdout and the status line
   std::string shown_;                                        ///< status

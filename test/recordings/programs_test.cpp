@@ -91,6 +91,18 @@ TEST_F(Programs, StreamCloudsColumnByColumn) {
   EXPECT_GT(countOf("\"size\":", outcome.out), 1U);
 }
 
+TEST_F(Programs, WriteRotationsAsARecording) {
+  writeMcap(walls(5), "a.mcap");
+  const std::string stream = std::string(LISCO_STREAM) + " a.mcap -t 0.5 --bag out.mcap";
+  ASSERT_EQ(runLine(stream).status, 0);
+  const Outcome again = run("out.mcap -t 0.5");
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(countOf("4 rows x 60 columns, 240 returns", again.out), 5U) << again.out;
+  EXPECT_EQ(countOf("clusters  2 of", again.out), 5U);
+  EXPECT_EQ(countOf("at 1600000000.4", again.out), 1U);
+  EXPECT_EQ(runLine(stream + " --mode endless").status, 2);
+}
+
 TEST_F(Programs, CompareTheCloudsOfARecording) {
   writeMcap(walls(3), "a.mcap");
   const Outcome outcome =
