@@ -13,6 +13,7 @@
 
 #include "lisco/column_clusterer.h"
 #include "lisco/endless_clusterer.h"
+#include "lisco/ground_filter.h"
 #include "lisco/window_clusterer.h"
 #include "random.h"
 #include "refused_allocations.h"
@@ -52,6 +53,21 @@ std::size_t allocationsOf(int turns, Turn&& turn) {
     turn();
   }
   return allocationCount() - before;
+}
+
+TEST(Allocations, GroundFilterAllocatesNothingAfterBegin) {
+  const auto columns = oneTurn();
+  lisco::GroundFilter filter;
+  filter.begin({}, kLasers);
+  std::size_t decided = 0;
+  const auto visit = [&](std::size_t, const std::uint8_t*, std::size_t) { ++decided; };
+  const std::size_t before = allocationCount();
+  for (int turn = 0; turn < 3; ++turn)
+    for (const auto& column : columns) filter.addColumn(column.data(), column.size(), visit);
+  filter.finish(visit);
+  filter.begin({}, kLasers);
+  EXPECT_EQ(allocationCount(), before);
+  EXPECT_EQ(decided, 3 * kSteps);
 }
 
 TEST(Allocations, AreCounted) {
