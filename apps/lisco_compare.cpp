@@ -26,6 +26,9 @@
 #include "io/terminal_line.h"
 #include "io/text.h"
 #include "recordings/scan_source.h"
+#include "view/compared_view.h"
+#include "view/page.h"
+#include "view/scan_encoder.h"
 
 namespace {
 
@@ -37,7 +40,7 @@ struct Options {
   InputOptions input;
   CompareSettings settings;
   GroundHeights ground;
-  fs::path json, csv, plot;
+  fs::path json, csv, plot, view;
 };
 
 /// The baselines with these keys, in the order of allBaselines ().
@@ -100,7 +103,10 @@ bool parse(int argc, char** argv, Options& options) {
     ("unorganized", po::bool_switch(&settings.unorganized), "cluster the returns as an unorganized cloud")
     ("json", pathOption("FILE", "--json", options.json), "write everything, each run's time included")
     ("csv", pathOption("FILE", "--csv", options.csv), "write a row per input, tolerance and baseline")
-    ("plot", pathOption("DIR", "--plot", options.plot), "draw charts (PNG) into a folder; needs gnuplot");
+    ("plot", pathOption("DIR", "--plot", options.plot), "draw charts (PNG) into a folder; needs gnuplot")
+    ("view", pathOption("FILE.html", "--view", options.view),
+     "write a page for browsers that shows two methods' clusters, or those at two tolerances, side by side, and marks "
+     "where they differ; of several scans, a timeline");
   // clang-format on
   options.input.addTo(shown);
   po::options_description hidden;
@@ -124,6 +130,10 @@ bool parse(int argc, char** argv, Options& options) {
   if (!options.json.empty() && !options.csv.empty() &&
       fs::absolute(options.json).lexically_normal() == fs::absolute(options.csv).lexically_normal())
     throw std::runtime_error("--json and --csv are one file: " + options.json.string());
+  for (const fs::path* other : {&options.json, &options.csv})
+    if (!options.view.empty() && !other->empty() &&
+        fs::absolute(options.view).lexically_normal() == fs::absolute(*other).lexically_normal())
+      throw std::runtime_error("--view and another option name one file: " + options.view.string());
   if (check_only && !options.plot.empty())
     throw std::runtime_error("--plot needs times, which --check-only leaves out");
   return true;
@@ -131,8 +141,9 @@ bool parse(int argc, char** argv, Options& options) {
 
 /// Compares one scan at all tolerances and prints the tables.
 /// \param done, weight share of the work before this scan, and of this scan
+/// \param views receives the scan for --view
 InputResult compareScan(const ScanItem& item, const std::string& name, const Options& options, double done,
-                        double weight, ProgressBar& progress) {
+                        double weight, ProgressBar& progress, std::vector<std::string>& views) {
   const CompareSettings& settings = options.settings;
   const Scan read = item.read();
   InputResult input;
@@ -154,17 +165,25 @@ InputResult compareScan(const ScanItem& item, const std::string& name, const Opt
   progress.clear();
   std::fputs(headingOf(input, settings).c_str(), stdout);
   if (!settings.unorganized && read.arranged) std::printf("  %s\n", read.note.c_str());
+  ViewScan view;
+  if (!options.view.empty()) view = viewScanOf(*scan.cloud, name);
   const double cases = static_cast<double>(settings.tolerances.size());
   for (const double tolerance : settings.tolerances) {
     const double cases_before = static_cast<double>(input.cases.size());
-    input.cases.push_back(compareAt(scan, tolerance, settings, [&](const std::string& what, double share) {
-      progress.show(done + weight * (cases_before + share) / cases,
-                    formatted("%s at %g m: %s", name.c_str(), tolerance, what.c_str()));
-    }));
+    input.cases.push_back(compareAt(
+        scan, tolerance, settings,
+        [&](const std::string& what, double share) {
+          progress.show(done + weight * (cases_before + share) / cases,
+                        formatted("%s at %g m: %s", name.c_str(), tolerance, what.c_str()));
+        },
+        [&](const Baseline& baseline, const Clusters& clusters) {
+          if (!options.view.empty()) addLabelling(view, baseline, tolerance, clusters);
+        }));
     progress.clear();
     std::fputs(tableOf(input.cases.back()).c_str(), stdout);
     std::fflush(stdout);
   }
+  if (!view.labellings.empty()) views.push_back(encodeViewScan(view));
   return input;
 }
 
@@ -199,6 +218,7 @@ int compare(const Options& options) {
   // Checked before the work.
   if (!options.json.empty()) checkMayWrite(options.json, kJsonSignature);
   if (!options.csv.empty()) checkMayWrite(options.csv, kCsvSignature);
+  if (!options.view.empty()) checkMayWrite(options.view, kViewSignature);
   if (!options.plot.empty()) {
     checkGnuplot();
     checkMayWriteInto(options.plot, chartsOf(names, settings));
@@ -212,6 +232,7 @@ int compare(const Options& options) {
   std::fputs(describeRun(settings).c_str(), stdout);
   std::fflush(stdout);
   std::vector<InputResult> results;
+  std::vector<std::string> views;
   ProgressBar progress;
   source.onNote([&progress](const std::string& note) {
     progress.clear();
@@ -224,7 +245,7 @@ int compare(const Options& options) {
     const double weight = item->folder.empty() ? 1 / static_cast<double>(files.size()) : 0;
     const std::string name = names[item->input] + (item->folder.empty() ? "" : "_" + item->folder);
     try {
-      results.push_back(compareScan(*item, name, options, share, weight, progress));
+      results.push_back(compareScan(*item, name, options, share, weight, progress, views));
     } catch (const std::exception& error) {
       progress.clear();
       report(error.what());
@@ -239,6 +260,7 @@ int compare(const Options& options) {
 
   if (!options.json.empty()) writeOwnFile(options.json, jsonOf(results, settings, failures), kJsonSignature);
   if (!options.csv.empty()) writeOwnFile(options.csv, csvOf(results, settings), kCsvSignature);
+  if (!options.view.empty()) writeOwnFile(options.view, viewPage("Comparison", views), kViewSignature);
   names.clear();
   for (const InputResult& result : results) names.push_back(result.name);
   if (!options.plot.empty())

@@ -68,7 +68,8 @@ ComparedScan prepareScan(const Cloud& cloud, std::vector<std::uint32_t> object_o
 }
 
 CaseResult compareAt(const ComparedScan& scan, double tolerance, const CompareSettings& settings,
-                     const std::function<void(const std::string&, double)>& progress) {
+                     const std::function<void(const std::string&, double)>& progress,
+                     const std::function<void(const Baseline&, const Clusters&)>& report) {
   Problem problem;
   problem.cloud = scan.cloud;
   problem.returns = scan.returns;
@@ -107,6 +108,7 @@ CaseResult compareAt(const ComparedScan& scan, double tolerance, const CompareSe
       continue;
     }
     entry.clusters = found.size();
+    report(baseline, found);
     entry.difference = differenceOf(problem, reference, expected, baseline, found);
     if (settings.runs == 0 || !baseline.timed || (!entry.difference.identical && settings.mustAgree(baseline)))
       continue;

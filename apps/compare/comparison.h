@@ -75,7 +75,10 @@ ComparedScan prepareScan(const Cloud& cloud, std::vector<std::uint32_t> object_o
 /// Runs all baselines on one scan at one tolerance: compares their clusters with the reference's, then times them in
 /// turn. Baselines that must agree and do not are not timed.
 /// \param progress called with the current step and the share of it that is done
-CaseResult compareAt(const ComparedScan& scan, double tolerance, const CompareSettings& settings,
-                     const std::function<void(const std::string& what, double share)>& progress);
+/// \param report called with the clusters of each baseline
+CaseResult compareAt(
+    const ComparedScan& scan, double tolerance, const CompareSettings& settings,
+    const std::function<void(const std::string& what, double share)>& progress,
+    const std::function<void(const Baseline&, const Clusters&)>& report = [](const Baseline&, const Clusters&) {});
 
 }  // namespace lisco_apps

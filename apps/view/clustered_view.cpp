@@ -3,10 +3,10 @@
 #include "view/clustered_view.h"
 
 #include <fstream>
-#include <limits>
 
 #include "drawing/scan_pictures.h"
 #include "view/page.h"
+#include "view/rows.h"
 #include "view/scan_encoder.h"
 
 namespace lisco_apps {
@@ -20,8 +20,7 @@ ViewScan viewScanOf(const ClusteredScan& scan, const pcl::Indices& clustered) {
   for (const auto& point : cloud) view.points.push_back({point.x, point.y, point.z});
   view.is_ground.assign(cloud.size(), 1);
   for (const auto index : clustered) view.is_ground[static_cast<std::size_t>(index)] = 0;
-  if (cloud.height > 1 && cloud.height <= std::numeric_limits<std::uint16_t>::max() + 1U)
-    for (std::size_t i = 0; i < cloud.size(); ++i) view.ring.push_back(static_cast<std::uint16_t>(i / cloud.width));
+  view.ring = rowsOf(cloud.width, cloud.height);
   view.labellings.push_back({"clusters", scan.tolerance, labelsOf(scan.clusters, cloud.size()), {}});
   return view;
 }

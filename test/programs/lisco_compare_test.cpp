@@ -232,6 +232,7 @@ TEST_F(LiscoCompare, KeepsForeignFiles) {
   expectRefusal(options + "--csv mine.csv", {"mine.csv", "not written by this program"});
   expectRefusal(options + "--csv empty.csv", {"empty.csv", "not written by this program"});
   expectRefusal(options + "--csv walls.pcd", {"walls.pcd", "not written by this program"});
+  expectRefusal(options + "--view mine.csv", {"mine.csv", "not written by this program"});
   expectRefusal(options + "--json folder", {"folder", "is no file"});
   EXPECT_EQ(textOf(folder_ / "mine.json"), "{\"my own\": \"notes\"}");
   EXPECT_EQ(textOf(folder_ / "mine.csv"), "input,rows\n");
@@ -546,6 +547,8 @@ TEST_F(LiscoCompare, RefusesBadOptionsInOneLine) {
   expectRefusal(scan + "--plot ''", {"--plot is empty"});
   expectRefusal(scan + "--plot charts --check-only", {"--plot", "--check-only"});
   expectRefusal(scan + "--json same --csv same", {"--json", "--csv", "same"});
+  expectRefusal(scan + "--csv same --view same", {"--view", "same"});
+  expectRefusal(scan + "--view ''", {"--view is empty"});
   expectRefusal(scan + "--nonsense", {"nonsense"});
   expectRefusal("walls.pcd --tolerance", {"--tolerance"});
   expectRefusal("hollow --tolerance 0.3", {"hollow", "holds no scans"});

@@ -152,6 +152,28 @@ TEST_F(PageTest, OfLiscoClusterShowsItsTable) {
             std::min<std::size_t>(200, shown.size()));
 }
 
+TEST_F(PageTest, OfLiscoCompareShowsMethodsAndTolerancesSideBySide) {
+  const std::string scan = (folder_ / "compared.pcd").string();
+  const std::string page = (folder_ / "compared.html").string();
+  ASSERT_EQ(std::system((LISCO_SIMULATE " --scene 3 --sensor vlp16 -o " + scan + " >/dev/null").c_str()), 0);
+  ASSERT_EQ(std::system((LISCO_COMPARE " " + scan +
+                         " --tolerance 0.4,0.8 --ground-z -1.6 --baselines pcl,lisco "
+                         "--check-only --view " +
+                         page + " >/dev/null")
+                            .c_str()),
+            0);
+  browser_->open("file://" + page);
+  browser_->evaluate("lisco.ready.then(() => 1)");
+  EXPECT_EQ(browser_->evaluate("lisco.view.scan.labellings.map(l => l.tolerance)"), Json({0.4, 0.4, 0.8, 0.8}));
+  EXPECT_NE(browser_->evaluate("lisco.view.scan.labellings[1].name").get<std::string>().find("Lisco for PCL, 0.4 m"),
+            std::string::npos);
+  EXPECT_EQ(textOf("#differences"), "0 points differ");
+  browser_->evaluate("lisco.view.setLabellings(1, 3)");
+  const Json differing = browser_->evaluate("lisco.view.difference.count");
+  EXPECT_GT(differing.get<int>(), 10);
+  EXPECT_EQ(textOf("#differences"), differing.dump() + " points differ");
+}
+
 TEST_F(PageTest, ReadsThePointsAsTheyWereWritten) {
   const ViewScan scan = largeScan();
   open({scan});

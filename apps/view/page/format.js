@@ -61,8 +61,9 @@ function clustersOf(scan, listed, classes) {
   }
   for (const {id, size, min, max, range} of measured.filter(Boolean)) {
     const center = min.map((low, axis) => (low + max[axis]) / 2);
-    clusters.push({id, size, range, center, length: max[0] - min[0], width: max[1] - min[1], height: max[2] - min[2],
-      yaw: 0});
+    const [x, y, height] = max.map((high, axis) => high - min[axis]);
+    clusters.push({id, size, range, center, height, length: Math.max(x, y), width: Math.min(x, y),
+      yaw: y > x ? Math.PI / 2 : 0});
   }
   return clusters;
 }

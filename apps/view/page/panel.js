@@ -139,7 +139,8 @@ function showMeasure(scan, labelling, ends) {
 
 function showCounts(scan, labelling) {
   const clustered = scan.points - labelling.ground - labelling.noise;
-  const parts = [`${labelling.clusters.length} clusters of ${clustered} points`, `${labelling.noise} noise`];
+  const count = labelling.clusters.length;
+  const parts = [`${count} ${count === 1 ? 'cluster' : 'clusters'} of ${clustered} points`, `${labelling.noise} noise`];
   if (labelling.ground) parts.push(`${labelling.ground} ground`);
   if (labelling.tolerance) parts.push(`tolerance ${labelling.tolerance} m`);
   byId('counts').textContent = parts.join(' · ');
