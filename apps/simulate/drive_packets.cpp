@@ -74,8 +74,8 @@ PacketWriter::PacketWriter(const fs::path& file, const Sensor& sensor)
 
 void PacketWriter::writePacket() {
   const std::size_t count = encoder_.firingsPerPacket();
-  const std::int64_t sent_us =
-      kStartUs + std::llround(encoder_.packetPeriodUs() * static_cast<double>(firings_ / count + 1));
+  const std::size_t packet = firings_ / count + 1;
+  const std::int64_t sent_us = kStartUs + std::llround(encoder_.packetPeriodUs() * static_cast<double>(packet));
   const auto world = [this](std::size_t firing, std::size_t laser, bool) { return waiting_[firing - firings_][laser]; };
   const Bytes record = captureRecord({broadcastFrame(encoder_.next(world), kPort), sent_us, 0});
   stream_.write(reinterpret_cast<const char*>(record.data()), static_cast<std::streamsize>(record.size()));
