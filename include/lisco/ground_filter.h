@@ -23,7 +23,7 @@ struct GroundParameters {
   /// Rise of the ground around the sensor along x and y, metres per metre; a start, refined by the returns.
   std::array<float, 2> slope{0.0F, 0.0F};
   /// Steepest ground, degrees against the x-y plane of the cloud, 1 to 60.
-  float max_slope = 20.0F;
+  float max_slope = 17.0F;
   /// Its origin and tilt decide where the ground is looked for; see estimateSensor.
   SensorHints sensor;
 };

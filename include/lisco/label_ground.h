@@ -17,7 +17,7 @@ namespace lisco {
 struct LabelGroundParameters {
   /// Of the sensor above the ground beneath it, metres; NaN: estimated.
   float sensor_height = std::numeric_limits<float>::quiet_NaN();
-  float max_slope = 20.0F;        ///< steepest ground, degrees, 1 to 60
+  float max_slope = 17.0F;        ///< steepest ground, degrees, 1 to 60
   std::size_t lasers = 1;         ///< rows of an organized cloud, stored row by row; 1: unorganized
   std::array<float, 3> origin{};  ///< position of the sensor, metres, if not (0, 0, 0)
 };

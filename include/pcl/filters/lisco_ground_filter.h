@@ -54,7 +54,7 @@ class LiscoGroundFilter : public FilterIndices<PointT> {
   inline float getSensorHeight() const { return (sensor_height_); }
 
   /** \brief Set the steepest ground.
-   * \param[in] degrees against the x-y plane of the cloud, 1 to 60 (default 20)
+   * \param[in] degrees against the x-y plane of the cloud, 1 to 60 (default 17)
    */
   inline void setMaxSlope(float degrees) { max_slope_ = degrees; }
   /** \brief Get the steepest ground in degrees. */
@@ -69,7 +69,7 @@ class LiscoGroundFilter : public FilterIndices<PointT> {
 
  private:
   float sensor_height_ = std::numeric_limits<float>::quiet_NaN();  // metres
-  float max_slope_ = 20.0F;                                        // degrees
+  float max_slope_ = 17.0F;                                        // degrees
 };
 
 }  // namespace pcl
