@@ -18,6 +18,7 @@
 #include <nlohmann/json.hpp>
 
 #include "../sensors/calibration.h"
+#include "../sensors/ouster_packets.h"
 #include "../sensors/packets.h"
 #include "child.h"
 #include "program_test.h"
@@ -582,6 +583,67 @@ TEST_F(LiscoStream, ReadsAnHdl64eByItsCalibration) {
   ASSERT_EQ(endless.status, 0) << endless.err;
   expectDeliveriesAgree(linesOf(endless.out), endless.err, "clouds");
   EXPECT_NE(endless.err.find(" 0 outliers"), std::string::npos) << endless.err;
+}
+
+// Its clusters are those of lisco_cluster on the cloud of all returns.
+TEST_F(LiscoStream, ClustersBothReturns) {
+  PacketEncoder encoder("vlp16", true);
+  std::vector<Bytes> payloads;
+  for (int i = 0; i < 600; ++i)
+    payloads.push_back(encoder.next([](std::size_t firing, std::size_t laser, bool second) {
+      Measured measured = objectsAround(firing, laser, second);
+      if (second && laser % 2 == 0 && measured.distance > 0) measured.distance += 300;  // 0.6 m behind
+      return measured;
+    }));
+  writeCapture("a.pcap", payloads);
+  for (const std::string which : {"", "--return both ", "--return strongest ", "--return last "}) {
+    const bool is_both = which.empty() || which == "--return both ";
+    const std::string options = "a.pcap --sensor vlp16 -t 0.5 --json --stats -o clouds " + which;
+    const Outcome outcome = run(options);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const std::vector<Json> lines = linesOf(outcome.out);
+    ASSERT_GE(lines.size(), 2U);
+    EXPECT_EQ(cloud("clouds", 1).height, is_both ? 32U : 16U) << which;
+    expectRotationsAgree(lines, outcome.err, "clouds");
+    expectLabelsOfBatch("clouds", lines.size(), "-t 0.5");
+    const Outcome endless = run(options + "--mode endless");
+    ASSERT_EQ(endless.status, 0) << endless.err;
+    expectDeliveriesAgree(linesOf(endless.out), endless.err, "clouds");
+    EXPECT_NE(endless.err.find(" 0 outliers"), std::string::npos) << endless.err;
+  }
+  expectRefusal("a.pcap --sensor vlp16 -t 0.5 --return first", {"--return must be strongest, last or both"});
+}
+
+TEST_F(LiscoStream, ReadsAnOusterByItsMetadata) {
+  lisco_test::OusterSensor sensor;
+  sensor.profile = "RNG15_RFL8_NIR8";
+  sensor.pixels = 128;
+  std::vector<Bytes> payloads;
+  for (std::size_t frame = 0; frame < 3; ++frame)
+    for (const Bytes& packet : lisco_test::ousterFrame(
+             sensor, frame, [](std::size_t, std::size_t column, std::size_t pixel, std::size_t) -> std::uint32_t {
+               return column / 40 % 3 == 2 || pixel % 16 == 15
+                          ? 0
+                          : 4000 + 1600 * static_cast<std::uint32_t>(column / 40 % 7);
+             }))
+      payloads.push_back(packet);
+  writeCapture("a.pcap", payloads);
+  write("a.json", sensor.metadata());
+  const std::string options = "a.pcap --sensor ouster -t 0.5 --json --stats -o clouds ";
+  const Outcome outcome = run(options + "--metadata a.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::vector<Json> lines = linesOf(outcome.out);
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines.front()["columns"], 1024);
+  expectRotationsAgree(lines, outcome.err, "clouds");
+  expectLabelsOfBatch("clouds", lines.size(), "-t 0.5");
+  const Outcome endless = run(options + "--metadata a.json --mode endless");
+  ASSERT_EQ(endless.status, 0) << endless.err;
+  expectDeliveriesAgree(linesOf(endless.out), endless.err, "clouds");
+  EXPECT_NE(endless.err.find(" 0 outliers"), std::string::npos) << endless.err;
+  expectRefusal("a.pcap --sensor ouster -t 0.5 --metadata missing.json", {"missing.json: cannot be read"});
+  expectRefusal("a.pcap --sensor pandarxt32 -t 0.5", {"no data packet of a pandarxt32", "is it an ouster?"});
+  expectRefusal("a.pcap --sensor vlp16 -t 0.5 --metadata a.json", {"metadata file is for the ouster only"});
 }
 
 TEST_F(LiscoStream, ContinuesWhileTheSensorStandsStill) {
