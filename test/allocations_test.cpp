@@ -14,6 +14,7 @@
 #include "lisco/column_clusterer.h"
 #include "lisco/endless_clusterer.h"
 #include "lisco/ground_filter.h"
+#include "lisco/label_clusters.h"
 #include "lisco/window_clusterer.h"
 #include "random.h"
 #include "refused_allocations.h"
@@ -72,6 +73,25 @@ TEST(Allocations, GroundFilterAllocatesNothingAfterBegin) {
 
 TEST(Allocations, AreCounted) {
   EXPECT_EQ(allocationsOf(2, [] { ::operator delete(::operator new(1)); }), 1U);
+}
+
+TEST(Allocations, NoneForLabelsOfAScanLikeTheLastOne) {
+  const auto columns = oneTurn();
+  lisco::ClusterLabeller labeller;
+  lisco::LabelParameters parameters;
+  parameters.tolerance = 0.5F;
+  parameters.lasers = kLasers;
+  std::vector<std::int32_t> labels(kSteps * kLasers);
+  std::size_t clusters = 0;
+  EXPECT_EQ(allocationsOf(4,
+                          [&] {
+                            clusters = labeller.label(
+                                labels.size(),
+                                [&](std::size_t laser, std::size_t column) { return columns[column][laser]; },
+                                parameters, labels.data());
+                          }),
+            0U);
+  EXPECT_GT(clusters, 1U);
 }
 
 TEST(Allocations, NoneForARotationLikeTheLastOne) {

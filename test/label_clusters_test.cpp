@@ -69,6 +69,30 @@ TEST(LabelClusters, AreTheTrueClustersLargestFirst) {
   }
 }
 
+TEST(LabelClusters, OneLabellerLabelsScanAfterScan) {
+  lisco::ClusterLabeller labeller;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const Scan scan = randomScan(random);
+    const std::vector<Point> points = pointsOf(scan);
+    lisco::LabelParameters parameters;
+    parameters.tolerance = criticalTolerance(random, scan);
+    parameters.min_size = 1 + random.below(3);
+    parameters.lasers = random.chance(0.5) ? scan.lasers : 1;
+    std::vector<std::int32_t> expected(points.size()), labels(points.size(), 77);
+    const std::size_t count =
+        lisco::labelClusters(points.data(), points.size(), sizeof(Point), parameters, expected.data());
+    const std::size_t columns = points.size() / parameters.lasers;
+    const auto cell_at = [&](std::size_t laser, std::size_t column) {
+      const Point& point = points[laser * columns + column];
+      return lisco::Return{point.x, point.y, point.z, 0};
+    };
+    EXPECT_EQ(labeller.label(points.size(), cell_at, parameters, labels.data()), count);
+    EXPECT_EQ(labels, expected);
+  }
+}
+
 TEST(LabelClusters, RejectsWrongArguments) {
   const float points[6] = {1, 2, 3, 4, 5, 6};
   std::int32_t labels[2];

@@ -7,8 +7,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 
 #include "lisco/export.h"
+#include "lisco/return.h"
 
 namespace lisco {
 
@@ -41,5 +43,40 @@ struct LabelParameters {
 ///         pointer is null while count is not 0
 LISCO_EXPORT std::size_t labelClusters(const void* points, std::size_t count, std::size_t stride,
                                        const LabelParameters& parameters, std::int32_t* labels);
+
+/// labelClusters () for points in memory of any layout, scan after scan:
+///
+///   lisco::ClusterLabeller labeller;
+///   while (...) clusters = labeller.label(count, [&](std::size_t laser, std::size_t column) { ... }, parameters, labels);
+///
+/// Nothing is allocated once the buffers have grown to the largest scan seen (see ColumnClusterer). Not thread safe; any
+/// number of instances may work side by side.
+class LISCO_EXPORT ClusterLabeller {
+ public:
+  ClusterLabeller();
+  ~ClusterLabeller();
+  ClusterLabeller(const ClusterLabeller&) = delete;
+  ClusterLabeller& operator=(const ClusterLabeller&) = delete;
+
+  /// \param count number of points, below 2^31: LabelParameters::lasers rows of as many columns each
+  /// \param cells callable as Return (std::size_t laser, std::size_t column), or block by block as CellSource has it;
+  ///        source indices are ignored. Called twice for some cells, and by several threads at once if
+  ///        LabelParameters::threads allows it
+  /// \param labels receives `count` labels, laser by laser; see labelClusters
+  /// \return number of clusters
+  /// \throws std::invalid_argument if count is 2^31 or more, lasers do not divide it, or labels are null while it is
+  ///         not 0
+  template <typename Cells>
+  std::size_t label(std::size_t count, Cells&& cells, const LabelParameters& parameters, std::int32_t* labels) {
+    return labelAll(count, CellSource(cells), parameters, labels);
+  }
+
+ private:
+  std::size_t labelAll(std::size_t count, const CellSource& cells, const LabelParameters& parameters,
+                       std::int32_t* labels);
+
+  class LISCO_HIDDEN State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace lisco
