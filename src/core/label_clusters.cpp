@@ -5,28 +5,19 @@
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
-#include <vector>
 
+#include "lisco/cluster_order.h"
 #include "lisco/column_clusterer.h"
 
 namespace lisco {
 
 class ClusterLabeller::State {
  public:
-  struct Cluster {
-    std::uint32_t size;
-    std::uint32_t subcluster;
-  };
-
   ColumnClusterer clusterer;
-  std::vector<Cluster> clusters;       ///< of accepted sizes, by first point, then in PCL's order
-  std::vector<std::int32_t> label_of;  ///< by subcluster
+  ClusterOrder order;
 };
 
 namespace {
-
-constexpr std::int32_t kNoCluster = -1;
-constexpr std::int32_t kUnseen = -2;
 
 void check(std::size_t count, const LabelParameters& parameters, const std::int32_t* labels) {
   if (count >= std::size_t{1} << 31)
@@ -45,7 +36,7 @@ std::size_t ClusterLabeller::labelAll(std::size_t count, const CellSource& cells
                                       std::int32_t* labels) {
   check(count, parameters, labels);
   if (count == 0) return 0;
-  std::fill_n(labels, count, kNoCluster);
+  std::fill_n(labels, count, ClusterOrder::kNoCluster);
   const std::size_t columns = count / parameters.lasers;
   const auto numbered_cells = [&](std::size_t laser, std::size_t first, std::size_t number,
                                   const CellSource::Destination& to) {
@@ -64,26 +55,13 @@ std::size_t ClusterLabeller::labelAll(std::size_t count, const CellSource& cells
   clusterer.addColumns(columns, parameters.lasers, numbered_cells);
   clusterer.update();
 
-  // PCL's order: by first point, as runs come, then its unstable sort, which moves sizes alone as it moves clusters.
-  std::vector<State::Cluster>& clusters = state_->clusters;
-  std::vector<std::int32_t>& label_of = state_->label_of;
-  clusters.clear();
-  label_of.assign(clusterer.subclusterCount(), kUnseen);
-  clusterer.forEachRun([&](const std::uint32_t*, std::size_t, std::uint32_t subcluster) {
-    if (label_of[subcluster] != kUnseen) return;
-    label_of[subcluster] = kNoCluster;
-    const std::uint32_t size = clusterer.sizeOf(subcluster);
-    if (size >= parameters.min_size && size <= parameters.max_size) clusters.push_back({size, subcluster});
-  });
-  std::sort(clusters.rbegin(), clusters.rend(),
-            [](const State::Cluster& a, const State::Cluster& b) { return a.size < b.size; });
-  for (std::size_t label = 0; label < clusters.size(); ++label)
-    label_of[clusters[label].subcluster] = static_cast<std::int32_t>(label);
+  ClusterOrder& order = state_->order;
+  order.assign(clusterer, parameters.min_size, parameters.max_size);
   clusterer.forEachRun([&](const std::uint32_t* points, std::size_t size, std::uint32_t subcluster) {
-    const std::int32_t label = label_of[subcluster];
+    const std::int32_t label = order.labelOf(subcluster);
     for (std::size_t i = 0; i < size; ++i) labels[points[i]] = label;
   });
-  return clusters.size();
+  return order.count();
 }
 
 std::size_t labelClusters(const void* points, std::size_t count, std::size_t stride, const LabelParameters& parameters,

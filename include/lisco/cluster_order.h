@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include "lisco/cxx17.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "lisco/column_clusterer.h"
+#include "lisco/export.h"
+
+namespace lisco {
+
+/// Numbers the subclusters of a rotation as PCL orders its clusters: by size, the largest first, and among equal sizes
+/// as PCL's unstable sort leaves them. Keeps its memory.
+class LISCO_EXPORT ClusterOrder {
+ public:
+  static constexpr std::int32_t kNoCluster = -1;  ///< the label of a subcluster whose size is not accepted
+
+  /// Numbers the subclusters of min_size to max_size returns. After ColumnClusterer::update ().
+  void assign(ColumnClusterer& clusterer, std::size_t min_size, std::size_t max_size);
+
+  /// Number of clusters.
+  std::size_t count() const { return clusters_.size(); }
+  /// 0 for the largest cluster and so on; kNoCluster if its size is not accepted.
+  /// \param subcluster 0..ColumnClusterer::subclusterCount()-1
+  std::int32_t labelOf(std::uint32_t subcluster) const { return label_of_[subcluster]; }
+
+ private:
+  struct Cluster {
+    std::uint32_t size, subcluster;
+  };
+
+  std::vector<Cluster> clusters_;       ///< of accepted sizes
+  std::vector<std::int32_t> label_of_;  ///< by subcluster
+};
+
+}  // namespace lisco
