@@ -21,7 +21,7 @@ run_tests() {
     shift
   done
   shift
-  build_quietly "$root" "$build" -DLISCO_WARNINGS_AS_ERRORS=ON "$@"
+  build_quietly "$root" "$build" -DLISCO_WARNINGS_AS_ERRORS=ON -DLISCO_BUILD_PYTHON=ON "$@"
   echo "$name:"
   if ! (cd "$build" && ctest --output-on-failure -j "$(nproc)" "${ctest_options[@]}" >ctest.log 2>&1 </dev/null); then
     cat "$build/ctest.log" >&2

@@ -8,6 +8,10 @@ set(components libraries development documentation)
 if(programs)
   list(APPEND components applications)
 endif()
+set(LISCO_PACKAGE_python python3-lisco)
+if(LISCO_BUILD_PYTHON)
+  list(APPEND components python)
+endif()
 foreach(component IN LISTS components)
   string(TOUPPER ${component} COMPONENT)
   set(CPACK_DEBIAN_${COMPONENT}_PACKAGE_NAME ${LISCO_PACKAGE_${component}})
@@ -28,6 +32,7 @@ set(CPACK_COMPONENT_LIBRARIES_DESCRIPTION "The libraries: the clustering engine,
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Headers, CMake package and pkg-config files.")
 set(CPACK_COMPONENT_APPLICATIONS_DESCRIPTION "Programs that cluster scans, compare with PCL, and simulate scans.")
 set(CPACK_COMPONENT_DOCUMENTATION_DESCRIPTION "Algorithm, contract, tutorials, benchmarks.")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Python package: clusters of numpy arrays.")
 set(CPACK_DEBIAN_LIBRARIES_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_APPLICATIONS_PACKAGE_SECTION science)
@@ -48,4 +53,19 @@ if(LISCO_CORE_TYPE STREQUAL STATIC_LIBRARY)
 endif()
 set(CPACK_DEBIAN_APPLICATIONS_PACKAGE_RECOMMENDS fonts-dejavu-core)
 set(CPACK_DEBIAN_APPLICATIONS_PACKAGE_SUGGESTS gnuplot-nox)  # charts
+if(LISCO_BUILD_PYTHON)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_COMPONENT_PYTHON_DEPENDS libraries)
+  math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")  # the extension is compiled for one version of Python
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${next_minor}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS python3-matplotlib)
+  # Removes what the interpreter compiled.
+  file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/prerm
+    "#!/bin/sh\nset -e\nrm -rf \"\${DPKG_ROOT:-}/usr/${LISCO_PYTHON_DIR}/lisco/__pycache__\"\n")
+  file(CHMOD ${CMAKE_CURRENT_BINARY_DIR}/prerm PERMISSIONS
+    OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_BINARY_DIR}/prerm)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+endif()
 include(CPack)

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Euclidean clusters of LiDAR scans, exactly those of PCL's EuclideanClusterExtraction.
+
+>>> import numpy as np, lisco
+>>> points = np.array([[1, 0, 0], [1.1, 0, 0], [9, 0, 0]], dtype=np.float32)
+>>> lisco.cluster(points, tolerance=0.4)
+array([0, 0, 1], dtype=int32)
+
+Points with a NaN or infinite coordinate, and points at exactly (0, 0, 0), are no returns: they are in no cluster.
+"""
+
+from ._core import __version__
+from .clusterer import Clusterer, cluster
+from .columns import ColumnClusterer, EndlessCluster, EndlessClusterer
+from .streams import Rotation, endless, stream
+
+__all__ = [
+    "Clusterer",
+    "ColumnClusterer",
+    "EndlessCluster",
+    "EndlessClusterer",
+    "Rotation",
+    "__version__",
+    "cluster",
+    "endless",
+    "stream",
+]

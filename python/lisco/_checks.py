@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Arguments as the engine expects them, or an error that says what is wrong and what is wanted."""
+
+import math
+import operator
+from typing import Any, NamedTuple, Optional, Tuple
+
+import numpy as np
+
+MAX_POINTS = 2**31 - 1
+NO_LIMIT = 2**64 - 1
+WANTED = "an array of shape (N, 3 or more) or (H, W, 3 or more), or of records with fields x, y and z"
+
+
+class Axes(NamedTuple):
+    """The coordinates of points, as views of two axes: rows and columns."""
+
+    x: np.ndarray
+    y: np.ndarray
+    z: np.ndarray
+    shape: Tuple[int, ...]  # of the points, as given
+
+
+def _float_view(values: np.ndarray, name: str) -> np.ndarray:
+    if values.dtype.kind != "f" or values.dtype.itemsize not in (4, 8):
+        raise ValueError(f"{name} must be float32 or float64, not {values.dtype}; points.astype(np.float32) converts")
+    return values if values.dtype.isnative else values.astype(values.dtype.newbyteorder("="))
+
+
+def axes_of(points: Any, name: str = "points") -> Axes:
+    """The coordinates of points, without copying what is native float32 or float64."""
+    if isinstance(points, np.ma.MaskedArray):
+        raise ValueError(f"{name} must not be a masked array; points.filled(np.nan) turns what is masked into no returns")
+    array = np.asarray(points)
+    if array.dtype.names is not None:
+        missing = [field for field in "xyz" if field not in array.dtype.names]
+        if missing or array.ndim not in (1, 2):
+            raise ValueError(f"{name} must be {WANTED}, not of shape {array.shape} with fields {array.dtype.names}")
+        fields = [array[field] for field in "xyz"]
+        if any(field.shape != array.shape for field in fields):
+            raise ValueError(f"the fields x, y and z of {name} must be single numbers")
+        shape = array.shape
+    else:
+        if array.ndim not in (2, 3) or array.shape[-1] < 3:
+            raise ValueError(f"{name} must be {WANTED}, not of shape {array.shape}")
+        array = _float_view(array, name)
+        fields = [array[..., axis] for axis in range(3)]
+        shape = array.shape[:-1]
+    if math.prod(shape) > MAX_POINTS:
+        raise ValueError(f"{name} must be fewer than 2^31, not {math.prod(shape)}")
+    x, y, z = (_float_view(field, name).reshape(shape) for field in fields)
+    if len(shape) == 1:
+        x, y, z = x[np.newaxis], y[np.newaxis], z[np.newaxis]
+    return Axes(x, y, z, shape)
+
+
+def column_of(points: Any) -> Axes:
+    """The coordinates of one column: its points as rows."""
+    axes = axes_of(points, "a column's points")
+    if len(axes.shape) != 1:
+        raise ValueError(f"a column must be an array of shape (lasers, 3 or more), not {np.shape(points)}")
+    return Axes(axes.x.T, axes.y.T, axes.z.T, axes.shape)
+
+
+def number_of(value: Any, name: str) -> float:
+    """A finite number."""
+    number = float(value)
+    if not math.isfinite(number):
+        raise ValueError(f"{name} must be a finite number, not {value}")
+    return number
+
+
+def tolerance_of(tolerance: Any) -> float:
+    """A distance in metres that a float32 can hold."""
+    number = float(tolerance)
+    if not 0 <= number <= np.finfo(np.float32).max:
+        raise ValueError(f"tolerance must be a finite number of metres, 0 or more, not {tolerance}")
+    return number
+
+
+def count_of(value: Any, name: str, least: int = 0) -> int:
+    """A whole number, `least` or more."""
+    count = operator.index(value)
+    if count < least:
+        raise ValueError(f"{name} must be {least} or more, not {value}")
+    return min(count, NO_LIMIT)
+
+
+def sizes_of(min_size: Any, max_size: Optional[Any]) -> Tuple[int, int]:
+    """The smallest and the largest size of a cluster."""
+    low = count_of(min_size, "min_size")
+    high = NO_LIMIT if max_size is None else count_of(max_size, "max_size")
+    if low > high:
+        raise ValueError(f"min_size must not exceed max_size, but {low} > {high}")
+    return low, high
