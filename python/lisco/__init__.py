@@ -12,6 +12,9 @@ Points with a NaN or infinite coordinate, and points at exactly (0, 0, 0), are n
 from ._core import __version__
 from .clusterer import Clusterer, cluster
 from .columns import ColumnClusterer, EndlessCluster, EndlessClusterer
+from .ground import ground, remove_ground
+from .plot import plot
+from .reading import read, sensors
 from .streams import Rotation, endless, stream
 
 __all__ = [
@@ -23,5 +26,10 @@ __all__ = [
     "__version__",
     "cluster",
     "endless",
+    "ground",
+    "plot",
+    "read",
+    "remove_ground",
+    "sensors",
     "stream",
 ]

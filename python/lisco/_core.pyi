@@ -8,6 +8,10 @@ MAX_STAGGER: float
 
 def simd_level() -> str: ...
 
+def ground(
+    x: np.ndarray, y: np.ndarray, z: np.ndarray, sensor_height: float, max_slope: float
+) -> np.ndarray: ...
+
 class Labeller:
     def __init__(self) -> None: ...
     def label(

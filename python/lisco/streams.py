@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Streams of columns, as generators."""
 
-from typing import Any, Iterable, Iterator, List, NamedTuple, Optional
+import os
+from typing import Any, Iterable, Iterator, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
 from ._checks import count_of
+from .clusterer import Clusterer
 from .columns import ColumnClusterer, EndlessCluster, EndlessClusterer
+from .reading import open_capture
 
 
 class Rotation(NamedTuple):
@@ -19,22 +22,26 @@ class Rotation(NamedTuple):
 
 
 def stream(
-    columns: Iterable[Any],
+    source: Any,
     tolerance: float,
-    columns_per_rotation: int,
+    columns_per_rotation: Optional[int] = None,
     min_size: int = 1,
     max_size: Optional[int] = None,
+    **recording: Any,
 ) -> Iterator[Rotation]:
-    """Clusters rotation after rotation, each while its columns come.
+    """Clusters rotation after rotation.
 
     Parameters
     ----------
-    columns : iterable of array_like
-        Each of shape (lasers, 3 or more), as many lasers in each column of a rotation.
+    source : iterable of array_like, or path
+        Columns, each of shape (lasers, 3 or more), as many lasers in each column of a rotation: they are clustered as
+        they come. Or a recording: see `lisco.read`.
     tolerance, min_size, max_size
         See `lisco.cluster`.
     columns_per_rotation : int
-        Columns after which a rotation ends. The last one may have fewer.
+        Of columns: after which a rotation ends. The last one may have fewer.
+    **recording
+        `sensor`, `calibration`, `metadata` and `port` of `lisco.read`.
 
     Yields
     ------
@@ -49,28 +56,37 @@ def stream(
     (1, 4, 3) [[0 0 0 0]]
     (1, 2, 3) [[0 0]]
     """
+    if isinstance(source, (str, os.PathLike)):
+        if columns_per_rotation is not None:
+            raise ValueError("columns_per_rotation is of columns; a recording has rotations of its own")
+        capture = open_capture(source, **recording)
+        whole = Clusterer(tolerance, min_size, max_size)
+        return (Rotation(turn.points, whole.cluster(turn.points)) for turn in capture.turns())
+    if recording:
+        raise ValueError(f"{', '.join(recording)}: only a recording has these")
+    if columns_per_rotation is None:
+        raise ValueError("a stream of columns needs columns_per_rotation")
     per_rotation = count_of(columns_per_rotation, "columns_per_rotation", least=1)
-    clusterer = ColumnClusterer(tolerance, min_size, max_size)
+    return _rotations(source, ColumnClusterer(tolerance, min_size, max_size), per_rotation)
 
-    def rotations() -> Iterator[Rotation]:
-        held: List[np.ndarray] = []
-        for column in columns:
-            clusterer.add_column(column)
-            held.append(np.array(column))
-            if len(held) == per_rotation:
-                yield Rotation(np.stack(held, axis=1), clusterer.labels())
-                held.clear()
-                clusterer.begin()
-        if held:
+
+def _rotations(columns: Iterable[Any], clusterer: ColumnClusterer, per_rotation: int) -> Iterator[Rotation]:
+    held: List[np.ndarray] = []
+    for column in columns:
+        clusterer.add_column(column)
+        held.append(np.array(column))
+        if len(held) == per_rotation:
             yield Rotation(np.stack(held, axis=1), clusterer.labels())
-
-    return rotations()
+            held.clear()
+            clusterer.begin()
+    if held:
+        yield Rotation(np.stack(held, axis=1), clusterer.labels())
 
 
 def endless(
-    columns: Iterable[Any],
+    source: Any,
     tolerance: float,
-    columns_per_turn: float,
+    columns_per_turn: Optional[float] = None,
     min_size: int = 1,
     max_size: Optional[int] = None,
     **sensor: Any,
@@ -79,24 +95,40 @@ def endless(
 
     Parameters
     ----------
-    columns : iterable of array_like
-        Each of shape (lasers, 3 or more).
+    source : iterable of array_like, or path
+        Columns, each of shape (lasers, 3 or more). Or a recording: see `lisco.read`.
     tolerance, min_size, max_size
         See `lisco.cluster`.
     columns_per_turn : float
-        Columns of a whole turn of the sensor.
+        Of columns: those of a whole turn of the sensor.
     **sensor
-        `clockwise`, `start_azimuth`, `origin` and `stagger` of `EndlessClusterer`.
+        Of columns: `clockwise`, `start_azimuth`, `origin` and `stagger` of `EndlessClusterer`. Of a recording: `sensor`,
+        `calibration`, `metadata` and `port` of `lisco.read`.
 
     Yields
     ------
     EndlessCluster
     """
+    if isinstance(source, (str, os.PathLike)):
+        if columns_per_turn is not None:
+            raise ValueError("columns_per_turn is of columns; a recording has azimuths")
+        capture = open_capture(source, **sensor)
+        clusterer = EndlessClusterer(tolerance, min_size, max_size, clockwise=True, stagger=capture.stagger)
+        placed = (
+            (turn.points[:, column], position)
+            for turn in capture.turns()
+            for column, position in enumerate(turn.positions)
+        )
+        return _endless_clusters(placed, clusterer)
+    if columns_per_turn is None:
+        raise ValueError("a stream of columns needs columns_per_turn")
     clusterer = EndlessClusterer(tolerance, min_size, max_size, columns_per_turn=columns_per_turn, **sensor)
+    return _endless_clusters(((column, None) for column in source), clusterer)
 
-    def clusters() -> Iterator[EndlessCluster]:
-        for column in columns:
-            yield from clusterer.add_column(column)
-        yield from clusterer.finish()
 
-    return clusters()
+def _endless_clusters(
+    columns: Iterable[Tuple[Any, Optional[float]]], clusterer: EndlessClusterer
+) -> Iterator[EndlessCluster]:
+    for column, position in columns:
+        yield from clusterer.add_column(column, position)
+    yield from clusterer.finish()

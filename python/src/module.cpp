@@ -14,4 +14,5 @@ PYBIND11_MODULE(_core, module) {
   lisco_python::defineLabeller(module);
   lisco_python::defineColumns(module);
   lisco_python::defineEndless(module);
+  lisco_python::defineGround(module);
 }

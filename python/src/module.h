@@ -10,5 +10,6 @@ namespace lisco_python {
 void defineLabeller(pybind11::module_& module);
 void defineColumns(pybind11::module_& module);
 void defineEndless(pybind11::module_& module);
+void defineGround(pybind11::module_& module);
 
 }  // namespace lisco_python

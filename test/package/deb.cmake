@@ -71,7 +71,7 @@ expect("${output}" "clusters  [1-9]" lisco_cluster)
 if(PYTHON)
   run(${CMAKE_COMMAND} -E env PYTHONPATH=${root}/usr/lib/python3/dist-packages ${PYTHON}
     ${CMAKE_CURRENT_LIST_DIR}/python_package.py)
-  expect("${output}" "^${VERSION} ${root}/usr/lib/.* .0 0 -1.\n$" python3-lisco)
+  expect("${output}" "^${VERSION} ${root}/usr/lib/.* .0, 0, -1.\n$" python3-lisco)
 endif()
 
 run(${dpkg} --purge ${packages})

@@ -12,7 +12,7 @@ set(ENV{PIP_DISABLE_PIP_VERSION_CHECK} 1)
 run(${PYTHON} -m pip install --quiet --no-index --no-build-isolation --no-deps --target ${WORK_DIR}/installed
   ${WORK_DIR}/source)
 run(${CMAKE_COMMAND} -E env PYTHONPATH=${WORK_DIR}/installed ${PYTHON} ${CMAKE_CURRENT_LIST_DIR}/python_package.py)
-expect("${output}" "^${VERSION} ${WORK_DIR}/installed/.* .0 0 -1.\n$" "the package that pip installs")
+expect("${output}" "^${VERSION} ${WORK_DIR}/installed/.* .0, 0, -1.\n$" "the package that pip installs")
 foreach(file py.typed _core.pyi)
   if(NOT EXISTS ${WORK_DIR}/installed/lisco/${file})
     message(FATAL_ERROR "pip does not install ${file}")

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The ground in a scan."""
+
+from typing import Any, Optional
+
+import numpy as np
+
+from . import _core
+from ._checks import Axes, axes_of, number_of
+
+_CELLS = 64  # of a column of an unorganized scan; from 16 to 256 the ground is the same within a percent
+
+
+def ground(points: Any, sensor_height: Optional[float] = None, max_slope: float = 20.0) -> np.ndarray:
+    """Which points lie on the ground.
+
+    Parameters
+    ----------
+    points : array_like
+        A scan, z up to within about 10 degrees and the sensor near x = y = 0; see `lisco.cluster` for shapes. Of an
+        organized scan, rows are lasers. An unorganized one is sorted by azimuth first.
+    sensor_height : float, optional
+        Of the sensor above the ground beneath it, metres; by default estimated from the points.
+    max_slope : float
+        Steepest ground, degrees, 1 to 60.
+
+    Returns
+    -------
+    ndarray of bool
+        Of shape (N,) or (H, W); False for no returns.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> azimuth, range_ = np.meshgrid(np.radians(np.arange(0, 360, 2)), np.arange(4.0, 20, 0.5))
+    >>> flat = np.stack([range_ * np.cos(azimuth), range_ * np.sin(azimuth), np.full_like(range_, -1.7)], axis=2)
+    >>> scan = np.concatenate([flat, flat + [0, 0, 1.5]])  # the ground, and what is above it
+    >>> mask = ground(scan, sensor_height=1.7)
+    >>> bool(mask[:32].all()), bool(mask[32:].any())
+    (True, False)
+    """
+    height = np.nan if sensor_height is None else number_of(sensor_height, "sensor_height")
+    slope = number_of(max_slope, "max_slope")
+    if not 1 <= slope <= 60:
+        raise ValueError(f"max_slope must be 1 to 60 degrees, not {max_slope}")
+    axes = axes_of(points)
+    if len(axes.shape) == 2:
+        return _core.ground(axes.x, axes.y, axes.z, height, slope).astype(bool)
+    return _unorganized(axes, height, slope)
+
+
+def remove_ground(points: Any, sensor_height: Optional[float] = None, max_slope: float = 20.0) -> np.ndarray:
+    """A copy of a scan whose ground points are no returns: their x, y and z are NaN.
+
+    The shape stays, so that labels of the result are labels of the scan.
+
+    Parameters
+    ----------
+    points, sensor_height, max_slope
+        See `ground`.
+
+    Returns
+    -------
+    ndarray
+        Of the shape and type of `points`.
+    """
+    mask = ground(points, sensor_height, max_slope)
+    left = np.array(points)
+    if left.dtype.names is None:
+        left[mask, :3] = np.nan
+    else:
+        for field in "xyz":
+            left[field][mask] = np.nan
+    return left
+
+
+def _unorganized(axes: Axes, height: float, slope: float) -> np.ndarray:
+    """The ground of points in any order: sorted by azimuth and cut into columns, whose cells may have any order."""
+    with np.errstate(invalid="ignore"):
+        order = np.argsort(np.arctan2(axes.y[0], axes.x[0]), kind="stable")
+    missing = -len(order) % _CELLS
+    x, y, z = (
+        np.concatenate([axis[0, order], np.zeros(missing, axis.dtype)]).reshape(-1, _CELLS).T
+        for axis in (axes.x, axes.y, axes.z)
+    )
+    found = _core.ground(x, y, z, height, slope).T.ravel()[: len(order)]
+    mask = np.empty(len(order), dtype=bool)
+    mask[order] = found
+    return mask

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Files and recordings."""
+
+import lisco
+import numpy as np
+import pytest
+
+pytest.importorskip("lisco._reading", reason="made without the programs")
+
+
+def write_pcd(path, scan):
+    """An organized ASCII PCD."""
+    rows, columns = scan.shape[:2]
+    header = f"FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH {columns}\nHEIGHT {rows}\n"
+    lines = "\n".join(" ".join(f"{value:.9g}" for value in point) for point in scan.reshape(-1, 3))
+    path.write_text(f"{header}VIEWPOINT 0 0 0 1 0 0 0\nPOINTS {rows * columns}\nDATA ascii\n{lines}\n")
+
+
+def test_clouds_are_read_as_they_are_organized(rng, tmp_path):
+    scan = rng.normal(size=(4, 10, 3)).astype(np.float32)
+    write_pcd(tmp_path / "scan.pcd", scan)
+    assert np.array_equal(lisco.read(tmp_path / "scan.pcd"), scan)
+    np.concatenate([scan.reshape(-1, 3), np.ones((40, 1), np.float32)], axis=1).tofile(tmp_path / "scan.bin")
+    points = lisco.read(str(tmp_path / "scan.bin"))
+    assert points.dtype == np.float32 and np.array_equal(points, scan.reshape(-1, 3))
+
+
+def test_unreadable_files_are_errors(tmp_path):
+    with pytest.raises(FileNotFoundError, match="missing.pcd: does not exist"):
+        lisco.read(tmp_path / "missing.pcd")
+    for name, content in (("scan.xyz", b"1 2 3"), ("scan.pcd", b"no cloud"), ("empty.pcd", b"")):
+        (tmp_path / name).write_bytes(content)
+        with pytest.raises(ValueError, match=name):
+            lisco.read(tmp_path / name)
+    (tmp_path / "broken.pcap").write_bytes(b"no capture")
+    with pytest.raises(ValueError, match="needs the sensor that sent it: one of .*vlp16"):
+        lisco.read(tmp_path / "broken.pcap")
+    with pytest.raises(ValueError, match="broken.pcap"):
+        lisco.read(tmp_path / "broken.pcap", sensor="vlp16")
+    with pytest.raises(TypeError):
+        lisco.read(3)
+    with pytest.raises(ValueError, match="only a capture"):
+        lisco.read(tmp_path / "scan.pcd", sensor="vlp16")
+
+
+def test_kitti_scans_are_their_floats(data):
+    file = data / "kitti" / "0000000000.bin"
+    assert np.array_equal(lisco.read(file), np.fromfile(file, dtype=np.float32).reshape(-1, 4)[:, :3])
+
+
+def test_captures_are_rotations(data):
+    rotations = list(lisco.read(data / "captures" / "hdl32e_outdoor.pcap", sensor="hdl32e"))
+    assert 16 <= len(rotations) <= 19
+    whole = rotations[5]
+    assert whole.shape[0] == 32 and 1500 < whole.shape[1] < 2500 and whole.shape[2] == 4
+    expected = lisco.read(data / "scans" / "hdl32e_outdoor_0.pcd")
+    assert 0.8 < np.isfinite(whole[..., 0]).sum() / np.isfinite(expected[..., 0]).sum() < 1.2
+
+
+def test_streams_of_captures_are_clustered_rotations(data):
+    capture = data / "captures" / "vlp16_street.pcap"
+    rotations = list(lisco.stream(capture, 0.4, sensor="vlp16", min_size=10))
+    points = list(lisco.read(capture, sensor="vlp16"))
+    assert len(rotations) == len(points) > 0
+    for rotation, expected in zip(rotations, points):
+        assert np.array_equal(rotation.points, expected, equal_nan=True)
+        assert np.array_equal(rotation.labels, lisco.cluster(expected, 0.4, 10))
+
+
+def test_endless_streams_of_captures_hold_each_return_once(data):
+    capture = data / "captures" / "vlp16_street.pcap"
+    returns = sum(int(np.isfinite(scan[..., 0]).sum()) for scan in lisco.read(capture, sensor="vlp16"))
+    clusters = list(lisco.endless(capture, 0.4, sensor="vlp16"))
+    assert sum(len(cluster.points) for cluster in clusters) == returns
+    assert len(clusters) < returns / 4
+
+
+def test_arguments_of_streams_are_checked(data):
+    capture = data / "captures" / "vlp16_street.pcap"
+    with pytest.raises(ValueError, match="columns_per_rotation is of columns"):
+        lisco.stream(capture, 0.4, 100, sensor="vlp16")
+    with pytest.raises(ValueError, match="columns_per_turn is of columns"):
+        lisco.endless(capture, 0.4, 100, sensor="vlp16")
+    with pytest.raises(ValueError, match="only a recording has these"):
+        lisco.stream([], 0.4, 100, sensor="vlp16")
+    with pytest.raises(ValueError, match="needs columns_per_rotation"):
+        lisco.stream([], 0.4)
+    with pytest.raises(ValueError, match="port"):
+        lisco.read(capture, sensor="vlp16", port=0)
