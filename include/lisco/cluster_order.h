@@ -6,7 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <memory>
 
 #include "lisco/column_clusterer.h"
 #include "lisco/export.h"
@@ -19,22 +19,25 @@ class LISCO_EXPORT ClusterOrder {
  public:
   static constexpr std::int32_t kNoCluster = -1;  ///< the label of a subcluster whose size is not accepted
 
+  ClusterOrder();
+  ~ClusterOrder();
+  ClusterOrder(const ClusterOrder&) = delete;
+  ClusterOrder& operator=(const ClusterOrder&) = delete;
+
   /// Numbers the subclusters of min_size to max_size returns. After ColumnClusterer::update ().
   void assign(ColumnClusterer& clusterer, std::size_t min_size, std::size_t max_size);
 
   /// Number of clusters.
-  std::size_t count() const { return clusters_.size(); }
+  std::size_t count() const { return count_; }
   /// 0 for the largest cluster and so on; kNoCluster if its size is not accepted.
   /// \param subcluster 0..ColumnClusterer::subclusterCount()-1
   std::int32_t labelOf(std::uint32_t subcluster) const { return label_of_[subcluster]; }
 
  private:
-  struct Cluster {
-    std::uint32_t size, subcluster;
-  };
-
-  std::vector<Cluster> clusters_;       ///< of accepted sizes
-  std::vector<std::int32_t> label_of_;  ///< by subcluster
+  class LISCO_HIDDEN State;
+  std::unique_ptr<State> state_;
+  const std::int32_t* label_of_ = nullptr;  ///< by subcluster
+  std::size_t count_ = 0;
 };
 
 }  // namespace lisco

@@ -30,7 +30,7 @@ def _float_view(values: np.ndarray, name: str) -> np.ndarray:
 def axes_of(points: Any, name: str = "points") -> Axes:
     """The coordinates of points, without copying what is native float32 or float64."""
     if isinstance(points, np.ma.MaskedArray):
-        raise ValueError(f"{name} must not be a masked array; points.filled(np.nan) turns what is masked into no returns")
+        raise ValueError(f"{name} must not be a masked array; points.filled(np.nan) makes no returns of what is masked")
     array = np.asarray(points)
     if array.dtype.names is not None:
         missing = [field for field in "xyz" if field not in array.dtype.names]

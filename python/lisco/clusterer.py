@@ -73,8 +73,8 @@ def cluster(
     points : array_like
         float32 or float64 of shape (N, 3 or more), or (H, W, 3 or more) for an organized scan, whose rows are lasers
         and whose columns are firings: x, y, z in metres, further values are ignored. Or records with fields x, y and z.
-        Any strides; nothing is copied unless the byte order is foreign. float64 is rounded to float32. Points with a NaN
-        or infinite coordinate, and points at exactly (0, 0, 0), are no returns.
+        Any strides; nothing is copied unless the byte order is foreign. float64 is rounded to float32. Points with a
+        NaN or infinite coordinate, and points at exactly (0, 0, 0), are no returns.
     tolerance : float
         Metres, 0 or more.
     min_size, max_size : int

@@ -150,7 +150,9 @@ class EndlessClusterer:
             raise ValueError(f"stagger must be 0 to {_core.MAX_STAGGER} radians, not {stagger}")
         start = number_of(start_azimuth, "start_azimuth")
         self._positions_known = per_turn > 0
-        self._endless = _core.Endless(tolerance_of(tolerance), low, high, per_turn, bool(clockwise), start, place, widest)
+        self._endless = _core.Endless(
+            tolerance_of(tolerance), low, high, per_turn, bool(clockwise), start, place, widest
+        )
 
     def add_column(self, points: Any, position: Optional[float] = None) -> List[EndlessCluster]:
         """Adds what all lasers measured in one step.

@@ -2,30 +2,39 @@
 """Scans on file, by the readers of the programs."""
 
 import os
-from typing import Any, Iterator, Optional, Union
+from typing import Any, Iterator, List, NamedTuple, Optional, Union
 
 import numpy as np
 
-CAPTURES = (".pcap", ".pcapng")
+
+class RecordedScan(NamedTuple):
+    """A scan of a recording, or why it cannot be read."""
+
+    name: str
+    time: float
+    """Seconds since 1970."""
+    points: Optional[np.ndarray]
+    """None if the scan cannot be read."""
+    error: str
+    """One line; empty if the scan can be read."""
 
 
-class Capture:
-    """The rotations of a sensor's packets on file."""
+class Packets:
+    """The turns of a sensor whose packets are in a recording."""
 
-    def __init__(self, path: str, sensor: str, calibration: str, metadata: str, port: Optional[int]) -> None:
-        self._path = path
-        reading = _readers()
+    def __init__(self, path: str, reading: Any) -> None:
         try:
-            self._capture = reading.Capture(path, sensor, calibration, metadata, port)
+            self._capture = _readers().Capture(path, reading)
         except RuntimeError as error:
             raise ValueError(str(error)) from None
+        self._path = path
 
     @property
     def stagger(self) -> float:
         """Largest difference between the azimuths of a return and of its column, radians."""
         return self._capture.stagger
 
-    def turns(self) -> "Iterator[Any]":
+    def turns(self) -> Iterator[Any]:
         """Turns with points (lasers, columns, 4), azimuths (degrees clockwise), positions (turns) and a time."""
         while True:
             try:
@@ -56,60 +65,109 @@ def _existing(path: Any) -> str:
     return name
 
 
-def sensors() -> "list[str]":
+def sensors() -> List[str]:
     """The sensors whose packets can be read."""
     return list(_readers().sensors())
 
 
-def open_capture(
-    path: Any, sensor: Optional[str] = None, calibration: Any = None, metadata: Any = None, port: Optional[int] = None
-) -> Capture:
-    """Opens a capture of packets; see `read`."""
-    name = _existing(path)
-    if not name.lower().endswith(CAPTURES):
-        raise ValueError(f"{name}: is no capture (known: pcap, pcapng)")
-    if sensor is None:
-        raise ValueError(f"{name}: a capture needs the sensor that sent it: one of {', '.join(sensors())}")
-    files = [os.fspath(file) if file is not None else "" for file in (calibration, metadata)]
+def is_recording(path: Any) -> bool:
+    """Whether a path is a recording of many scans: a capture (pcap, pcapng), or a bag (db3, mcap, bag, or a folder)."""
+    name = os.fspath(path)
+    return bool(_readers().is_capture(name) or _readers().is_recording(name))
+
+
+def _reading(sensor: Optional[str], calibration: Any, metadata: Any, topic: Optional[str], port: Optional[int]) -> Any:
     if port is not None and not 0 < port < 65536:
         raise ValueError(f"port must be 1 to 65535, not {port}")
-    return Capture(name, sensor, files[0], files[1], port)
+    files = [os.fspath(file) if file is not None else "" for file in (calibration, metadata)]
+    return _readers().Reading(sensor or "", files[0], files[1], topic or "", port)
+
+
+def open_packets(
+    path: Any,
+    sensor: Optional[str] = None,
+    calibration: Any = None,
+    metadata: Any = None,
+    topic: Optional[str] = None,
+    port: Optional[int] = None,
+) -> Packets:
+    """Opens a recording of packets; see `read`."""
+    return Packets(_existing(path), _reading(sensor, calibration, metadata, topic, port))
+
+
+def recorded_scans(
+    path: Any,
+    sensor: Optional[str] = None,
+    calibration: Any = None,
+    metadata: Any = None,
+    topic: Optional[str] = None,
+    port: Optional[int] = None,
+) -> Iterator[RecordedScan]:
+    """The scans of a recording, with their names and times; those that cannot be read as errors. See `read`."""
+    name = _existing(path)
+    reading = _reading(sensor, calibration, metadata, topic, port)
+    if _readers().is_capture(name):
+        packets = Packets(name, reading)
+        return (RecordedScan(f"{name}#{number}", t.time, t.points, "") for number, t in enumerate(packets.turns()))
+    return _clouds(_readers().Scans(name, reading))
+
+
+def _clouds(scans: Any) -> Iterator[RecordedScan]:
+    while True:
+        scan = scans.next()
+        if scan is None:
+            return
+        yield RecordedScan(*scan)
 
 
 def read(
-    path: Any, sensor: Optional[str] = None, calibration: Any = None, metadata: Any = None, port: Optional[int] = None
+    path: Any,
+    sensor: Optional[str] = None,
+    calibration: Any = None,
+    metadata: Any = None,
+    topic: Optional[str] = None,
+    port: Optional[int] = None,
 ) -> Union[np.ndarray, Iterator[np.ndarray]]:
-    """Reads a scan, or the rotations of a recording, in all formats of the programs.
+    """Reads a scan, or the scans of a recording, in all formats of the programs.
 
     Parameters
     ----------
     path : str or os.PathLike
-        A cloud (see `lisco_cluster --help`), or a capture of packets (pcap, pcapng).
+        A cloud (see `lisco_cluster --help`), a capture of packets (pcap, pcapng), or a bag (db3, mcap, bag, or a bag's
+        folder) of clouds or packets.
     sensor : str, optional
         That sent the packets: one of `lisco.sensors()`.
     calibration, metadata : str or os.PathLike, optional
         Files that some sensors need.
+    topic : str, optional
+        Of a bag, if it has several of clouds or packets.
     port : int, optional
-        Reads only packets to it.
+        Of a capture: reads only packets to it.
 
     Returns
     -------
     ndarray or iterator of ndarray
-        Of a cloud: float32 (N, 3), or (H, W, 3) if it is organized. Of a recording: an iterator of rotations, float32
-        (lasers, columns, 4), x, y, z and intensity, NaN where there is no return.
+        Of a cloud: float32 (N, 3), or (H, W, 3) if it is organized. Of a recording: an iterator of these; rotations of
+        a capture are (lasers, columns, 4), x, y, z and intensity, NaN where there is no return.
 
     Raises
     ------
     FileNotFoundError, ValueError
-        With one line that names the file and what is wrong with it.
+        With one line that names the file and what is wrong with it; of a recording, perhaps in mid-iteration.
     """
     name = _existing(path)
-    if name.lower().endswith(CAPTURES):
-        capture = open_capture(name, sensor, calibration, metadata, port)
-        return (turn.points for turn in capture.turns())
-    if not (sensor is None and calibration is None and metadata is None and port is None):
-        raise ValueError(f"{name}: only a capture has a sensor, calibration, metadata and port")
+    if is_recording(name):
+        return _points(recorded_scans(name, sensor, calibration, metadata, topic, port))
+    if any(option is not None for option in (sensor, calibration, metadata, topic, port)):
+        raise ValueError(f"{name}: only a recording has a sensor, calibration, metadata, topic and port")
     try:
         return _readers().read_file(name)
     except RuntimeError as error:
         raise ValueError(str(error)) from None
+
+
+def _points(scans: Iterator[RecordedScan]) -> Iterator[np.ndarray]:
+    for scan in scans:
+        if scan.points is None:
+            raise ValueError(scan.error)
+        yield scan.points

@@ -2,14 +2,14 @@
 """Streams of columns, as generators."""
 
 import os
-from typing import Any, Iterable, Iterator, List, NamedTuple, Optional, Tuple
+from typing import Any, Dict, Iterable, Iterator, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
 from ._checks import count_of
 from .clusterer import Clusterer
 from .columns import ColumnClusterer, EndlessCluster, EndlessClusterer
-from .reading import open_capture
+from .reading import is_recording, open_packets, read
 
 
 class Rotation(NamedTuple):
@@ -41,7 +41,7 @@ def stream(
     columns_per_rotation : int
         Of columns: after which a rotation ends. The last one may have fewer.
     **recording
-        `sensor`, `calibration`, `metadata` and `port` of `lisco.read`.
+        `sensor`, `calibration`, `metadata`, `topic` and `port` of `lisco.read`.
 
     Yields
     ------
@@ -59,15 +59,20 @@ def stream(
     if isinstance(source, (str, os.PathLike)):
         if columns_per_rotation is not None:
             raise ValueError("columns_per_rotation is of columns; a recording has rotations of its own")
-        capture = open_capture(source, **recording)
         whole = Clusterer(tolerance, min_size, max_size)
-        return (Rotation(turn.points, whole.cluster(turn.points)) for turn in capture.turns())
+        return (Rotation(points, whole.cluster(points)) for points in _scans(source, recording))
     if recording:
         raise ValueError(f"{', '.join(recording)}: only a recording has these")
     if columns_per_rotation is None:
         raise ValueError("a stream of columns needs columns_per_rotation")
     per_rotation = count_of(columns_per_rotation, "columns_per_rotation", least=1)
     return _rotations(source, ColumnClusterer(tolerance, min_size, max_size), per_rotation)
+
+
+def _scans(source: Any, recording: Dict[str, Any]) -> Iterable[np.ndarray]:
+    if os.path.exists(source) and not is_recording(source):
+        raise ValueError(f"{os.fspath(source)}: is no recording")
+    return read(source, **recording)
 
 
 def _rotations(columns: Iterable[Any], clusterer: ColumnClusterer, per_rotation: int) -> Iterator[Rotation]:
@@ -102,8 +107,8 @@ def endless(
     columns_per_turn : float
         Of columns: those of a whole turn of the sensor.
     **sensor
-        Of columns: `clockwise`, `start_azimuth`, `origin` and `stagger` of `EndlessClusterer`. Of a recording: `sensor`,
-        `calibration`, `metadata` and `port` of `lisco.read`.
+        Of columns: `clockwise`, `start_azimuth`, `origin` and `stagger` of `EndlessClusterer`. Of a recording of
+        packets: `sensor`, `calibration`, `metadata`, `topic` and `port` of `lisco.read`.
 
     Yields
     ------
@@ -112,11 +117,11 @@ def endless(
     if isinstance(source, (str, os.PathLike)):
         if columns_per_turn is not None:
             raise ValueError("columns_per_turn is of columns; a recording has azimuths")
-        capture = open_capture(source, **sensor)
-        clusterer = EndlessClusterer(tolerance, min_size, max_size, clockwise=True, stagger=capture.stagger)
+        packets = open_packets(source, **sensor)
+        clusterer = EndlessClusterer(tolerance, min_size, max_size, clockwise=True, stagger=packets.stagger)
         placed = (
             (turn.points[:, column], position)
-            for turn in capture.turns()
+            for turn in packets.turns()
             for column, position in enumerate(turn.positions)
         )
         return _endless_clusters(placed, clusterer)

@@ -14,11 +14,14 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "io/cloud_file.h"
-#include "sensors/capture_file.h"
+#include "recordings/packet_input.h"
+#include "recordings/recording.h"
+#include "recordings/scan_source.h"
 #include "sensors/decoder.h"
 #include "sensors/rotation_cutter.h"
 #include "stream/turn_position.h"
@@ -29,24 +32,78 @@ namespace {
 namespace py = pybind11;
 namespace fs = std::filesystem;
 
-/// x, y, z of a file's points: (rows, columns, 3), or (points, 3) if it is not organized.
-py::array_t<float> readFile(const fs::path& file) {
-  lisco_apps::Cloud::Ptr cloud;
-  {
-    const py::gil_scoped_release release;
-    cloud = lisco_apps::readCloudFile(file);
-  }
-  std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(cloud->size()), 3};
-  if (cloud->height > 1) shape = {cloud->height, cloud->width, 3};
+/// x, y, z of a cloud: (rows, columns, 3), or (points, 3) if it is not organized.
+py::array_t<float> arrayOf(const lisco_apps::Cloud& cloud) {
+  std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(cloud.size()), 3};
+  if (cloud.height > 1) shape = {cloud.height, cloud.width, 3};
   py::array_t<float> points(shape);
   float* to = points.mutable_data();
-  for (const pcl::PointXYZ& point : *cloud) {
+  for (const pcl::PointXYZ& point : cloud) {
     *to++ = point.x;
     *to++ = point.y;
     *to++ = point.z;
   }
   return points;
 }
+
+py::array_t<float> readFile(const fs::path& file) {
+  lisco_apps::Cloud::Ptr cloud;
+  {
+    const py::gil_scoped_release release;
+    cloud = lisco_apps::readCloudFile(file);
+  }
+  return arrayOf(*cloud);
+}
+
+/// What reads a recording's packets.
+struct Reading {
+  std::string sensor;
+  fs::path calibration, metadata;
+  std::string topic;
+  std::optional<std::uint16_t> port;
+
+  lisco_apps::InputOptions options() const {
+    lisco_apps::InputOptions options;
+    options.decoder.sensor = sensor;
+    options.decoder.calibration = calibration;
+    options.decoder.metadata = metadata;
+    options.recording.topic = topic;
+    options.port = port;
+    return options;
+  }
+};
+
+/// The clouds and rotations of a recording. Calls from several threads wait for each other.
+class Scans {
+ public:
+  Scans(const fs::path& recording, const Reading& reading) : source_({recording.string()}, reading.options()) {}
+
+  /// \return name, seconds since 1970, points and "", or None and an error; nothing at the end
+  std::optional<std::tuple<std::string, double, std::optional<py::array_t<float>>, std::string>> next() {
+    constexpr double kSecondsPerNanosecond = 1e-9;
+    std::optional<lisco_apps::ScanItem> item;
+    lisco_apps::Scan scan;
+    std::string error;
+    {
+      const py::gil_scoped_release release;
+      const std::lock_guard<std::mutex> lock(mutex_);
+      item = source_.next();
+      if (!item) return std::nullopt;
+      try {
+        scan = item->read();
+      } catch (const std::runtime_error& failure) {
+        error = failure.what();
+      }
+    }
+    std::optional<py::array_t<float>> points;
+    if (error.empty()) points = arrayOf(*scan.cloud);
+    return std::make_tuple(item->name, static_cast<double>(item->time_ns) * kSecondsPerNanosecond, points, error);
+  }
+
+ private:
+  std::mutex mutex_;
+  lisco_apps::ScanSource source_;
+};
 
 /// A turn of the sensor.
 struct Turn {
@@ -60,16 +117,12 @@ struct Turn {
 /// Rotations of a capture. Calls from several threads wait for each other.
 class Capture {
  public:
-  Capture(const fs::path& file, const std::string& sensor, const fs::path& calibration, const fs::path& metadata,
-          std::optional<std::uint16_t> port) {
-    lisco_apps::DecoderOptions options;
-    options.sensor = sensor;
-    options.calibration = calibration;
-    options.metadata = metadata;
-    decoder_ = lisco_apps::makeDecoder(options);
-    lisco_apps::CaptureFile whole(file, port);
-    decoder_->prepare(whole);
-    source_ = std::make_unique<lisco_apps::CaptureFile>(file, port);
+  Capture(const fs::path& file, const Reading& reading) {
+    const lisco_apps::InputOptions options = reading.options();
+    lisco_apps::PacketInput input =
+        lisco_apps::openPackets(file, options.recording, options.decoder, options.port, [] { return false; });
+    decoder_ = std::move(input.decoder);
+    source_ = std::move(input.source);
   }
 
   /// \return nothing at the end
@@ -122,7 +175,7 @@ class Capture {
 
   std::mutex mutex_;
   std::unique_ptr<lisco_apps::Decoder> decoder_;
-  std::unique_ptr<lisco_apps::CaptureFile> source_;
+  std::unique_ptr<lisco_apps::PacketSource> source_;
   lisco_apps::RotationCutter cutter_;
   lisco_apps::TurnPosition position_;
   Turn turn_;                ///< that has begun
@@ -148,15 +201,24 @@ PYBIND11_MODULE(_reading, module) {
   module.doc() = "The readers of the programs.";
   module.def("read_file", &readFile, py::arg("file"));
   module.def("sensors", &lisco_apps::sensorNames);
+  module.def("is_capture", &lisco_apps::isCapture, py::arg("path"));
+  module.def("is_recording", &lisco_apps::isRecording, py::arg("path"));
+  py::class_<Reading>(module, "Reading")
+      .def(py::init([](std::string sensor, fs::path calibration, fs::path metadata, std::string topic,
+                       std::optional<std::uint16_t> port) {
+             return Reading{std::move(sensor), std::move(calibration), std::move(metadata), std::move(topic), port};
+           }),
+           py::arg("sensor"), py::arg("calibration"), py::arg("metadata"), py::arg("topic"), py::arg("port"));
+  py::class_<Scans>(module, "Scans")
+      .def(py::init<const fs::path&, const Reading&>(), py::arg("recording"), py::arg("reading"))
+      .def("next", &Scans::next);
   py::class_<Turn>(module, "Turn")
       .def_property_readonly("points", &pointsOf)
       .def_property_readonly("azimuths", [](const Turn& turn) { return arrayOf(turn.azimuths); })
       .def_property_readonly("positions", [](const Turn& turn) { return arrayOf(turn.positions); })
       .def_readonly("time", &Turn::time);
   py::class_<Capture>(module, "Capture")
-      .def(py::init<const fs::path&, const std::string&, const fs::path&, const fs::path&,
-                    std::optional<std::uint16_t>>(),
-           py::arg("file"), py::arg("sensor"), py::arg("calibration"), py::arg("metadata"), py::arg("port"))
+      .def(py::init<const fs::path&, const Reading&>(), py::arg("file"), py::arg("reading"))
       .def("next", &Capture::next)
       .def_property_readonly("stagger", &Capture::stagger)
       .def_property_readonly("data_packets", &Capture::dataPackets);

@@ -30,7 +30,7 @@ def test_clusters_are_those_of_all_pairs(rng, tolerance):
 @pytest.mark.parametrize("oracle", [oracles.dbscan, oracles.kd_tree])
 @pytest.mark.parametrize("tolerance", [0.1, 0.4, 1.0])
 def test_clusters_are_those_of_scikit_learn_and_scipy(rng, oracle, tolerance):
-    """They join pairs at distance <= tolerance in float64, Lisco at < tolerance in float32: no pair is so near to it."""
+    """They join pairs at distance <= tolerance in float64, Lisco at < tolerance in float32: no pair is that near it."""
     points = clumps(rng, 3000, np.float32)
     assert oracles.margin(points, tolerance) > 1e-6
     assert oracles.same_partition(lisco.cluster(points, tolerance), oracle(points, tolerance))
@@ -110,7 +110,8 @@ def test_threads_share_a_clusterer(rng):
         st.sampled_from([np.float32, np.float64]),
         st.tuples(st.integers(0, 40), st.integers(3, 5)),
         elements=st.one_of(
-            st.floats(-2, 2, width=32), st.sampled_from([0.0, -0.0, 1.0, np.nan, np.inf, -np.inf, 2.0**127, -(2.0**127)])
+            st.floats(-2, 2, width=32),
+            st.sampled_from([0.0, -0.0, 1.0, np.nan, np.inf, -np.inf, 2.0**127, -(2.0**127)]),
         ),
     ),
     tolerance=st.one_of(st.floats(0, 2), st.sampled_from([0.5, 1.0, 1e-30, 1e30])),

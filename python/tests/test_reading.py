@@ -4,6 +4,7 @@
 import lisco
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 pytest.importorskip("lisco._reading", reason="made without the programs")
 
@@ -33,13 +34,13 @@ def test_unreadable_files_are_errors(tmp_path):
         with pytest.raises(ValueError, match=name):
             lisco.read(tmp_path / name)
     (tmp_path / "broken.pcap").write_bytes(b"no capture")
-    with pytest.raises(ValueError, match="needs the sensor that sent it: one of .*vlp16"):
-        lisco.read(tmp_path / "broken.pcap")
-    with pytest.raises(ValueError, match="broken.pcap"):
-        lisco.read(tmp_path / "broken.pcap", sensor="vlp16")
+    for name in ("broken.pcap", "broken.mcap", "broken.bag", "broken.db3"):
+        (tmp_path / name).write_bytes(b"no recording")
+        with pytest.raises(ValueError, match=name):
+            list(lisco.read(tmp_path / name, sensor="vlp16"))
     with pytest.raises(TypeError):
         lisco.read(3)
-    with pytest.raises(ValueError, match="only a capture"):
+    with pytest.raises(ValueError, match="only a recording"):
         lisco.read(tmp_path / "scan.pcd", sensor="vlp16")
 
 
@@ -73,6 +74,15 @@ def test_endless_streams_of_captures_hold_each_return_once(data):
     clusters = list(lisco.endless(capture, 0.4, sensor="vlp16"))
     assert sum(len(cluster.points) for cluster in clusters) == returns
     assert len(clusters) < returns / 4
+
+
+def test_bags_of_packets_are_rotations(data):
+    scans = list(lisco.read(data / "bags" / "vlp16.db3", sensor="vlp16"))
+    assert len(scans) > 0 and all(scan.shape[0] == 16 for scan in scans)
+    expected = lisco.read(data / "bags" / "vlp16_expected.pcd")
+    found = np.concatenate([scan[np.isfinite(scan[..., 0])][:, :3] for scan in scans])
+    distances = cKDTree(found).query(expected.reshape(-1, 3))[0]
+    assert (distances < 0.02).mean() > 0.9
 
 
 def test_arguments_of_streams_are_checked(data):

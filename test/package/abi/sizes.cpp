@@ -13,6 +13,7 @@
 #include <pcl/segmentation/lisco_stream_extraction.h>
 #include <pcl/segmentation/lisco_window_extraction.h>
 
+#include "lisco/cluster_order.h"
 #include "lisco/column_clusterer.h"
 #include "lisco/endless_clusterer.h"
 #include "lisco/ground_filter.h"
@@ -27,6 +28,8 @@
 int main() {
   PRINT(lisco::CellSource);
   PRINT(lisco::CellSource::Destination);
+  PRINT(lisco::ClusterLabeller);
+  PRINT(lisco::ClusterOrder);
   PRINT(lisco::ColumnClusterer);
   PRINT(lisco::EndlessCluster);
   PRINT(lisco::EndlessClusterer);

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Calls of a function, in this process or on Dask's workers."""
+
+import collections
+import logging
+import tempfile
+import time
+import uuid
+from typing import Any, Callable, Deque, Dict, Iterator, List, Optional, Tuple
+
+Arguments = Tuple[Any, ...]
+
+
+class Serial:
+    """Calls one after the other."""
+
+    description = "this process"
+
+    def map(self, function: Callable[..., Any], calls: List[Arguments]) -> Iterator[Any]:
+        """Yields the results."""
+        for arguments in calls:
+            yield function(*arguments)
+
+    def close(self) -> None:
+        """Does nothing."""
+
+
+class Distributed:
+    """Calls on the workers of a Dask scheduler: one at an address, or an embedded one with worker processes.
+
+    A call whose worker dies or stalls is repeated by the scheduler; when the scheduler itself is lost, calls without a
+    result are submitted again once it is back. Calls must therefore be repeatable.
+
+    Parameters
+    ----------
+    address : str, optional
+        Of a scheduler, such as tcp://host:8786; by default, an embedded one is started.
+    workers : int
+        Processes of the embedded scheduler.
+    patience : float
+        Seconds to wait for a lost scheduler.
+    """
+
+    _CALLS_PER_THREAD = 2  # in the scheduler: one at work and one that waits
+    _TTL = "60s"  # without a heartbeat, until a worker's calls are given to others; 5 minutes by Dask's default
+
+    def __init__(self, address: Optional[str], workers: int, patience: float) -> None:
+        import dask
+
+        dask.config.set({"logging": {"distributed": "critical"}})  # read when distributed is imported
+        import distributed
+
+        self._distributed = distributed
+        self._patience = patience
+        self._cluster = None
+        self._client: Any = None
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)
+        if address is None:
+            if dask.config.get("distributed.scheduler.worker-ttl") == "5 minutes":
+                dask.config.set({"distributed.scheduler.worker-ttl": self._TTL})
+            self._folder = tempfile.TemporaryDirectory(prefix="lisco-archive-")
+            self._cluster = distributed.LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                dashboard_address=None,
+                silence_logs=logging.CRITICAL,
+                local_directory=self._folder.name,
+            )
+        self._address = address if self._cluster is None else self._cluster.scheduler_address
+        self.description = address if address is not None else f"{workers} worker processes"
+        self._connect()
+
+    def map(self, function: Callable[..., Any], calls: List[Arguments]) -> Iterator[Any]:
+        """Yields the results as they come.
+
+        Raises
+        ------
+        OSError
+            If the scheduler is lost for longer than the patience.
+        Exception
+            What a call raises.
+        """
+        waiting: Deque[Arguments] = collections.deque(calls)
+        pending: Dict[Any, Arguments] = {}
+        try:
+            while waiting or pending:
+                if self._client.status != "running":
+                    waiting.extendleft(pending.values())
+                    pending.clear()
+                    self._connect()
+                while waiting and len(pending) < self._window():
+                    arguments = waiting.popleft()
+                    key = f"lisco-{uuid.uuid4().hex}"
+                    pending[self._client.submit(function, *arguments, key=key, pure=False)] = arguments
+                for future in self._finished(pending):
+                    arguments = pending.pop(future)
+                    if future.status == "finished":
+                        try:
+                            result = future.result(timeout=self._patience)
+                        except (OSError, TimeoutError, self._distributed.CancelledError):
+                            waiting.append(arguments)  # the worker or the scheduler was lost with the result
+                            continue
+                        yield result
+                    elif future.status == "error":
+                        error = future.exception(timeout=self._patience)
+                        if not isinstance(error, self._distributed.scheduler.KilledWorker):
+                            raise error
+                        raise OSError(f"a piece ended several workers, perhaps for want of memory: {error}")
+                    else:  # lost or cancelled with the scheduler
+                        waiting.append(arguments)
+        finally:
+            for future in pending:
+                future.release()
+
+    def close(self) -> None:
+        """Ends the embedded scheduler and its workers."""
+        if self._client is not None:
+            self._client.close(timeout=10)
+        if self._cluster is not None:
+            self._cluster.close(timeout=10)
+            self._folder.cleanup()
+
+    def _window(self) -> int:
+        workers = self._client.scheduler_info()["workers"].values()
+        return max(2, self._CALLS_PER_THREAD * sum(worker["nthreads"] for worker in workers))
+
+    def _finished(self, pending: Dict[Any, Arguments]) -> List[Any]:
+        """Futures that are not pending any more; waits for one, for at most a second."""
+        try:
+            self._distributed.wait(list(pending), timeout=1, return_when="FIRST_COMPLETED")
+        except (OSError, TimeoutError, self._distributed.TimeoutError, self._distributed.CancelledError):
+            pass
+        return [future for future in pending if future.status != "pending"]
+
+    def _connect(self) -> None:
+        if self._client is not None:
+            self._client.close(timeout=5)
+        deadline = time.monotonic() + self._patience
+        while True:
+            try:
+                self._client = self._distributed.Client(self._address, timeout=5)
+                return
+            except (OSError, TimeoutError, self._distributed.TimeoutError) as error:
+                if time.monotonic() > deadline:
+                    raise OSError(f"{self._address}: no scheduler answers: {error}") from None
+                time.sleep(1)
