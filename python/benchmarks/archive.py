@@ -23,7 +23,8 @@ def main():
     print("| workers | scans | seconds | of one worker |\n|---|---|---|---|")
     for workers in given.workers:
         with tempfile.TemporaryDirectory() as out:
-            command = [sys.executable, "-m", "lisco.archive", *given.inputs, "-o", out, "--workers", str(workers), *options]
+            command = [sys.executable, "-m", "lisco.archive", *given.inputs, "-o", out, *options]
+            command += ["--workers", str(workers)]
             done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True)
         scans, seconds = re.match(r"([0-9]+) scans, .* in ([0-9.]+) s", done.stdout).groups()
         first = first or float(seconds)

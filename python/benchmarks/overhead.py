@@ -31,7 +31,8 @@ def main():
         for tolerance in given.tolerance:
             native, python = both(given.program, points, points.astype(given.dtype), tolerance, given.runs)
             name = scan.rsplit("/", 1)[-1]
-            print(f"| {name} | {tolerance} | {1e3 * native:.3f} | {1e3 * python:.3f} | {100 * (python / native - 1):+.1f} % |")
+            overhead = 100 * (python / native - 1)
+            print(f"| {name} | {tolerance} | {1e3 * native:.3f} | {1e3 * python:.3f} | {overhead:+.1f} % |")
 
 
 def both(program, points, array, tolerance, runs):

@@ -33,7 +33,7 @@ for document in "${documents[@]}"; do
   # Paths
   while IFS= read -r path; do
     [ -e "$path" ] || wrong "$document: \`$path\` does not exist"
-  done < <(grep -oE '`(\.ci|apps|benchmarks|cmake|doc|include|src|test)/[A-Za-z0-9_./-]*[ `]' "$document" |
+  done < <(grep -oE '`(\.ci|apps|benchmarks|cmake|doc|include|python|src|test)/[A-Za-z0-9_./-]*[ `]' "$document" |
     tr -d '` ' || true)
 
   # Commands
@@ -50,6 +50,15 @@ for document in "${documents[@]}"; do
         for word in "${words[@]:1}"; do
           case $word in
             --*) grep -q -e "$word\b" <<<"$help" || wrong "$document: $command has no option $word" ;;
+          esac
+        done
+        ;;
+      python3)
+        [ "${words[1]} ${words[2]}" = "-m lisco.archive" ] || wrong "$document: unknown command ${words[*]:0:3}"
+        for word in "${words[@]:3}"; do
+          case $word in
+            --*) grep -q "\"$word\"" python/lisco/archive/__main__.py ||
+              wrong "$document: lisco.archive has no option $word" ;;
           esac
         done
         ;;
