@@ -26,6 +26,12 @@ class Points {
         throw std::invalid_argument("x, y and z must have the same shape");
     lasers_ = static_cast<std::size_t>(x.shape(0));
     columns_ = static_cast<std::size_t>(x.shape(1));
+    const char* const data = axes_[0].data;
+    is_interleaved_ = true;
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+      is_interleaved_ = is_interleaved_ && !axes_[i].is_double && axes_[i].data == data + i * sizeof(float) &&
+                        axes_[i].laser_stride == axes_[0].laser_stride &&
+                        axes_[i].column_stride == axes_[0].column_stride;
   }
 
   std::size_t lasers() const { return lasers_; }
@@ -34,6 +40,7 @@ class Points {
   /// As lisco::CellSource has it; sets no source indices.
   void operator()(std::size_t laser, std::size_t first, std::size_t count,
                   const lisco::CellSource::Destination& to) const {
+    if (is_interleaved_) return readInterleaved(laser, first, count, to);
     read(axes_[0], laser, first, count, to.x);
     read(axes_[1], laser, first, count, to.y);
     read(axes_[2], laser, first, count, to.z);
@@ -78,7 +85,23 @@ class Points {
     }
   }
 
+  /// x, y and z are floats side by side, as in most arrays: read in one pass.
+  void readInterleaved(std::size_t laser, std::size_t first, std::size_t count,
+                       const lisco::CellSource::Destination& to) const {
+    const py::ssize_t stride = axes_[0].column_stride;
+    const char* from = axes_[0].data + static_cast<py::ssize_t>(laser) * axes_[0].laser_stride +
+                       static_cast<py::ssize_t>(first) * stride;
+    for (std::size_t i = 0; i < count; ++i, from += stride) {
+      std::array<float, 3> point;
+      std::memcpy(point.data(), from, sizeof point);
+      to.x[i] = point[0];
+      to.y[i] = point[1];
+      to.z[i] = point[2];
+    }
+  }
+
   std::array<Axis, 3> axes_;
+  bool is_interleaved_ = false;
   std::size_t lasers_ = 0, columns_ = 0;
 };
 
