@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include <pcl/filters/lisco_ground_filter.h>
+#include <pcl/features/lisco_cluster_features.h>
 #include <pcl/io/lisco_point_cloud2.h>
 #include <pcl/point_types.h>
 #include <pcl/segmentation/lisco_cluster_extraction.h>
@@ -13,6 +14,7 @@
 #include <pcl/segmentation/lisco_stream_extraction.h>
 #include <pcl/segmentation/lisco_window_extraction.h>
 
+#include "lisco/cluster_features.h"
 #include "lisco/cluster_order.h"
 #include "lisco/column_clusterer.h"
 #include "lisco/endless_clusterer.h"
@@ -28,6 +30,7 @@
 int main() {
   PRINT(lisco::CellSource);
   PRINT(lisco::CellSource::Destination);
+  PRINT(lisco::ClusterFeatures);
   PRINT(lisco::ClusterLabeller);
   PRINT(lisco::ClusterOrder);
   PRINT(lisco::ColumnClusterer);
@@ -39,6 +42,7 @@ int main() {
   PRINT(lisco::GroundVisitor);
   PRINT(lisco::LabelGroundParameters);
   PRINT(lisco::LabelParameters);
+  PRINT(lisco::OrientedBox);
   PRINT(lisco::Parameters);
   PRINT(lisco::Return);
   PRINT(lisco::Run);
@@ -48,6 +52,8 @@ int main() {
   PRINT(lisco::WindowParameters);
   PRINT(pcl::LiscoClusterExtraction<pcl::PointXYZ>);
   PRINT(pcl::LiscoClusterExtraction<pcl::PointXYZI>);
+  PRINT(pcl::LiscoClusterFeatures<pcl::PointXYZ>);
+  PRINT(pcl::LiscoClusterFeatures<pcl::PointXYZI>);
   PRINT(pcl::LiscoEndlessCluster<pcl::PointXYZ>);
   PRINT(pcl::LiscoEndlessCluster<pcl::PointXYZI>);
   PRINT(pcl::LiscoEndlessExtraction<pcl::PointXYZ>);
