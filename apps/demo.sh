@@ -12,8 +12,8 @@ build_quietly "$root" "$root/build/demo" -DCMAKE_BUILD_TYPE=Release -DLISCO_BUIL
 programs=$root/build/demo/apps
 results=${1:-$root/demo}
 mkdir -p "$results"
-"$programs/lisco_simulate" --scene 3 -o "$results/scan.pcd"
-"$programs/lisco_cluster" "$results/scan.pcd" --tolerance 0.4 --ground-z -1.6 -o "$results"
-"$programs/lisco_compare" "$results/scan.pcd" --tolerance 0.4 --ground-z -1.6 --baselines pcl,grid,paper,lisco --runs 10
+"$programs/lisco_simulate" --terrain road -o "$results/scan.pcd"
+"$programs/lisco_cluster" "$results/scan.pcd" --tolerance 0.4 -o "$results"
+"$programs/lisco_compare" "$results/scan.pcd" --tolerance 0.4 --ground slope --baselines pcl,grid,paper,lisco --runs 10
 echo
 echo "the scene, for a browser: $(realpath "$results/view.html")"

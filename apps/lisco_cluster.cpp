@@ -4,26 +4,30 @@
 // Clusters scan files and writes the clusters as tables, clouds and pictures.
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include <pcl/features/lisco_cluster_features.h>
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 #include <boost/program_options.hpp>
 
 #include "io/cloud_file.h"
+#include "io/cluster_json.h"
 #include "io/clusters.h"
 #include "io/interruption.h"
 #include "io/options.h"
+#include "io/result_files.h"
 #include "io/scan_file.h"
+#include "io/scan_options.h"
+#include "io/scan_returns.h"
 #include "io/terminal_line.h"
 #include "recordings/result_bag.h"
 #include "recordings/scan_source.h"
@@ -40,7 +44,9 @@ struct Options {
   ClusterOptions clustering;
   fs::path output;
   fs::path bag;
-  bool cloud_per_cluster = false;
+  ScanOptions scan{"slope", true};
+  ResultKinds kinds;
+  bool json = false;
   unsigned threads = 1;  ///< files clustered at the same time
 };
 
@@ -66,57 +72,79 @@ bool parse(int argc, char** argv, Options& options) {
       "Options");
   options.clustering.addTo(shown);
   options.input.addTo(shown);
+  options.scan.addTo(shown);
+  std::string write;
+  bool clouds = false;
   // clang-format off
   shown.add_options()
     ("threads", countOption("--threads", options.threads, 0),
      "cluster N files at the same time (default 1; 0: one per processor)")
     ("output,o", pathOption("DIR", "--output", options.output),
-     "folder for labels.pcd, clusters.csv, range_image.png, top_view.png and view.html, a page for browsers; with "
-     "several inputs, a folder in it for each; of a recording, a folder in it for each message or rotation, of its "
-     "number and time")
+     "folder for the results; with several inputs, a folder in it for each; of a recording, a folder in it for each message or rotation, of its number and time")
     ("bag", pathOption("FILE.mcap", "--bag", options.bag),
      "write the labelled clouds (sensor_msgs/PointCloud2) and boxes (visualization_msgs/MarkerArray) as a recording of "
      "ROS 2; scans without a time are 0.1 s apart")
-    ("clouds", po::bool_switch(&options.cloud_per_cluster), "also write one cloud per cluster (needs --output)");
+    ("write", po::value<std::string>(&write)->value_name("A,B,..."),
+     "the results to write (default labels,table,pictures,view): labels (labels.pcd: the input's fields and `label`, the "
+     "cluster's id or 0; a field `label` of the input becomes `input_label`), table (clusters.csv), pictures "
+     "(range_image.png and top_view.png), view (view.html, a page for browsers), clouds (one PCD per cluster), json (clusters.json), semantickitti "
+     "(labels.label, with the id as instance, and labels.npy)")
+    ("clouds", po::bool_switch(&clouds), "also write one cloud per cluster")
+    ("json", po::bool_switch(&options.json), "print a line of JSON for each scan instead of text");
   // clang-format on
   po::variables_map given;
   if (!readCommandLine(argc, argv, "lisco_cluster", shown, &options.inputs, given)) return false;
   if (options.inputs.empty()) throw std::runtime_error("no input; see --help");
   options.clustering.check();
   options.input.check();
+  options.scan.check();
   if (options.threads == 0) options.threads = std::max(1U, std::thread::hardware_concurrency());
-  if (options.cloud_per_cluster && options.output.empty()) throw std::runtime_error("--clouds needs --output");
+  if (given.count("write") != 0) options.kinds = resultKindsOf(write);
+  if (given.count("write") != 0 && options.output.empty()) throw std::runtime_error("--write needs --output");
+  if (clouds && options.output.empty()) throw std::runtime_error("--clouds needs --output");
+  options.kinds.clouds = options.kinds.clouds || clouds;
   return true;
 }
 
+/// Milliseconds of the steps of one scan.
+struct StepTimes {
+  double read, ground, cluster, write;
+};
+
+/// Prints the result for one scan as a line of JSON.
+void printJson(const ClusteredScan& scan, const fs::path& file, const StepTimes& times) {
+  Json json = jsonOf(scan);
+  json["file"] = file.string();
+  json["time_ms"] = {{"read", times.read}, {"ground", times.ground}, {"cluster", times.cluster}};
+  std::printf("%s\n", lineOf(json).c_str());
+}
+
 /// Prints the result for one scan.
-void printSummary(const ClusteredScan& scan, const Options& options, double read_ms, double cluster_ms, double write_ms,
-                  const fs::path& folder) {
+void printSummary(const ClusteredScan& scan, const StepTimes& times, const fs::path& folder) {
   const Cloud& cloud = *scan.cloud;
-  const std::size_t returns = returnsAbove(cloud, -std::numeric_limits<float>::infinity()).size();
+  const std::size_t returns = scan.returns.returns;
+  const std::size_t clustered = scan.returns.clustered.size();
   std::size_t in_clusters = 0;
   for (const auto& cluster : scan.clusters) in_clusters += cluster.indices.size();
 
   std::printf("%s\n", scan.name.c_str());
   if (!scan.note.empty()) std::printf("  read      %s\n", scan.note.c_str());
   if (cloud.height > 1)
-    std::printf("  scan      %u rows x %u columns, %zu returns", cloud.height, cloud.width, returns);
+    std::printf("  scan      %u rows x %u columns, %zu returns\n", cloud.height, cloud.width, returns);
   else
-    std::printf("  scan      unorganized, %zu points, %zu returns", cloud.size(), returns);
-  if (std::isfinite(options.clustering.ground_z))
-    std::printf(", %zu above the ground (z >= %g m)", scan.clustered.size(),
-                static_cast<double>(options.clustering.ground_z));
-  std::printf("\n  clusters  %zu of at least %u returns within %g m of each other; %zu returns are noise\n",
-              scan.clusters.size(), options.clustering.min_size, scan.tolerance, scan.clustered.size() - in_clusters);
+    std::printf("  scan      unorganized, %zu points, %zu returns\n", cloud.size(), returns);
+  std::fputs(describe(scan.returns, scan.ground).c_str(), stdout);
+  std::printf("  clusters  %zu of at least %u returns within %g m of each other; %zu returns are noise\n",
+              scan.clusters.size(), scan.min_size, scan.tolerance, clustered - in_clusters);
   if (!scan.clusters.empty())  // sorted by size
     std::printf("  sizes     largest %zu, median %zu, smallest %zu\n", scan.clusters.front().indices.size(),
                 scan.clusters[scan.clusters.size() / 2].indices.size(), scan.clusters.back().indices.size());
-  if (!scan.clusters.empty() && 2 * scan.clusters.front().indices.size() > scan.clustered.size())
+  if (!scan.clusters.empty() && 2 * scan.clusters.front().indices.size() > clustered)
     std::printf(
-        "  note      one cluster has more than half of these returns: is it the ground (see --ground-z), or is the "
+        "  note      one cluster has more than half of these returns: is it the ground (see --ground), or is the "
         "tolerance too large?\n");
-  std::printf("  time      read %.1f ms, cluster %.2f ms", read_ms, cluster_ms);
-  if (!folder.empty()) std::printf(", write %.1f ms\n  written   %s", write_ms, folder.c_str());
+  std::printf("  time      read %.1f ms, ground %.2f ms, cluster %.2f ms", times.read, times.ground, times.cluster);
+  if (!folder.empty()) std::printf(", write %.1f ms\n  written   %s", times.write, folder.c_str());
   std::printf("\n");
 }
 
@@ -151,11 +179,28 @@ LabelledScan labelledScanOf(const ClusteredScan& scan, std::int64_t time_ns, std
   labelled.columns = cloud.width;
   for (const pcl::PointXYZ& point : cloud) labelled.points.push_back({point.x, point.y, point.z});
   labelled.labels = labelsOf(scan.clusters, cloud.size());
-  for (std::size_t i = 0; i < scan.clusters.size(); ++i) {
-    const ClusterShape shape = shapeOf(cloud, scan.clusters[i]);
-    labelled.boxes.push_back({static_cast<std::uint32_t>(i + 1), shape.lo(), shape.hi()});
-  }
+  for (const lisco::ClusterFeatures& features : scan.features)
+    labelled.boxes.push_back({static_cast<std::uint32_t>(labelled.boxes.size() + 1), features.min, features.max});
   return labelled;
+}
+
+/// Turns a scan that was clustered as arranged by rings into that of the input's points, in their order: results are of
+/// these, the range image is of the rows.
+void toInputOrder(const Scan& input, ClusteredScan& scan) {
+  if (!input.arranged) return;
+  auto rows = std::make_shared<ClusteredScan>(scan);
+  scan.cloud = input.cloud;
+  input.toInputOrder(scan.clusters);
+  for (auto& index : scan.returns.clustered) index = input.point_of_cell[static_cast<std::size_t>(index)];
+  std::sort(scan.returns.clustered.begin(), scan.returns.clustered.end());
+  pcl::Indices cell_of_point(input.cloud->size(), pcl::UNAVAILABLE);
+  for (std::size_t cell = 0; cell < input.point_of_cell.size(); ++cell)
+    if (const auto point = input.point_of_cell[cell]; point != pcl::UNAVAILABLE)
+      cell_of_point[static_cast<std::size_t>(point)] = static_cast<pcl::index_t>(cell);
+  rows->clusters = scan.clusters;  // equal sizes may have changed their order
+  for (auto& cluster : rows->clusters)
+    for (auto& index : cluster.indices) index = cell_of_point[static_cast<std::size_t>(index)];
+  scan.arranged = std::move(rows);
 }
 
 /// Threads that share the scans of the inputs.
@@ -236,24 +281,29 @@ class Workers {
     scan.name = item.name;
     scan.note = input.note;
     scan.tolerance = options_.clustering.tolerance;
+    scan.min_size = options_.clustering.min_size;
+    scan.ground = options_.scan.ground.of(item.file.stem().string());
     scan.cloud = input.clustered();
+    scan.fields = input.fields;
     if (scan.cloud->empty()) throw std::runtime_error(item.file.string() + ": holds no points");
-    scan.clustered = returnsAbove(*scan.cloud, options_.clustering.ground_z);
 
     const auto read = Clock::now();
+    scan.returns = returnsOf(*scan.cloud, scan.ground, options_.scan.region);
+
+    const auto ground = Clock::now();
     extraction.setInputCloud(scan.cloud);
-    extraction.setIndices(std::make_shared<const pcl::Indices>(scan.clustered));
+    extraction.setIndices(std::make_shared<const pcl::Indices>(scan.returns.clustered));
     extraction.extract(scan.clusters);
 
     const auto clustered = Clock::now();
-    if (input.arranged) {  // results are those of the input's points in their order, the range image is of the rows
-      scan.arranged = std::make_shared<ClusteredScan>(scan);
-      scan.cloud = input.cloud;
-      scan.clustered = returnsAbove(*scan.cloud, options_.clustering.ground_z);
-      input.toInputOrder(scan.clusters);
-    }
+    toInputOrder(input, scan);
     const fs::path folder = folders_.of(item);
-    if (!folder.empty()) writeResults(scan, folder, options_.cloud_per_cluster);
+    if (options_.json || !folder.empty() || bag_) {
+      pcl::LiscoClusterFeatures<pcl::PointXYZ> estimation;
+      estimation.setInputCloud(scan.cloud);
+      estimation.compute(scan.clusters, scan.features);
+    }
+    if (!folder.empty()) writeResults(scan, folder, options_.kinds);
     std::optional<LabelledScan> labelled;
     if (bag_) labelled = labelledScanOf(scan, item.time_ns, number);
     const auto written = Clock::now();
@@ -261,8 +311,12 @@ class Workers {
     const std::lock_guard<std::mutex> lock(terminal_);
     if (labelled) bag_->write(*labelled);
     progress_.clear();
-    printSummary(scan, options_, milliseconds(read - start), milliseconds(clustered - read),
-                 milliseconds(written - clustered), folder);
+    const StepTimes times{milliseconds(read - start), milliseconds(ground - read), milliseconds(clustered - ground),
+                          milliseconds(written - clustered)};
+    if (options_.json)
+      printJson(scan, item.file, times);
+    else
+      printSummary(scan, times, folder);
   }
 
   const Options& options_;
@@ -286,6 +340,10 @@ int main(int argc, char** argv) {
     if (!parse(argc, argv, options)) return 0;
     Interruption::listen();
     ScanSource source(options.inputs, options.input, Interruption::happened);
+    std::vector<std::string> stems;
+    for (const fs::path& file : source.files()) stems.push_back(file.stem().string());
+    for (const std::string& name : options.scan.ground.namesNotIn(stems))
+      std::cerr << "lisco_cluster: --ground names '" << name << "', which is no input\n";
     return Workers(options, source).run() ? 0 : 2;
   });
 }

@@ -23,6 +23,8 @@
 #include "io/interruption.h"
 #include "io/options.h"
 #include "io/output_file.h"
+#include "io/scan_options.h"
+#include "io/scan_returns.h"
 #include "io/terminal_line.h"
 #include "io/text.h"
 #include "recordings/scan_source.h"
@@ -39,7 +41,7 @@ struct Options {
   std::vector<std::string> inputs;
   InputOptions input;
   CompareSettings settings;
-  GroundHeights ground;
+  ScanOptions scan{"none", true};
   fs::path json, csv, plot, view;
 };
 
@@ -82,16 +84,15 @@ bool parse(int argc, char** argv, Options& options) {
   std::string tolerances;
   std::string baselines = "pcl,pcl-tutorial,pcl-octree,grid,paper,lisco";
   std::string must_agree = "lisco";
-  std::vector<std::string> ground;
   bool check_only = false;
   // clang-format off
   shown.add_options()
     ("tolerance,t", po::value<std::string>(&tolerances)->value_name("M[,M...]"),
      "points nearer to each other than this many metres belong together")
     ("min-size", countOption("--min-size", settings.min_size, 1), "least returns of a cluster (default 10)")
-    ("ground-z", po::value<std::vector<std::string>>(&ground)->value_name("M"),
-     "leave out returns below this height in metres (default: none); NAME=M: of the input with this file name "
-     "(without ending) only; may be given several times")
+    ;
+  options.scan.addTo(shown);
+  shown.add_options()
     ("runs", countOption("--runs", settings.runs, 1), "timed runs of each baseline (default 20)")
     ("max-seconds", numberOption("S", "--max-seconds", settings.max_seconds),
      "fewer runs, at least 3, for a baseline that would take longer than this for all of them (default 10)")
@@ -119,7 +120,7 @@ bool parse(int argc, char** argv, Options& options) {
   for (const std::string& item : itemsOf(tolerances)) settings.tolerances.push_back(toleranceOf(item));
   if (check_only) settings.runs = 0;
   if (!(settings.max_seconds > 0)) throw std::runtime_error("--max-seconds must be positive");
-  options.ground = GroundHeights(ground);
+  options.scan.check();
   settings.baselines = baselinesNamed(baselines, "--baselines");
   for (const Baseline& baseline : baselinesNamed(must_agree, "--must-agree")) {
     settings.must_agree.push_back(baseline.key);
@@ -149,12 +150,18 @@ InputResult compareScan(const ScanItem& item, const std::string& name, const Opt
   InputResult input;
   input.name = name;
   input.file = item.file.string() + (item.folder.empty() ? "" : ": " + item.folder);
-  input.ground_z = options.ground.of(item.file.stem().string());
+  input.ground = options.scan.ground.of(item.file.stem().string());
+  // The rows of an arrangement show the ground; without it, the points stay in the order of the input.
+  ScanReturns returns = returnsOf(*read.clustered(), input.ground, options.scan.region);
+  input.left_out = returns.ground;
   ComparedScan scan;
   try {
-    // Without an arrangement, the points stay in the order of the input.
+    if (settings.unorganized && read.arranged) {
+      for (auto& index : returns.clustered) index = read.point_of_cell[static_cast<std::size_t>(index)];
+      std::sort(returns.clustered.begin(), returns.clustered.end());
+    }
     const Cloud& cloud = settings.unorganized ? *read.cloud : *read.clustered();
-    scan = prepareScan(cloud, settings.unorganized ? read.object_of : read.objectsOfClustered(), input.ground_z,
+    scan = prepareScan(cloud, settings.unorganized ? read.object_of : read.objectsOfClustered(), returns.clustered,
                        settings.unorganized);
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(input.file + ": " + error.what());
@@ -164,6 +171,7 @@ InputResult compareScan(const ScanItem& item, const std::string& name, const Opt
   input.returns = scan.returns->size();
   progress.clear();
   std::fputs(headingOf(input, settings).c_str(), stdout);
+  std::fputs(describe(returns, input.ground).c_str(), stdout);
   if (!settings.unorganized && read.arranged) std::printf("  %s\n", read.note.c_str());
   ViewScan view;
   if (!options.view.empty()) view = viewScanOf(*scan.cloud, name);
@@ -226,8 +234,8 @@ int compare(const Options& options) {
 
   std::vector<std::string> stems;
   for (const fs::path& file : files) stems.push_back(file.stem().string());
-  for (const std::string& name : options.ground.namesNotIn(stems))
-    std::fprintf(stderr, "lisco_compare: --ground-z names '%s', which is no input\n", name.c_str());
+  for (const std::string& name : options.scan.ground.namesNotIn(stems))
+    std::fprintf(stderr, "lisco_compare: --ground names '%s', which is no input\n", name.c_str());
 
   std::fputs(describeRun(settings).c_str(), stdout);
   std::fflush(stdout);

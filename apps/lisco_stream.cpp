@@ -21,6 +21,7 @@
 
 #include "io/interruption.h"
 #include "io/options.h"
+#include "io/scan_options.h"
 #include "io/text.h"
 #include "recordings/cloud_columns.h"
 #include "recordings/options.h"
@@ -86,14 +87,15 @@ bool parse(int argc, char** argv, Options& options) {
       "With --json, each line of the output is an object. Metres; azimuths in degrees clockwise, 0 ahead;\n"
       "time is when the last packet came, in seconds since 1970.\n"
       "  rotation  one line per rotation: rotation (from 1), time, azimuth (where it begins), columns, returns\n"
-      "            (above the ground), lost_packets, latency_ms (from its last column to its clusters), and\n"
-      "            clusters, largest first, each with id (from 1), azimuth (of its centroid), size, centroid,\n"
-      "            box (min and max) and nearest_range.\n"
+      "            (clustered), ground (returns left out), lost_packets, latency_ms (from its last column to its\n"
+      "            clusters, before their features), and clusters, largest first, each with id (from 1), azimuth\n"
+      "            (of its centroid), size, centroid, box (min and max), oriented_box (center, yaw in degrees\n"
+      "            counterclockwise from x, length, width, height), nearest_range and density (returns per m2).\n"
       "  windows   the same, one line per window, whose number is window.\n"
       "  endless   one line per cluster: id (from 1, in the order of delivery), time, first_azimuth,\n"
       "            last_azimuth and turns (of its columns, and from the first to the last), size, centroid,\n"
-      "            box, nearest_range, cut, continued, and latency_ms (from the first column that cannot reach\n"
-      "            it to its delivery; null if the end of the packets delivered it).\n\n"
+      "            box, oriented_box, nearest_range, density, cut, continued, and latency_ms (from the first\n"
+      "            column that cannot reach it to its delivery; null if the end of the packets delivered it).\n\n"
       "Exit code 0; 2 on wrong usage, if no packet is one of the sensor's, or if the recording breaks off (after\n"
       "the packets before it have been clustered).\n\n"
       "Options");
@@ -102,6 +104,8 @@ bool parse(int argc, char** argv, Options& options) {
   ClusterOptions clustering;
   addSensorOptions(shown, options.decoder);
   clustering.addTo(shown);
+  ScanOptions scan("slope", false);
+  scan.addTo(shown);
   options.recording.addTo(shown);
   // clang-format off
   shown.add_options()
@@ -151,8 +155,10 @@ bool parse(int argc, char** argv, Options& options) {
     throw std::runtime_error("--window and --hop are for --mode windows only");
 
   clustering.check();
+  scan.check();
   options.stream.tolerance = static_cast<float>(clustering.tolerance);
-  options.stream.ground_z = clustering.ground_z;
+  options.stream.ground = scan.ground.of("");
+  options.stream.region = scan.region;
   options.stream.min_size = clustering.min_size;
   options.stream.max_size = clustering.max_size;
   return true;
@@ -294,7 +300,8 @@ LabelledScan labelledScanOf(const Turn& turn, const std::vector<FoundCluster>& c
       scan.points.push_back({turn.cells[cell].x, turn.cells[cell].y, turn.cells[cell].z});
       scan.labels.push_back(turn.labels[cell]);
     }
-  for (const FoundCluster& cluster : clusters) scan.boxes.push_back({cluster.id, cluster.lo(), cluster.hi()});
+  for (const FoundCluster& cluster : clusters)
+    scan.boxes.push_back({cluster.id, cluster.features.min, cluster.features.max});
   return scan;
 }
 

@@ -54,7 +54,7 @@ struct Options {
   unsigned min_size = 10;
   unsigned runs = 5;
   unsigned rotations = 3;  ///< of a capture
-  GroundHeights ground;
+  PerInput<float> ground = groundHeights({});
   std::vector<std::pair<std::string, std::string>> sensors;  ///< begin of a name, model
 };
 
@@ -113,7 +113,7 @@ bool parse(int argc, char** argv, Options& options) {
   options.min_size = countOf(min_size, "--min-size", 1);
   options.runs = countOf(runs, "--runs", 1);
   options.rotations = countOf(rotations, "--rotations", 1);
-  options.ground = GroundHeights(ground);
+  options.ground = groundHeights(ground);
   for (const std::string& item : sensors) {
     const std::size_t equals = item.find('=');
     if (equals == std::string::npos) throw std::runtime_error("--sensor must be NAME=MODEL, not '" + item + "'");
@@ -145,7 +145,7 @@ struct Rotation {
 
 Rotation makeRotation(const Cloud& cloud, float ground_z) {
   Rotation rotation;
-  const ComparedScan scan = prepareScan(cloud, {}, ground_z, false);
+  const ComparedScan scan = prepareScan(cloud, {}, returnsAbove(cloud, ground_z), false);
   rotation.problem.cloud = scan.cloud;
   rotation.problem.returns = scan.returns;
   rotation.lasers = scan.cloud->height;

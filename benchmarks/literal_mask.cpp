@@ -81,7 +81,7 @@ Cloud::Ptr destaggered(const Cloud& cloud) {
   return straight;
 }
 
-int run(const std::vector<std::string>& inputs, const GroundHeights& ground, const std::vector<double>& tolerances) {
+int run(const std::vector<std::string>& inputs, const PerInput<float>& ground, const std::vector<double>& tolerances) {
   CompareSettings settings;
   settings.runs = 0;
   for (Baseline& baseline : allBaselines())
@@ -96,8 +96,9 @@ int run(const std::vector<std::string>& inputs, const GroundHeights& ground, con
     try {
       const Cloud::Ptr cloud = readCloudFile(file);
       if (cloud->height < 2) throw std::runtime_error(file.string() + ": is not organized");
-      const ComparedScan scan = prepareScan(*cloud, {}, ground.of(name), false);
-      const ComparedScan straight = prepareScan(*destaggered(*cloud), {}, ground.of(name), false);
+      const ComparedScan scan = prepareScan(*cloud, {}, returnsAbove(*cloud, ground.of(name)), false);
+      const Cloud::Ptr straightened = destaggered(*cloud);
+      const ComparedScan straight = prepareScan(*straightened, {}, returnsAbove(*straightened, ground.of(name)), false);
       for (const double tolerance : tolerances) {
         const auto compared = [&](const ComparedScan& one) {
           return compareAt(one, tolerance, settings, [](const std::string&, double) {});
@@ -134,6 +135,6 @@ int main(int argc, char** argv) {
     if (inputs.empty()) throw std::runtime_error("no input; see --help");
     std::vector<double> values;
     for (const std::string& item : itemsOf(tolerances)) values.push_back(numberOf(item, "--tolerance"));
-    return run(inputs, GroundHeights(ground), values);
+    return run(inputs, groundHeights(ground), values);
   });
 }

@@ -220,7 +220,7 @@ struct Options {
   std::vector<std::string> inputs;
   std::vector<double> tolerances;
   unsigned min_size = 10;
-  GroundHeights ground;
+  PerInput<float> ground = groundHeights({});
   fs::path csv;
 };
 
@@ -263,7 +263,7 @@ bool parse(int argc, char** argv, Options& options) {
     if (!(options.tolerances.back() > 0)) throw std::runtime_error("--tolerance must be positive, not '" + item + "'");
   }
   options.min_size = countOf(min_size, "--min-size", 1);
-  options.ground = GroundHeights(ground);
+  options.ground = groundHeights(ground);
   if (given.count("csv") != 0 && csv.empty()) throw std::runtime_error("--csv is empty");
   options.csv = csv;
   return true;
@@ -276,7 +276,7 @@ bool measureFile(const fs::path& file, const std::string& name, const Options& o
   const Cloud::Ptr cloud = readCloudFile(file);
   ComparedScan scan;
   try {
-    scan = prepareScan(*cloud, {}, ground_z, false);
+    scan = prepareScan(*cloud, {}, returnsAbove(*cloud, ground_z), false);
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(file.string() + ": " + error.what());
   }

@@ -50,7 +50,8 @@ float groundOf(const std::string& scan) {
 }
 
 CloudPtr load(const fs::path& file, bool unorganized) {
-  return prepareScan(*readCloudFile(file), {}, groundOf(file.stem().string()), unorganized).cloud;
+  const Cloud::Ptr cloud = readCloudFile(file);
+  return prepareScan(*cloud, {}, returnsAbove(*cloud, groundOf(file.stem().string())), unorganized).cloud;
 }
 
 /// An unorganized cloud of the points that `add` is called with.
@@ -189,7 +190,7 @@ CloudPtr dual(const ComparedCloud& cloud, bool repeats) {
 CloudPtr fromSimulation(const lisco_simulation::Scan& scan, float ground_z) {
   Cloud cloud(static_cast<std::uint32_t>(scan.steps), static_cast<std::uint32_t>(scan.lasers));
   for (std::size_t i = 0; i < scan.cells.size(); ++i) cloud[i] = {scan.cells[i].x, scan.cells[i].y, scan.cells[i].z};
-  return prepareScan(cloud, {}, ground_z, false).cloud;
+  return prepareScan(cloud, {}, returnsAbove(cloud, ground_z), false).cloud;
 }
 
 /// A function that makes an organized scan.
@@ -289,7 +290,7 @@ void addCaptures(std::vector<Recording>& recordings, const fs::path& folder) {
     if (!fs::exists(file)) continue;
     Adder adder(recordings, capture.file + std::string(".pcap"), [file, capture] {
       const Cloud::Ptr cloud = readRotations(file, capture.model, 1, kOverTurn).front();
-      return prepareScan(*cloud, {}, groundOf(capture.scan), false).cloud;
+      return prepareScan(*cloud, {}, returnsAbove(*cloud, groundOf(capture.scan)), false).cloud;
     });
     adder.asItIs(5, "over a turn");
     adder.add(5, "over a turn, unorganized", inFiringOrder);

@@ -133,7 +133,7 @@ struct Options {
   std::vector<double> tolerances;
   unsigned min_size = 10;
   unsigned runs = 20;
-  GroundHeights ground;
+  PerInput<float> ground = groundHeights({});
   fs::path csv;
 };
 
@@ -184,7 +184,7 @@ bool parse(int argc, char** argv, Options& options) {
   }
   options.min_size = countOf(min_size, "--min-size", 1);
   options.runs = countOf(runs, "--runs", 1);
-  options.ground = GroundHeights(ground);
+  options.ground = groundHeights(ground);
   if (given.count("csv") != 0 && csv.empty()) throw std::runtime_error("--csv is empty");
   options.csv = csv;
   return true;
@@ -401,7 +401,7 @@ bool measureFile(const fs::path& file, const std::string& name, const Options& o
   const Cloud::Ptr cloud = readCloudFile(file);
   ComparedScan scan;
   try {
-    scan = prepareScan(*cloud, {}, one.ground_z, false);
+    scan = prepareScan(*cloud, {}, returnsAbove(*cloud, one.ground_z), false);
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(file.string() + ": " + error.what());
   }

@@ -590,8 +590,12 @@ Cloud smallCloud() {
   return cloud;
 }
 
+ComparedScan prepareAbove(const Cloud& cloud, std::vector<std::uint32_t> object_of, float ground_z, bool unorganized) {
+  return prepareScan(cloud, std::move(object_of), returnsAbove(cloud, ground_z), unorganized);
+}
+
 TEST(PrepareScan, KeepsTheOrganizationAndBlanksTheGround) {
-  const ComparedScan scan = prepareScan(smallCloud(), {1, 1, 1, 2, 0, 1, 1, 1, 2, 0}, -1.5F, false);
+  const ComparedScan scan = prepareAbove(smallCloud(), {1, 1, 1, 2, 0, 1, 1, 1, 2, 0}, -1.5F, false);
   EXPECT_EQ(*scan.returns, pcl::Indices({0, 1, 2, 5, 6, 7}));
   EXPECT_EQ(scan.cloud->width, 5U);
   EXPECT_EQ(scan.cloud->height, 2U);
@@ -604,18 +608,18 @@ TEST(PrepareScan, KeepsTheOrganizationAndBlanksTheGround) {
 }
 
 TEST(PrepareScan, KeepsTheGroundByDefault) {
-  const ComparedScan scan = prepareScan(smallCloud(), {}, -std::numeric_limits<float>::infinity(), false);
+  const ComparedScan scan = prepareAbove(smallCloud(), {}, -std::numeric_limits<float>::infinity(), false);
   EXPECT_EQ(*scan.returns, pcl::Indices({0, 1, 2, 3, 5, 6, 7, 8}));
   EXPECT_EQ((*scan.cloud)[3].z, -1.7F);
   EXPECT_TRUE(scan.object_of.empty());
   // A return at this height is above the ground.
-  const ComparedScan at_its_height = prepareScan(smallCloud(), {}, -1.7F, false);
+  const ComparedScan at_its_height = prepareAbove(smallCloud(), {}, -1.7F, false);
   EXPECT_EQ(at_its_height.returns->size(), 7U);
   EXPECT_EQ((*at_its_height.cloud)[3].z, -1.7F);
 }
 
 TEST(PrepareScan, TakesReturnsOnlyWhenUnorganized) {
-  const ComparedScan scan = prepareScan(smallCloud(), {11, 12, 13, 14, 15, 16, 17, 18, 19, 20}, -1.5F, true);
+  const ComparedScan scan = prepareAbove(smallCloud(), {11, 12, 13, 14, 15, 16, 17, 18, 19, 20}, -1.5F, true);
   EXPECT_EQ(*scan.returns, pcl::Indices({0, 1, 2, 3, 4, 5}));
   EXPECT_EQ(scan.cloud->size(), 6U);
   EXPECT_EQ(scan.cloud->height, 1U);
@@ -628,8 +632,8 @@ TEST(PrepareScan, TakesReturnsOnlyWhenUnorganized) {
 
 TEST(PrepareScan, RefusesAScanWithoutReturns) {
   for (const bool unorganized : {false, true}) {
-    EXPECT_THROW(prepareScan(smallCloud(), {}, 1.0F, unorganized), std::runtime_error);
-    EXPECT_THROW(prepareScan(Cloud(), {}, 1.0F, unorganized), std::runtime_error);
+    EXPECT_THROW(prepareAbove(smallCloud(), {}, 1.0F, unorganized), std::runtime_error);
+    EXPECT_THROW(prepareAbove(Cloud(), {}, 1.0F, unorganized), std::runtime_error);
   }
 }
 
@@ -735,7 +739,7 @@ TEST(Compare, GivesSlowBaselinesFewerRuns) {
 }
 
 TEST(Compare, ScoresObjectsIfTheyAreKnown) {
-  ComparedScan scan = prepareScan(smallCloud(), {1, 1, 1, 2, 0, 1, 1, 1, 2, 0}, -1.5F, false);
+  ComparedScan scan = prepareAbove(smallCloud(), {1, 1, 1, 2, 0, 1, 1, 1, 2, 0}, -1.5F, false);
   CompareSettings settings = settingsOf({referenceBaseline()}, 0);
   settings.min_size = 3;
   const CaseResult result = compareAt(scan, 0.3, settings, kNoProgress);
@@ -877,7 +881,7 @@ struct Example {
     input.rows = 16;
     input.columns = 1800;
     input.returns = 20000;
-    input.ground_z = -1.5F;
+    input.ground = groundChoiceOf("height:-1.5");
     for (const double tolerance : settings.tolerances) {
       CaseResult& result = input.cases.emplace_back();
       result.tolerance = tolerance;
@@ -1023,7 +1027,7 @@ TEST(Report, JsonHoldsAllResults) {
 
 TEST(Report, FilesHoldNoNan) {
   Example example;
-  example.inputs[0].ground_z = -std::numeric_limits<float>::infinity();
+  example.inputs[0].ground = {};
   example.inputs[0].name = "no \xff UTF-8";
   for (BaselineResult& entry : example.inputs[0].cases[0].baselines) entry.times = timesOf({1});
   const auto json = nlohmann::json::parse(jsonOf(example.inputs, example.settings, {}));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -45,16 +46,24 @@ std::optional<double> CaseResult::coldRatio(const BaselineResult& result) const 
   return speedUp(find(kReferenceKey), result, &Times::cold);
 }
 
-ComparedScan prepareScan(const Cloud& cloud, std::vector<std::uint32_t> object_of, float ground_z, bool unorganized) {
+ComparedScan prepareScan(const Cloud& cloud, std::vector<std::uint32_t> object_of, const pcl::Indices& clustered,
+                         bool unorganized) {
   ComparedScan scan;
-  scan.returns = std::make_shared<pcl::Indices>(returnsAbove(cloud, ground_z));
+  scan.returns = std::make_shared<pcl::Indices>(clustered);
   if (scan.returns->empty()) throw std::runtime_error("no returns to cluster");
   scan.cloud = std::make_shared<ComparedCloud>();
   scan.object_of = std::move(object_of);
   if (!unorganized) {
     pcl::copyPointCloud(cloud, *scan.cloud);
-    for (auto& point : *scan.cloud)
-      if (!(point.z >= ground_z)) point.x = point.y = point.z = std::numeric_limits<float>::quiet_NaN();
+    auto next = clustered.begin();
+    for (std::size_t i = 0; i < scan.cloud->size(); ++i) {
+      if (next != clustered.end() && static_cast<std::size_t>(*next) == i) {
+        ++next;
+        continue;
+      }
+      auto& point = (*scan.cloud)[i];
+      point.x = point.y = point.z = std::numeric_limits<float>::quiet_NaN();
+    }
     scan.cloud->is_dense = scan.returns->size() == scan.cloud->size();
     return scan;
   }

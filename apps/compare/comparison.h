@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "compare/difference.h"
 #include "compare/timing.h"
 #include "io/cloud_file.h"
+#include "io/scan_options.h"
 
 namespace lisco_apps {
 
@@ -56,21 +56,24 @@ struct CaseResult {
 struct InputResult {
   std::string name, file;
   std::size_t rows = 0, columns = 0;
-  std::size_t returns = 0;  ///< clustered
-  float ground_z = -std::numeric_limits<float>::infinity();
+  std::size_t returns = 0;   ///< clustered
+  GroundChoice ground;       ///< as asked for
+  std::size_t left_out = 0;  ///< returns, as ground
   std::vector<CaseResult> cases;
 };
 
 /// A scan as prepared for the baselines.
 struct ComparedScan {
-  ComparedCloud::Ptr cloud;              ///< NaN at the ground, below ground_z
+  ComparedCloud::Ptr cloud;              ///< NaN at returns that are left out
   pcl::IndicesPtr returns;               ///< the rest
   std::vector<std::uint32_t> object_of;  ///< true object per point, empty if unknown
 };
 
+/// \param clustered the returns to cluster, in the cloud's order
 /// \param unorganized whether to keep the returns only, in the order of the file
 /// \throws std::runtime_error if there are no returns
-ComparedScan prepareScan(const Cloud& cloud, std::vector<std::uint32_t> object_of, float ground_z, bool unorganized);
+ComparedScan prepareScan(const Cloud& cloud, std::vector<std::uint32_t> object_of, const pcl::Indices& clustered,
+                         bool unorganized);
 
 /// Runs all baselines on one scan at one tolerance: compares their clusters with the reference's, then times them in
 /// turn. Baselines that must agree and do not are not timed.

@@ -104,7 +104,8 @@ std::string headingOf(const InputResult& input, const CompareSettings& settings)
   std::string text = "\n" + input.file + ": ";
   text += input.rows > 1 ? formatted("%zu rows x %zu columns, ", input.rows, input.columns) : "unorganized, ";
   text += formatted("%zu returns", input.returns);
-  if (std::isfinite(input.ground_z)) text += formatted(" above %g m", static_cast<double>(input.ground_z));
+  if (input.ground.method == GroundChoice::Method::kHeight)
+    text += formatted(" above %g m", static_cast<double>(input.ground.height));
   return text + formatted(", clusters of at least %u\n", settings.min_size);
 }
 
@@ -178,7 +179,7 @@ std::string csvOf(const std::vector<InputResult>& inputs, const CompareSettings&
       for (const BaselineResult& entry : result.baselines) {
         text += "\"" + boost::replace_all_copy(input.name, "\"", "\"\"") + "\"" +
                 formatted(",%zu,%zu,%zu,%s,%.10g,%u,%zu,%s", input.rows, input.columns, input.returns,
-                          number(static_cast<double>(input.ground_z)).c_str(), result.tolerance, settings.min_size,
+                          number(static_cast<double>(input.ground.height)).c_str(), result.tolerance, settings.min_size,
                           result.clusters, entry.baseline->key.c_str());
         text += entry.failure.empty()
                     ? formatted(",%zu,%s,%zu", entry.clusters, entry.difference.identical ? "yes" : "no",
@@ -235,7 +236,9 @@ std::string jsonOf(const std::vector<InputResult>& inputs, const CompareSettings
                               {"rows", input.rows},
                               {"columns", input.columns},
                               {"returns", input.returns},
-                              {"ground_z", finiteOrNull(static_cast<double>(input.ground_z))},
+                              {"ground", nameOf(input.ground)},
+                              {"ground_returns", input.left_out},
+                              {"ground_z", finiteOrNull(static_cast<double>(input.ground.height))},
                               {"cases", std::move(cases)}});
   }
   // Replaces bytes of file names that are not UTF-8.

@@ -5,6 +5,7 @@
 #include <cairo.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "io/text.h"
 
@@ -23,6 +25,8 @@ struct Color {
   double red, green, blue;
 
   Color shaded(double factor) const { return {red * factor, green * factor, blue * factor}; }
+  /// Halfway to white: for lines and letters over points of this colour.
+  Color brightened() const { return {(1 + red) / 2, (1 + green) / 2, (1 + blue) / 2}; }
   std::uint32_t argb() const {
     const auto byte = [](double value) { return static_cast<std::uint32_t>(std::lround(value * 255)); };
     return 0xFF000000U | byte(red) << 16 | byte(green) << 8 | byte(blue);
@@ -34,10 +38,13 @@ constexpr Color kGround{0.24, 0.22, 0.19};
 constexpr Color kNoise{0.52, 0.52, 0.52};
 constexpr Color kText{0.93, 0.93, 0.93};
 constexpr Color kLine{0.30, 0.32, 0.36};
-/// Colours of clusters: distinct on a dark background, also with most kinds of colour blindness.
-constexpr Color kPalette[] = {{0.90, 0.62, 0.00}, {0.34, 0.71, 0.91}, {0.00, 0.72, 0.50}, {0.94, 0.89, 0.26},
-                              {0.20, 0.48, 0.95}, {0.90, 0.33, 0.10}, {0.90, 0.45, 0.75}, {0.62, 0.88, 0.30},
-                              {0.66, 0.46, 1.00}, {1.00, 0.75, 0.65}, {0.30, 0.90, 0.90}, {0.92, 0.18, 0.38}};
+/// Colours of clusters on a dark background. The first kPrimaryColors differ clearly, also with red-green blindness
+/// (CIE76 distances of 33 or more as seen with protanopia and deuteranopia); the others are for clusters with so many
+/// neighbours that these do not suffice.
+constexpr Color kPalette[] = {{0.80, 0.80, 0.00}, {0.30, 0.70, 1.00}, {0.00, 0.90, 0.50}, {0.80, 0.10, 0.00},
+                              {0.60, 0.00, 1.00}, {0.20, 1.00, 1.00}, {0.80, 0.00, 0.60}, {1.00, 0.60, 0.10},
+                              {1.00, 0.80, 0.85}, {0.25, 0.55, 0.10}, {0.70, 0.55, 1.00}, {0.60, 0.40, 0.20}};
+constexpr std::size_t kPrimaryColors = 7;
 
 /// A picture in memory, drawn by Cairo. Lengths in pixels, x to the right, y down; drawing starts from kBackground and
 /// is clipped to the picture.
@@ -93,16 +100,35 @@ class Canvas {
     cairo_line_to(context_.get(), x1, y1);
     stroke(line_width);
   }
-  /// \param x, y where the baseline begins, has its middle, or ends, as aligned
-  /// \return width of the text
-  double text(double x, double y, double size, const std::string& what, Align align = Align::kLeft) {
+  /// Strokes a closed outline. \param corners x and y
+  void strokePolygon(const std::vector<std::array<double, 2>>& corners, double line_width) {
+    cairo_new_path(context_.get());
+    for (const auto& [x, y] : corners) cairo_line_to(context_.get(), x, y);
+    cairo_close_path(context_.get());
+    stroke(line_width);
+  }
+  /// Text with its middle at (x, y), on a dark rectangle.
+  void label(double x, double y, double size, const std::string& what, const Color& color) {
+    const double width = widthOf(what, size) + 4;
+    setColor(kBackground, 0.75);
+    fillRectangle(x - width / 2, y - size / 2 - 1, width, size + 2);
+    setColor(color);
+    text(x, y + 0.36 * size, size, what, Align::kCenter);
+  }
+  double widthOf(const std::string& what, double size) {
     cairo_set_font_size(context_.get(), size);
     cairo_text_extents_t extents;
     cairo_text_extents(context_.get(), what.c_str(), &extents);
-    const double shift = align == Align::kLeft ? 0.0 : (align == Align::kCenter ? 0.5 : 1.0);
-    cairo_move_to(context_.get(), x - shift * extents.x_advance, y);
-    cairo_show_text(context_.get(), what.c_str());
     return extents.x_advance;
+  }
+  /// \param x, y where the baseline begins, has its middle, or ends, as aligned
+  /// \return width of the text
+  double text(double x, double y, double size, const std::string& what, Align align = Align::kLeft) {
+    const double width = widthOf(what, size);
+    const double shift = align == Align::kLeft ? 0.0 : (align == Align::kCenter ? 0.5 : 1.0);
+    cairo_move_to(context_.get(), x - shift * width, y);
+    cairo_show_text(context_.get(), what.c_str());
+    return width;
   }
 
   /// \throws std::runtime_error with one line if the file cannot be written

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "drawing/scan_pictures.h"
@@ -20,30 +23,29 @@ constexpr int kWantedHeight = 420;
 constexpr int kMaxHeight = 2000;
 constexpr int kMaxCellSize = 12;
 
-struct Cells {
-  int columns, rows;
-  std::vector<std::uint32_t> colors;  ///< row by row
+constexpr int kMinIdCells = 40;  ///< shown of a cluster whose id is written
 
-  std::uint32_t at(int row, int column) const {
-    return colors[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)];
-  }
-};
+PointMap emptyMap(int columns, int rows) {
+  return {columns, rows, 1, 1,
+          std::vector<std::int64_t>(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows),
+                                    PointMap::kNoPoint)};
+}
 
 /// An organized scan, each row shifted by its stagger.
-Cells shiftedRows(const Cloud& cloud, const std::vector<std::uint32_t>& colors) {
-  Cells cells{static_cast<int>(cloud.width), static_cast<int>(cloud.height), colors};
+PointMap shiftedRows(const Cloud& cloud) {
+  PointMap map = emptyMap(static_cast<int>(cloud.width), static_cast<int>(cloud.height));
   const std::vector<int> shifts = seenByCamera(cloud) ? std::vector<int>(cloud.height, 0) : staggerOf(cloud);
   for (std::size_t row = 0; row < cloud.height; ++row)
-    for (int column = 0; column < cells.columns; ++column) {
-      const int shifted = ((column + shifts[row]) % cells.columns + cells.columns) % cells.columns;
-      cells.colors[row * cloud.width + static_cast<std::size_t>(shifted)] =
-          colors[row * cloud.width + static_cast<std::size_t>(column)];
+    for (int column = 0; column < map.columns; ++column) {
+      const int shifted = ((column + shifts[row]) % map.columns + map.columns) % map.columns;
+      map.points[row * cloud.width + static_cast<std::size_t>(shifted)] =
+          static_cast<std::int64_t>(row * cloud.width + static_cast<std::size_t>(column));
     }
-  return cells;
+  return map;
 }
 
 /// A projection by azimuth and elevation; the nearest return of a cell is shown.
-Cells projected(const Cloud& cloud, const std::vector<std::uint32_t>& colors) {
+PointMap projected(const Cloud& cloud) {
   double lowest = kPi / 2;
   double highest = -kPi / 2;
   for (const auto& point : cloud)
@@ -51,9 +53,8 @@ Cells projected(const Cloud& cloud, const std::vector<std::uint32_t>& colors) {
       lowest = std::min(lowest, elevationOf(point));
       highest = std::max(highest, elevationOf(point));
     }
-  Cells cells{kProjectedColumns, kProjectedRows,
-              std::vector<std::uint32_t>(std::size_t{kProjectedColumns} * kProjectedRows, kBackground.argb())};
-  std::vector<double> nearest(cells.colors.size(), std::numeric_limits<double>::infinity());
+  PointMap map = emptyMap(kProjectedColumns, kProjectedRows);
+  std::vector<double> nearest(map.points.size(), std::numeric_limits<double>::infinity());
   const auto binOf = [](double position, int bins) {
     return static_cast<std::size_t>(std::clamp(position * bins, 0.0, bins - 1.0));
   };
@@ -66,41 +67,74 @@ Cells projected(const Cloud& cloud, const std::vector<std::uint32_t>& colors) {
     const double range = rangeOf(point);
     if (range >= nearest[cell]) continue;
     nearest[cell] = range;
-    cells.colors[cell] = colors[i];
+    map.points[cell] = static_cast<std::int64_t>(i);
   }
-  return cells;
+  return map;
 }
 
 /// Every n-th row and column, so that there are at most kMaxCells.
-Cells thinnedOut(Cells cells) {
-  const int n = (cells.columns + kMaxCells - 1) / kMaxCells;
-  const int m = (cells.rows + kMaxCells - 1) / kMaxCells;
-  if (n == 1 && m == 1) return cells;
-  Cells thin{(cells.columns + n - 1) / n, (cells.rows + m - 1) / m, {}};
-  for (int row = 0; row < cells.rows; row += m)
-    for (int column = 0; column < cells.columns; column += n) thin.colors.push_back(cells.at(row, column));
+PointMap thinnedOut(PointMap map) {
+  const int n = (map.columns + kMaxCells - 1) / kMaxCells;
+  const int m = (map.rows + kMaxCells - 1) / kMaxCells;
+  if (n == 1 && m == 1) return map;
+  PointMap thin{(map.columns + n - 1) / n, (map.rows + m - 1) / m, 1, 1, {}};
+  for (int row = 0; row < map.rows; row += m)
+    for (int column = 0; column < map.columns; column += n) thin.points.push_back(map.points[map.cellAt(row, column)]);
   return thin;
+}
+
+/// Writes the ids of the larger clusters at the cells nearest to their middles.
+void drawIds(Canvas& canvas, const ClusteredScan& scan, const PointMap& map, const ScanColors& colors) {
+  const std::vector<std::uint32_t> labels = labelsOf(scan.clusters, scan.cloud->size());
+  std::vector<std::vector<std::array<int, 2>>> cells_of(scan.clusters.size());  // column and row
+  for (int row = 0; row < map.rows; ++row)
+    for (int column = 0; column < map.columns; ++column) {
+      const std::int64_t point = map.points[map.cellAt(row, column)];
+      if (point == PointMap::kNoPoint || labels[static_cast<std::size_t>(point)] == 0) continue;
+      cells_of[labels[static_cast<std::size_t>(point)] - 1].push_back({column, row});
+    }
+  IdLabels ids;
+  for (std::size_t cluster = 0; cluster < cells_of.size() && !ids.isFull(); ++cluster) {
+    auto& cells = cells_of[cluster];
+    if (cells.size() < kMinIdCells) continue;
+    std::array<double, 2> middle{};
+    for (const auto& cell : cells)
+      for (std::size_t axis = 0; axis < 2; ++axis) middle[axis] += cell[axis] / static_cast<double>(cells.size());
+    const auto nearest = *std::min_element(cells.begin(), cells.end(), [&](const auto& a, const auto& b) {
+      return std::hypot(a[0] - middle[0], a[1] - middle[1]) < std::hypot(b[0] - middle[0], b[1] - middle[1]);
+    });
+    ids.add(canvas, cluster, kMargin + (nearest[0] + 0.5) * map.cell_width,
+            kHeaderHeight + (nearest[1] + 0.5) * map.cell_height, colors.of_cluster[cluster].brightened());
+  }
 }
 
 }  // namespace
 
-void drawRangeImage(const ClusteredScan& scan, const fs::path& png) {
+PointMap rangeImageOf(const ClusteredScan& scan) {
+  PointMap map = thinnedOut(scan.cloud->height > 1 ? shiftedRows(*scan.cloud) : projected(*scan.cloud));
+  const int scale_x = std::clamp(kWantedWidth / map.columns, 1, kMaxCellSize);
+  map.cell_width = scale_x;
+  map.cell_height =
+      std::clamp(std::max(kWantedHeight / map.rows, std::min(scale_x, kMaxHeight / map.rows)), 1, kMaxCellSize);
+  return map;
+}
+
+void drawRangeImage(const ClusteredScan& scan, const PointMap& map, const ScanColors& colors, const fs::path& png) {
   const bool organized = scan.cloud->height > 1;
-  const std::vector<std::uint32_t> colors = pointColors(scan, true);
-  const Cells cells = thinnedOut(organized ? shiftedRows(*scan.cloud, colors) : projected(*scan.cloud, colors));
-  const int scale_x = std::clamp(kWantedWidth / cells.columns, 1, kMaxCellSize);
-  const int scale_y =
-      std::clamp(std::max(kWantedHeight / cells.rows, std::min(scale_x, kMaxHeight / cells.rows)), 1, kMaxCellSize);
-  const int width = cells.columns * scale_x;
-  const int height = cells.rows * scale_y;
+  const auto scale_x = static_cast<int>(map.cell_width);
+  const auto scale_y = static_cast<int>(map.cell_height);
+  const int width = map.columns * scale_x;
+  const int height = map.rows * scale_y;
   Canvas canvas(width + 2 * kMargin, height + kHeaderHeight + kMargin);
 
   canvas.beginPixels();
-  for (int row = 0; row < cells.rows; ++row)
-    for (int column = 0; column < cells.columns; ++column)
-      canvas.fillPixels(kMargin + column * scale_x, kHeaderHeight + row * scale_y, scale_x, scale_y,
-                        cells.at(row, column));
+  for (int row = 0; row < map.rows; ++row)
+    for (int column = 0; column < map.columns; ++column)
+      if (const std::int64_t point = map.points[map.cellAt(row, column)]; point != PointMap::kNoPoint)
+        canvas.fillPixels(kMargin + column * scale_x, kHeaderHeight + row * scale_y, scale_x, scale_y,
+                          colors.shaded[static_cast<std::size_t>(point)]);
   canvas.endPixels();
+  drawIds(canvas, scan, map, colors);
 
   canvas.setColor(kLine);
   canvas.strokeRectangle(kMargin - 0.5, kHeaderHeight - 0.5, width + 1, height + 1, 1);
@@ -111,8 +145,8 @@ void drawRangeImage(const ClusteredScan& scan, const fs::path& png) {
   const double bottom = kHeaderHeight + height;
   const double note_width = organized ? 180 : 360;
   const int step =
-      organized ? std::max(1, static_cast<int>(roundLength(std::max(1.0, cells.columns / 4.0)))) : cells.columns / 8;
-  for (int column = 0; column < cells.columns; column += step) {
+      organized ? std::max(1, static_cast<int>(roundLength(std::max(1.0, map.columns / 4.0)))) : map.columns / 8;
+  for (int column = 0; column < map.columns; column += step) {
     const double x = kMargin + column * scale_x;
     if (x > right - note_width) break;
     canvas.setColor(kLine);
@@ -120,7 +154,7 @@ void drawRangeImage(const ClusteredScan& scan, const fs::path& png) {
     canvas.setColor(kText);
     canvas.text(x, bottom + 22, kLabelSize,
                 organized ? "column " + std::to_string(column)
-                          : "azimuth " + std::to_string(180 - 360 * column / cells.columns) + "\u00b0");
+                          : "azimuth " + std::to_string(180 - 360 * column / map.columns) + "\u00b0");
   }
   canvas.text(right, bottom + 22, kLabelSize,
               organized ? std::to_string(scan.cloud->height) + " rows" : "unorganized: by azimuth and elevation",

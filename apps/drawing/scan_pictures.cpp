@@ -3,10 +3,8 @@
 #include "drawing/scan_pictures.h"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <iterator>
-#include <limits>
-#include <utility>
 
 #include "io/point_geometry.h"
 #include "io/text.h"
@@ -22,46 +20,51 @@ constexpr double kCameraShare = 0.99;  ///< of the returns lie ahead of a camera
 constexpr double kKeyWidth = 270;      ///< pixels, all its entries
 constexpr double kSwatch = 12;         ///< pixels, side of a square of colour
 
-/// A colour per cluster. Clusters of one colour are kept apart: each cluster, the largest first, takes the colour whose
-/// nearest cluster so far is the farthest away.
-std::vector<Color> colorsOf(const ClusteredScan& scan) {
-  std::vector<Color> colors;
-  std::vector<std::pair<ClusterShape, std::size_t>> placed;
-  for (const auto& cluster : scan.clusters) {
-    const ClusterShape shape = shapeOf(*scan.cloud, cluster);
-    std::array<double, std::size(kPalette)> nearest;
-    nearest.fill(std::numeric_limits<double>::infinity());
-    for (const auto& [other, color] : placed) {
-      double squared_gap = 0;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const float gap = std::max({other.lo()[axis] - shape.hi()[axis], shape.lo()[axis] - other.hi()[axis], 0.0F});
-        squared_gap += static_cast<double>(gap) * static_cast<double>(gap);
-      }
-      nearest[color] = std::min(nearest[color], squared_gap);
-    }
-    const auto best = static_cast<std::size_t>(std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
-    placed.emplace_back(shape, best);
-    colors.push_back(kPalette[best]);
-  }
+ScanColors colorsOf(const ClusteredScan& scan, const std::vector<std::uint32_t>& labels,
+                    const std::vector<Color>& of_cluster) {
+  const Cloud& cloud = *scan.cloud;
+  ScanColors colors;
+  colors.of_cluster = of_cluster;
+  colors.of_point.assign(cloud.size(), kBackground.argb());
+  colors.shaded = colors.of_point;
+  const auto color = [&](std::size_t i, const Color& plain) {
+    const double brightness = 1.0 - kDimming * std::log2(std::max(rangeOf(cloud[i]), kMinRange) / kFullBrightness);
+    colors.of_point[i] = plain.argb();
+    colors.shaded[i] = plain.shaded(std::clamp(brightness, kMinBrightness, 1.0)).argb();
+  };
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if (isReturn(cloud[i])) color(i, labels[i] == 0 ? kGround : colors.of_cluster[labels[i] - 1]);
+  for (const auto index : scan.returns.clustered)
+    if (const auto i = static_cast<std::size_t>(index); labels[i] == 0) color(i, kNoise);
   return colors;
 }
 
 }  // namespace
 
-std::vector<std::uint32_t> pointColors(const ClusteredScan& scan, bool shade_by_range) {
-  const Cloud& cloud = *scan.cloud;
-  std::vector<std::uint32_t> colors(cloud.size(), kBackground.argb());
-  const auto color = [&](std::size_t i, const Color& plain) {
-    const double brightness = 1.0 - kDimming * std::log2(std::max(rangeOf(cloud[i]), kMinRange) / kFullBrightness);
-    colors[i] = plain.shaded(shade_by_range ? std::clamp(brightness, kMinBrightness, 1.0) : 1.0).argb();
-  };
-  for (std::size_t i = 0; i < colors.size(); ++i)
-    if (isReturn(cloud[i])) color(i, kGround);
-  for (const auto index : scan.clustered) color(static_cast<std::size_t>(index), kNoise);
-  const std::vector<Color> of_cluster = colorsOf(scan);
-  for (std::size_t i = 0; i < scan.clusters.size(); ++i)
-    for (const auto index : scan.clusters[i].indices) color(static_cast<std::size_t>(index), of_cluster[i]);
-  return colors;
+void drawPictures(const ClusteredScan& scan, const fs::path& range_image_png, const fs::path& top_view_png) {
+  const ClusteredScan& seen = scan.arranged ? *scan.arranged : scan;
+  const PointMap range_image = rangeImageOf(seen);
+  const PointMap top_view = topViewOf(scan);
+  const std::vector<std::uint32_t> labels = labelsOf(scan.clusters, scan.cloud->size());
+  const std::vector<std::uint32_t> labels_seen = labelsOf(seen.clusters, seen.cloud->size());
+  std::vector<Color> of_cluster;
+  for (const std::size_t color : colorNeighbours(scan.clusters.size(), {{range_image, labels_seen}, {top_view, labels}},
+                                                 kPrimaryColors, std::size(kPalette)))
+    of_cluster.push_back(kPalette[color]);
+  drawRangeImage(seen, range_image, colorsOf(seen, labels_seen, of_cluster), range_image_png);
+  drawTopView(scan, top_view, colorsOf(scan, labels, of_cluster), top_view_png);
+}
+
+void IdLabels::add(Canvas& canvas, std::size_t cluster, double x, double y, const Color& color) {
+  constexpr double kSize = 12;
+  constexpr double kGap = 3;
+  if (isFull()) return;
+  const std::string id = std::to_string(cluster + 1);
+  const double width = canvas.widthOf(id, kSize);
+  for (const Place& other : placed_)
+    if (std::fabs(other.x - x) < (other.width + width) / 2 + 2 * kGap && std::fabs(other.y - y) < kSize + kGap) return;
+  placed_.push_back({x, y, width});
+  canvas.label(x, y, kSize, id, color);
 }
 
 void drawHeader(Canvas& canvas, const ClusteredScan& scan, double left, double right) {

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 #include "drawing/scan_pictures.h"
 #include "io/point_geometry.h"
@@ -55,21 +59,109 @@ void drawScaleBar(Canvas& canvas, double length, double pixels) {
   canvas.text(kLeft + pixels / 2, kY - 8, 14, formatted("%g m", length), Canvas::Align::kCenter);
 }
 
+/// Where the points of a scan are in the picture.
+class View {
+ public:
+  explicit View(const ClusteredScan& scan)
+      : cloud_(*scan.cloud), is_camera_(seenByCamera(cloud_)), window_(windowAround(scan.returns.clustered)) {}
+
+  bool isCamera() const { return is_camera_; }
+  const Window& window() const { return window_; }
+  /// \return false outside of the picture
+  bool find(std::size_t point, int& x, int& y) const {
+    if (!isReturn(cloud_[point])) return false;
+    const double right = window_.x(rightOf(point));
+    const double down = window_.y(upOf(point));
+    if (right < 0 || down < kHeaderHeight || right >= kSize || down >= kSize + kHeaderHeight) return false;
+    x = static_cast<int>(right);
+    y = static_cast<int>(down) - kHeaderHeight;
+    return true;
+  }
+
+  /// The corners of a cluster's box: the oriented one, or a camera's axis-aligned one.
+  std::vector<std::array<double, 2>> corners(const lisco::ClusterFeatures& features) const {
+    std::vector<std::array<double, 2>> corners;
+    for (const auto& [a, b] : {std::pair{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}) {
+      const lisco::OrientedBox& box = features.box;
+      const double along = a * box.length;
+      const double across = b * box.width;
+      const double x = box.center[0] + along * std::cos(box.yaw) - across * std::sin(box.yaw);
+      const double y = box.center[1] + along * std::sin(box.yaw) + across * std::cos(box.yaw);
+      if (is_camera_)
+        corners.push_back({window_.x(static_cast<double>(a < 0 ? features.min[0] : features.max[0])),
+                           window_.y(static_cast<double>(b < 0 ? features.min[2] : features.max[2]))});
+      else
+        corners.push_back({window_.x(-y), window_.y(x)});
+    }
+    return corners;
+  }
+
+ private:
+  double rightOf(std::size_t i) const { return static_cast<double>(is_camera_ ? cloud_[i].x : -cloud_[i].y); }
+  double upOf(std::size_t i) const { return static_cast<double>(is_camera_ ? cloud_[i].z : cloud_[i].x); }
+  Window windowAround(const pcl::Indices& points) const {
+    std::vector<double> rights, ups;
+    for (const auto index : points) {
+      rights.push_back(rightOf(static_cast<std::size_t>(index)));
+      ups.push_back(upOf(static_cast<std::size_t>(index)));
+    }
+    return {std::move(rights), std::move(ups)};
+  }
+
+  const Cloud& cloud_;
+  bool is_camera_;
+  Window window_;
+};
+
+/// Outlines the boxes, and writes the ids of the larger clusters above them.
+void drawBoxes(Canvas& canvas, const ClusteredScan& scan, const View& view, const ScanColors& colors) {
+  constexpr double kAbove = 9;   // pixels from a box to its id
+  constexpr double kMinBox = 9;  // pixels, of a box with an id
+  IdLabels ids;
+  for (std::size_t i = scan.clusters.size(); i-- > 0;) {
+    canvas.setColor(colors.of_cluster[i].brightened(), 0.9);
+    canvas.strokePolygon(view.corners(scan.features[i]), 1);
+  }
+  for (std::size_t i = 0; i < scan.clusters.size() && !ids.isFull(); ++i) {
+    double left = kSize, right = 0, top = kSize + kHeaderHeight, bottom = 0;
+    for (const auto& [x, y] : view.corners(scan.features[i])) {
+      left = std::min(left, x);
+      right = std::max(right, x);
+      top = std::min(top, y);
+      bottom = std::max(bottom, y);
+    }
+    const double x = (left + right) / 2;
+    if (std::max(right - left, bottom - top) < kMinBox || x < 0 || x >= kSize || top < kHeaderHeight + 2 * kAbove ||
+        top >= kSize + kHeaderHeight)
+      continue;
+    ids.add(canvas, i, x, top - kAbove, colors.of_cluster[i].brightened());
+  }
+}
+
 }  // namespace
 
-void drawTopView(const ClusteredScan& scan, const fs::path& png) {
-  Canvas canvas(kSize, kSize + kHeaderHeight);
-  const Cloud& cloud = *scan.cloud;
-  const bool camera = seenByCamera(cloud);
-  const auto right = [camera](const pcl::PointXYZ& p) { return static_cast<double>(camera ? p.x : -p.y); };
-  const auto up = [camera](const pcl::PointXYZ& p) { return static_cast<double>(camera ? p.z : p.x); };
-  std::vector<double> rights, ups;
-  for (const auto index : scan.clustered) {
-    rights.push_back(right(cloud[static_cast<std::size_t>(index)]));
-    ups.push_back(up(cloud[static_cast<std::size_t>(index)]));
-  }
-  const Window window(std::move(rights), std::move(ups));
+PointMap topViewOf(const ClusteredScan& scan) {
+  const View view(scan);
+  PointMap map{kSize, kSize, 1, 1, std::vector<std::int64_t>(std::size_t{kSize} * kSize, PointMap::kNoPoint)};
+  const auto place = [&](std::size_t point, int size) {
+    int x, y;
+    if (!view.find(point, x, y)) return;
+    for (int row = std::max(0, y - size / 2); row < std::min(kSize, y - size / 2 + size); ++row)
+      for (int column = std::max(0, x - size / 2); column < std::min(kSize, x - size / 2 + size); ++column)
+        map.points[map.cellAt(row, column)] = static_cast<std::int64_t>(point);
+  };
+  // From bottom to top: ground, noise, clusters.
+  for (std::size_t i = 0; i < scan.cloud->size(); ++i) place(i, 1);
+  for (const auto index : scan.returns.clustered) place(static_cast<std::size_t>(index), 2);
+  for (const auto& cluster : scan.clusters)
+    for (const auto index : cluster.indices) place(static_cast<std::size_t>(index), 3);
+  return map;
+}
 
+void drawTopView(const ClusteredScan& scan, const PointMap& map, const ScanColors& colors, const fs::path& png) {
+  Canvas canvas(kSize, kSize + kHeaderHeight);
+  const View view(scan);
+  const Window& window = view.window();
   const double ring = roundLength(window.extent() / 4);  // metres between rings of equal range
   const double ring_pixels = ring * window.pixelsPerMetre();
   const double sensor_x = window.x(0);
@@ -77,21 +169,13 @@ void drawTopView(const ClusteredScan& scan, const fs::path& png) {
   canvas.setColor(kLine);
   for (int i = 1; i <= kRings; ++i) canvas.circle(sensor_x, sensor_y, i * ring_pixels, 1);
 
-  const std::vector<std::uint32_t> colors = pointColors(scan, false);
   canvas.beginPixels();
-  const auto draw = [&](std::size_t i, int size) {
-    if (!isReturn(cloud[i])) return;
-    const double x = window.x(right(cloud[i]));
-    const double y = window.y(up(cloud[i]));
-    if (x < 0 || y < kHeaderHeight || x >= kSize || y >= kSize + kHeaderHeight) return;
-    canvas.fillPixels(static_cast<int>(x) - size / 2, static_cast<int>(y) - size / 2, size, size, colors[i]);
-  };
-  // From bottom to top: ground, noise, clusters.
-  for (std::size_t i = 0; i < cloud.size(); ++i) draw(i, 1);
-  for (const auto index : scan.clustered) draw(static_cast<std::size_t>(index), 2);
-  for (const auto& cluster : scan.clusters)
-    for (const auto index : cluster.indices) draw(static_cast<std::size_t>(index), 3);
+  for (int row = 0; row < map.rows; ++row)
+    for (int column = 0; column < map.columns; ++column)
+      if (const std::int64_t point = map.points[map.cellAt(row, column)]; point != PointMap::kNoPoint)
+        canvas.fillPixels(column, kHeaderHeight + row, 1, 1, colors.of_point[static_cast<std::size_t>(point)]);
   canvas.endPixels();
+  drawBoxes(canvas, scan, view, colors);
 
   canvas.setColor(kText, 0.75);
   for (int i = 1; i <= kRings; ++i) {
@@ -103,7 +187,7 @@ void drawTopView(const ClusteredScan& scan, const fs::path& png) {
   canvas.setColor(kText);
   canvas.circle(sensor_x, sensor_y, 6, 2);
   canvas.line(sensor_x, sensor_y - 6, sensor_x, sensor_y - 18, 2);
-  canvas.text(sensor_x + 10, sensor_y + 18, kLabelSize, "sensor");
+  canvas.label(sensor_x, sensor_y + 18, kLabelSize, "sensor", kText);
   drawScaleBar(canvas, ring, ring_pixels);
 
   canvas.setColor(kBackground);

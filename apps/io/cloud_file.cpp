@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <new>
@@ -70,15 +71,29 @@ Cloud::Ptr readFile(const fs::path& file, const ReadOptions& options, ReadExtras
 Cloud::Ptr readCloudFile(const fs::path& file, Labels* object_of) {
   ReadExtras extras;
   Cloud::Ptr cloud = readFile(file, {}, extras);
-  if (object_of != nullptr) *object_of = std::move(extras.object_of);
+  if (object_of != nullptr) *object_of = labelsIn(extras.fields);
   return cloud;
+}
+
+std::vector<std::uint32_t> labelsIn(const pcl::PCLPointCloud2& fields) {
+  std::vector<std::uint32_t> labels;
+  for (const pcl::PCLPointField& field : fields.fields) {
+    if (field.name != "label" || field.datatype != pcl::PCLPointField::UINT32 ||
+        field.offset + sizeof(std::uint32_t) > fields.point_step)
+      continue;
+    labels.resize(static_cast<std::size_t>(fields.width) * fields.height);
+    for (std::size_t i = 0; i < labels.size(); ++i)
+      std::memcpy(&labels[i], fields.data.data() + i * fields.point_step + field.offset, sizeof(std::uint32_t));
+  }
+  return labels;
 }
 
 Scan readScan(const fs::path& file, const ReadOptions& options) {
   ReadExtras extras;
   Scan scan;
   scan.cloud = readFile(file, options, extras);
-  scan.object_of = std::move(extras.object_of);
+  scan.object_of = labelsIn(extras.fields);
+  scan.fields = std::move(extras.fields);
   scan.note = std::move(extras.note);
   if (scan.cloud->height == 1 && !extras.rings.empty())
     arrangeByAzimuth(extras.rings, scan);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <pcl/PCLPointCloud2.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
@@ -22,6 +23,9 @@ using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 ///        have it; empty if there is none
 /// \throws std::runtime_error with one line that names the file and what is wrong with it
 Cloud::Ptr readCloudFile(const fs::path& file, std::vector<std::uint32_t>* object_of = nullptr);
+
+/// The field `label` (uint32) per point, as simulated and annotated scans have it; empty if there is none.
+std::vector<std::uint32_t> labelsIn(const pcl::PCLPointCloud2& fields);
 
 /// The files in a folder that have an ending of readCloudFile, sorted by name, without results written there by
 /// lisco_cluster. Not recursive.

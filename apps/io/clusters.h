@@ -8,10 +8,13 @@
 #include <string>
 #include <vector>
 
+#include <pcl/PCLPointCloud2.h>
 #include <pcl/PointIndices.h>
 
 #include "io/cloud_file.h"
-#include "io/point_geometry.h"
+#include "io/scan_options.h"
+#include "io/scan_returns.h"
+#include "lisco/cluster_features.h"
 
 namespace lisco_apps {
 
@@ -19,13 +22,18 @@ using Clusters = std::vector<pcl::PointIndices>;
 
 /// A scan and its clusters, as the writers of pictures and tables need them.
 struct ClusteredScan {
-  std::string name;        ///< of the input, for titles
-  double tolerance = 0;    ///< metres
-  Cloud::ConstPtr cloud;   ///< as read
-  pcl::Indices clustered;  ///< the points that were clustered: returns above the ground
-  Clusters clusters;       ///< largest first
-  std::string note;        ///< how it was read; empty if there is nothing to say
-  /// The same in a row for each ring, as it was clustered; nullptr if that is the cloud itself.
+  std::string name;                              ///< of the input, for titles
+  double tolerance = 0;                          ///< metres
+  unsigned min_size = 0;                         ///< of clusters
+  GroundChoice ground;                           ///< as asked for
+  Cloud::ConstPtr cloud;                         ///< as read
+  pcl::PCLPointCloud2 fields;                    ///< all fields of the input; empty if x, y, z are all
+  ScanReturns returns;                           ///< of the cloud
+  Clusters clusters;                             ///< largest first
+  std::vector<lisco::ClusterFeatures> features;  ///< of the clusters
+  std::string note;                              ///< how it was read; empty if there is nothing to say
+  /// The same in a row for each ring, as it was clustered, with the same clusters in the same order; nullptr if that is
+  /// the cloud itself.
   std::shared_ptr<const ClusteredScan> arranged;
 };
 
@@ -38,17 +46,5 @@ inline std::vector<std::uint32_t> labelsOf(const Clusters& clusters, std::size_t
       labels[static_cast<std::size_t>(index)] = static_cast<std::uint32_t>(i + 1);
   return labels;
 }
-
-inline ClusterShape shapeOf(const Cloud& cloud, const pcl::PointIndices& cluster) {
-  ClusterShape shape;
-  for (const auto index : cluster.indices) shape.add(cloud[static_cast<std::size_t>(index)]);
-  return shape;
-}
-
-/// Writes labels.pcd (organized as the input; x y z label), clusters.csv, range_image.png, top_view.png and view.html
-/// into a folder, and with `cloud_per_cluster` also clusters/cluster_0001.pcd and so on, largest first. All or nothing;
-/// replaces the files of an earlier run and refuses to replace any other file of these names, see writeOwnFolder ().
-/// \throws std::runtime_error with one line on what cannot be written, or would be overwritten
-void writeResults(const ClusteredScan& scan, const fs::path& folder, bool cloud_per_cluster);
 
 }  // namespace lisco_apps

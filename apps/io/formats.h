@@ -21,7 +21,7 @@ using Labels = std::vector<std::uint32_t>;
 
 /// What a file holds besides its points.
 struct ReadExtras {
-  Labels object_of;                  ///< field `label`
+  pcl::PCLPointCloud2 fields;        ///< all, of each point of the cloud; empty if x, y, z are all
   pcl::PCLPointCloud2 message;       ///< of an unorganized cloud with field `ring`: its points; else empty
   std::vector<std::uint16_t> rings;  ///< of the points of an unorganized cloud, which is sorted by them; else empty
   std::string note;                  ///< how the file was read

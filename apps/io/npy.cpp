@@ -108,9 +108,14 @@ Cloud::Ptr readNpy(const fs::path& file, const ReadOptions& /*options*/, ReadExt
   }
   const Cloud::Ptr cloud = cloudOf(table, false, extras);
   if (!is_organized || rows == 1) return cloud;
-  extras = {};
   cloud->width = static_cast<std::uint32_t>(columns);
   cloud->height = static_cast<std::uint32_t>(rows);
+  pcl::PCLPointCloud2 fields = std::move(extras.fields);
+  fields.width = cloud->width;
+  fields.height = cloud->height;
+  fields.row_step = fields.point_step * fields.width;
+  extras = {};
+  extras.fields = std::move(fields);
   return cloud;
 }
 

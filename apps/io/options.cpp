@@ -48,9 +48,10 @@ double toleranceOf(const std::string& text) {
   return tolerance;
 }
 
-float heightOf(const std::string& text) {
-  const auto height = static_cast<float>(numberOf(text, "--ground-z"));
-  if (!std::isfinite(height)) throw std::runtime_error("--ground-z must be a number of metres, not '" + text + "'");
+float heightOf(const std::string& text, const char* option) {
+  const auto height = static_cast<float>(numberOf(text, option));
+  if (!std::isfinite(height))
+    throw std::runtime_error(std::string(option) + " must be a number of metres, not '" + text + "'");
   return height;
 }
 
@@ -109,9 +110,7 @@ void ClusterOptions::addTo(po::options_description& shown) {
     ("tolerance,t", textOption("M", [this](const std::string& text) { tolerance = toleranceOf(text); }),
      "points nearer to each other than this many metres belong together")
     ("min-size", countOption("--min-size", min_size, 1), "least returns of a cluster (default 10)")
-    ("max-size", countOption("--max-size", max_size, 1), "most returns of a cluster (default: no limit)")
-    ("ground-z", textOption("M", [this](const std::string& text) { ground_z = heightOf(text); }),
-     "leave out returns below this height in metres, in the input's coordinates (default: none)");
+    ("max-size", countOption("--max-size", max_size, 1), "most returns of a cluster (default: no limit)");
   // clang-format on
 }
 
@@ -120,28 +119,11 @@ void ClusterOptions::check() const {
   if (max_size < min_size) throw std::runtime_error("--max-size is smaller than --min-size");
 }
 
-GroundHeights::GroundHeights(const std::vector<std::string>& items) {
-  for (const std::string& item : items) {
-    const std::size_t equals = item.rfind('=');
-    const std::string name = equals == std::string::npos ? "" : item.substr(0, equals);
-    const std::string height = equals == std::string::npos ? item : item.substr(equals + 1);
-    of_name_[name] = heightOf(height);
-  }
-}
-
-std::vector<std::string> GroundHeights::namesNotIn(const std::vector<std::string>& names) const {
-  std::vector<std::string> unknown;
-  for (const auto& [name, height] : of_name_)
-    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) unknown.push_back(name);
-  return unknown;
-}
-
-float GroundHeights::of(const std::string& name) const {
-  for (const std::string& key : {name, std::string()}) {
-    const auto found = of_name_.find(key);
-    if (found != of_name_.end()) return found->second;
-  }
-  return -std::numeric_limits<float>::infinity();
+PerInput<float> groundHeights(const std::vector<std::string>& items) {
+  PerInput<float> heights(-std::numeric_limits<float>::infinity());
+  for (const std::string& item : items)
+    heights.set(item, [](const std::string& text) { return heightOf(text, "--ground-z"); });
+  return heights;
 }
 
 }  // namespace lisco_apps

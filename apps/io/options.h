@@ -2,12 +2,15 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <exception>
 #include <functional>
 #include <limits>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <boost/program_options.hpp>
@@ -27,8 +30,8 @@ unsigned countOf(const std::string& text, const char* option, int min, int max =
 double numberOf(const std::string& text, const char* option);
 /// Reads a --tolerance: a positive number.
 double toleranceOf(const std::string& text);
-/// Reads a --ground-z: a finite number.
-float heightOf(const std::string& text);
+/// Reads a height, metres: a finite float.
+float heightOf(const std::string& text, const char* option);
 /// Splits "a,b,c" at its commas.
 std::vector<std::string> itemsOf(const std::string& text);
 
@@ -54,33 +57,55 @@ bool readCommandLine(int argc, char** argv, const char* program, boost::program_
                      std::vector<std::string>* inputs, boost::program_options::variables_map& given,
                      const boost::program_options::options_description& hidden = {});
 
-/// The options --tolerance, --min-size, --max-size and --ground-z.
+/// The options --tolerance, --min-size and --max-size.
 struct ClusterOptions {
   double tolerance = 0;  ///< metres
   unsigned min_size = 10;
   unsigned max_size = std::numeric_limits<int>::max();
-  float ground_z = -std::numeric_limits<float>::infinity();  ///< metres
 
   void addTo(boost::program_options::options_description& shown);
   /// To be called once the command line has been read.
   void check() const;
 };
 
-/// Heights of the ground: of all inputs, or of each by its name.
-class GroundHeights {
+/// Values of an option: for all inputs, or for each by its name (the file name without ending).
+template <typename Value>
+class PerInput {
  public:
-  /// \param items "M" for all inputs, "NAME=M" for the input of this name, metres
-  explicit GroundHeights(const std::vector<std::string>& items = {});
+  /// \param otherwise of inputs that no item applies to
+  explicit PerInput(Value otherwise) : otherwise_(std::move(otherwise)) {}
 
-  /// \param name file name without ending
-  /// \return minus infinity if no height applies
-  float of(const std::string& name) const;
+  /// \param item "VALUE" for all inputs, "NAME=VALUE" for the input of this name
+  /// \param read gives the value of a text
+  /// \return false if a value for the same inputs was given before, which is replaced
+  template <typename Read>
+  bool set(const std::string& item, Read&& read) {
+    const std::size_t equals = item.rfind('=');
+    const std::string name = equals == std::string::npos ? "" : item.substr(0, equals);
+    return of_name_.insert_or_assign(name, read(equals == std::string::npos ? item : item.substr(equals + 1))).second;
+  }
+
+  Value of(const std::string& name) const {
+    for (const std::string& key : {name, std::string()})
+      if (const auto found = of_name_.find(key); found != of_name_.end()) return found->second;
+    return otherwise_;
+  }
+
   /// The names given that are none of these.
-  std::vector<std::string> namesNotIn(const std::vector<std::string>& names) const;
+  std::vector<std::string> namesNotIn(const std::vector<std::string>& names) const {
+    std::vector<std::string> unknown;
+    for (const auto& [name, value] : of_name_)
+      if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) unknown.push_back(name);
+    return unknown;
+  }
 
  private:
-  std::map<std::string, float> of_name_;  ///< "": all others
+  std::map<std::string, Value> of_name_;  ///< "": all others
+  Value otherwise_;
 };
+
+/// Heights of the ground by items of --ground-z, metres: minus infinity where no item applies.
+PerInput<float> groundHeights(const std::vector<std::string>& items);
 
 /// The body of main (): turns an exception into one line on stderr and exit code 2.
 template <typename Run>

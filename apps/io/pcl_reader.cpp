@@ -84,20 +84,6 @@ void copyField(const pcl::PCLPointCloud2& blob, const fs::path& file, std::size_
   }
 }
 
-/// The field `label`; empty if there is none.
-Labels labelsIn(const pcl::PCLPointCloud2& blob) {
-  Labels labels;
-  for (const pcl::PCLPointField& field : blob.fields) {
-    if (field.name != "label" || field.datatype != pcl::PCLPointField::UINT32 ||
-        field.offset + sizeof(std::uint32_t) > blob.point_step)
-      continue;
-    labels.resize(static_cast<std::size_t>(blob.width) * blob.height);
-    for (std::size_t i = 0; i < labels.size(); ++i)
-      std::memcpy(&labels[i], blob.data.data() + i * blob.point_step + field.offset, sizeof(std::uint32_t));
-  }
-  return labels;
-}
-
 /// Appends a field of one value.
 void addField(pcl::PCLPointCloud2& message, const char* name, std::uint8_t datatype, std::uint32_t bytes) {
   pcl::PCLPointField field;
@@ -173,8 +159,8 @@ Cloud::Ptr readByPcl(pcl::FileReader& reader, const fs::path& file, const std::s
   cloud->sensor_origin_ = origin;
   cloud->sensor_orientation_ = orientation;
   for (std::size_t axis = 0; axis < 3; ++axis) copyField(blob, file, axis, *cloud);
-  extras.object_of = labelsIn(blob);
-  if (blob.height == 1 && hasRing(blob)) extras.message = std::move(blob);
+  if (blob.height == 1 && hasRing(blob)) extras.message = blob;
+  extras.fields = std::move(blob);
   return cloud;
 }
 

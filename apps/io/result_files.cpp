@@ -1,15 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "io/clusters.h"
+#include "io/result_files.h"
 
+#include <algorithm>
+#include <array>
 #include <fstream>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <pcl/common/io.h>
 #include <pcl/io/pcd_io.h>
+#include <boost/algorithm/string/join.hpp>
+#include <nlohmann/json.hpp>
 
 #include "drawing/scan_pictures.h"
+#include "io/cluster_json.h"
+#include "io/label_files.h"
+#include "io/options.h"
 #include "io/output_file.h"
 #include "io/text.h"
 #include "view/clustered_view.h"
@@ -17,35 +26,51 @@
 namespace lisco_apps {
 namespace {
 
-const std::vector<std::string> kResults{"labels.pcd",   "clusters.csv", "range_image.png",
-                                        "top_view.png", "view.html",    "clusters"};
+constexpr const char* kClouds = "clusters";  ///< a folder
 
-template <typename AnyCloud>
-void writePcd(const AnyCloud& cloud, const fs::path& file) {
-  if (pcl::PCDWriter().writeBinary(file.string(), cloud) != 0) fail(file, "cannot be written");
+struct Kind {
+  const char* name;
+  bool ResultKinds::*is_wanted;
+  std::vector<std::string> files;
+};
+
+const std::vector<Kind>& allKinds() {
+  static const std::vector<Kind> kKinds{{"labels", &ResultKinds::labels, {"labels.pcd"}},
+                                        {"table", &ResultKinds::table, {"clusters.csv"}},
+                                        {"pictures", &ResultKinds::pictures, {"range_image.png", "top_view.png"}},
+                                        {"view", &ResultKinds::view, {"view.html"}},
+                                        {"clouds", &ResultKinds::clouds, {kClouds}},
+                                        {"json", &ResultKinds::json, {"clusters.json"}},
+                                        {"semantickitti", &ResultKinds::semantickitti, {"labels.label", "labels.npy"}}};
+  return kKinds;
 }
 
-void writeLabels(const ClusteredScan& scan, const fs::path& file) {
-  pcl::PointCloud<pcl::PointXYZL> labelled;
-  pcl::copyPointCloud(*scan.cloud, labelled);
-  const std::vector<std::uint32_t> labels = labelsOf(scan.clusters, labelled.size());
-  for (std::size_t i = 0; i < labels.size(); ++i) labelled[i].label = labels[i];
-  writePcd(labelled, file);
+void writeText(const fs::path& file, const std::string& text) {
+  std::ofstream stream(file, std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) fail(file, "cannot be written");
 }
 
-void writeTable(const ClusteredScan& scan, const fs::path& file) {
-  std::ofstream table(file);
-  table << "id,size,centroid_x,centroid_y,centroid_z,min_x,min_y,min_z,max_x,max_y,max_z,nearest_range\n";
-  for (std::size_t i = 0; i < scan.clusters.size(); ++i) {
-    const ClusterShape shape = shapeOf(*scan.cloud, scan.clusters[i]);
-    table << i + 1 << ',' << shape.size();
-    for (const double value : shape.centroid()) table << formatted(",%.4f", value);
-    for (const float value : shape.lo()) table << formatted(",%.4f", static_cast<double>(value));
-    for (const float value : shape.hi()) table << formatted(",%.4f", static_cast<double>(value));
-    table << formatted(",%.4f\n", shape.nearestRange());
+std::string tableOf(const ClusteredScan& scan) {
+  std::string table =
+      "id,size,centroid_x,centroid_y,centroid_z,min_x,min_y,min_z,max_x,max_y,max_z,nearest_range,"
+      "box_x,box_y,box_z,yaw,length,width,height,density\n";
+  std::size_t id = 0;
+  for (const lisco::ClusterFeatures& features : scan.features) {
+    table += formatted("%zu,%zu", ++id, features.size);
+    const auto add = [&table](double value) { table += formatted(",%.4f", value); };
+    for (const double value : features.centroid) add(value);
+    for (const float value : features.min) add(static_cast<double>(value));
+    for (const float value : features.max) add(static_cast<double>(value));
+    add(features.nearest_range);
+    for (const double value : features.box.center) add(value);
+    add(yawDegrees(features.box));
+    for (const double value : {features.box.length, features.box.width, features.box.height}) add(value);
+    add(features.density);
+    table += '\n';
   }
-  table.close();
-  if (!table) fail(file, "cannot be written");
+  return table;
 }
 
 void writeClusterClouds(const ClusteredScan& scan, const fs::path& folder) {
@@ -53,7 +78,8 @@ void writeClusterClouds(const ClusteredScan& scan, const fs::path& folder) {
   for (std::size_t i = 0; i < scan.clusters.size(); ++i) {
     Cloud cluster;
     pcl::copyPointCloud(*scan.cloud, scan.clusters[i].indices, cluster);
-    writePcd(cluster, folder / formatted("cluster_%04zu.pcd", i + 1));
+    const fs::path file = folder / formatted("cluster_%04zu.pcd", i + 1);
+    if (pcl::PCDWriter().writeBinary(file.string(), cluster) != 0) fail(file, "cannot be written");
   }
 }
 
@@ -66,22 +92,72 @@ void removeClusterClouds(const fs::path& folder) {
 
 }  // namespace
 
-void writeResults(const ClusteredScan& scan, const fs::path& folder, bool cloud_per_cluster) {
+ResultKinds resultKindsOf(const std::string& text) {
+  ResultKinds kinds;
+  std::vector<std::string> known;
+  for (const Kind& kind : allKinds()) {
+    kinds.*kind.is_wanted = false;
+    known.emplace_back(kind.name);
+  }
+  for (const std::string& item : itemsOf(text)) {
+    const auto kind =
+        std::find_if(allKinds().begin(), allKinds().end(), [&](const Kind& each) { return each.name == item; });
+    if (kind == allKinds().end())
+      throw std::runtime_error("--write: '" + item + "' is none of " + boost::join(known, ", "));
+    kinds.*kind->is_wanted = true;
+  }
+  return kinds;
+}
+
+void writeResults(const ClusteredScan& scan, const fs::path& folder, const ResultKinds& kinds) {
+  std::vector<std::string> wanted, others;
+  for (const Kind& kind : allKinds())
+    for (const std::string& file : kind.files) (kinds.*kind.is_wanted ? wanted : others).push_back(file);
+  const bool has_results = fs::exists(folder / kResultMarker);
   writeOwnFolder(
-      folder, kResults,
+      folder, wanted,
       [&](const fs::path& aside) {
         try {
-          writeLabels(scan, aside / "labels.pcd");
-          writeTable(scan, aside / "clusters.csv");
-          drawRangeImage(scan.arranged ? *scan.arranged : scan, aside / "range_image.png");
-          drawTopView(scan, aside / "top_view.png");
-          writeView(scan, scan.clustered, aside / "view.html");
-          if (cloud_per_cluster) writeClusterClouds(scan, aside / "clusters");
+          if (kinds.labels) writeLabelledPcd(scan, aside / "labels.pcd");
+          if (kinds.table) writeText(aside / "clusters.csv", tableOf(scan));
+          if (kinds.pictures) drawPictures(scan, aside / "range_image.png", aside / "top_view.png");
+          if (kinds.view) writeView(scan, scan.returns.clustered, aside / "view.html");
+          if (kinds.clouds) writeClusterClouds(scan, aside / kClouds);
+          if (kinds.json) writeText(aside / "clusters.json", lineOf(jsonOf(scan)) + "\n");
+          if (kinds.semantickitti) writeSemanticKitti(scan, aside / "labels.label");
+          if (kinds.semantickitti) writeNpy(scan, aside / "labels.npy");
         } catch (const pcl::IOException&) {
           fail(folder, "cannot be written");
         }
       },
-      [&] { removeClusterClouds(folder / "clusters"); });
+      [&] {
+        if (!has_results) return;
+        removeClusterClouds(folder / kClouds);
+        for (const std::string& file : others)
+          if (file != kClouds) fs::remove(folder / file);
+      });
+}
+
+nlohmann::ordered_json jsonOf(const ClusteredScan& scan) {
+  std::size_t in_clusters = 0;
+  Json clusters = Json::array();
+  for (const lisco::ClusterFeatures& features : scan.features) {
+    in_clusters += features.size;
+    Json one{{"id", clusters.size() + 1}};
+    addFeatures(one, features);
+    clusters.push_back(std::move(one));
+  }
+  return {{"scan", scan.name},
+          {"rows", scan.cloud->height},
+          {"columns", scan.cloud->width},
+          {"returns", scan.returns.returns},
+          {"ignored", scan.returns.ignored},
+          {"ground", scan.returns.ground},
+          {"clustered", scan.returns.clustered.size()},
+          {"noise", scan.returns.clustered.size() - in_clusters},
+          {"tolerance", scan.tolerance},
+          {"min_size", scan.min_size},
+          {"clusters", std::move(clusters)}};
 }
 
 }  // namespace lisco_apps

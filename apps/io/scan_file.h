@@ -20,6 +20,7 @@ struct Scan {
   Cloud::Ptr arranged;                   ///< a row for each ring; nullptr: the cloud is clustered as it is
   pcl::Indices point_of_cell;            ///< of `arranged`: number in `cloud`, UNAVAILABLE without a point
   std::vector<std::uint32_t> object_of;  ///< field `label` of each point of `cloud`; empty if there is none
+  pcl::PCLPointCloud2 fields;            ///< all, of each point of `cloud`; empty if x, y, z are all
   std::string note;                      ///< how it was read and arranged; empty if there is nothing to say
 
   /// The cloud to be clustered.

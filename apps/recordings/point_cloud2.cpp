@@ -60,6 +60,7 @@ Scan scanOf(const pcl::PCLPointCloud2& message) {
     (*scan.cloud)[static_cast<std::size_t>(point_of_cell[cell])] = (*arranged)[cell];
     is_same = is_same && static_cast<std::size_t>(point_of_cell[cell]) == cell;
   }
+  if (message.is_bigendian == 0 && message.row_step == message.point_step * message.width) scan.fields = message;
   if (is_same || arranged->height < 2) return scan;
   scan.note = formatted("arranged by ring in %u rows x %u columns", arranged->height, arranged->width);
   scan.arranged = std::move(arranged);

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "lisco/cluster_features.h"
 #include "stream.h"
 
 namespace lisco_apps {
@@ -39,12 +41,26 @@ class ClusterCollector {
     clusterer.forEachRun([&](const std::uint32_t* indices, std::size_t count, std::uint32_t subcluster) {
       const std::uint32_t label = label_of_subcluster_[subcluster];
       if (label == 0) return;
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t cell = cell_of(indices[i]);
-        turn.labels[cell] = label;
-        clusters[label - 1].add(turn.cells[cell]);
-      }
+      for (std::size_t i = 0; i < count; ++i) turn.labels[cell_of(indices[i])] = label;
     });
+  }
+
+  /// Computes the features of the clusters of the last collect ().
+  void measure(const Turn& turn, std::vector<FoundCluster>& clusters) {
+    next_point_.clear();
+    std::size_t points = 0;
+    for (const Candidate& candidate : candidates_) {
+      next_point_.push_back(points);
+      points += candidate.size;
+    }
+    points_.resize(points);
+    for (std::size_t cell = 0; cell < turn.cells.size(); ++cell)
+      if (const std::uint32_t label = turn.labels[cell]; label != 0)
+        points_[next_point_[label - 1]++] = {turn.cells[cell].x, turn.cells[cell].y, turn.cells[cell].z};
+    for (std::size_t i = 0; i < clusters.size(); ++i) {
+      const std::size_t size = candidates_[i].size;
+      clusters[i].features = lisco::clusterFeatures(&points_[next_point_[i] - size], size, sizeof points_[0]);
+    }
   }
 
  private:
@@ -54,6 +70,8 @@ class ClusterCollector {
   };
   std::vector<Candidate> candidates_;               ///< by first points, then by size
   std::vector<std::uint32_t> label_of_subcluster_;  ///< 0: in no cluster
+  std::vector<std::array<float, 3>> points_;        ///< of the clusters, one cluster after the other
+  std::vector<std::size_t> next_point_;             ///< of each cluster
 };
 
 }  // namespace lisco_apps

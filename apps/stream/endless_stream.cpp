@@ -20,30 +20,37 @@ EndlessStream::EndlessStream(const StreamOptions& options, const Decoder& decode
   clusterer_.begin(parameters, [this](const lisco::EndlessCluster& cluster) { deliver(cluster); });
 }
 
-bool EndlessStream::add(const Column& column, const Origin& origin) {
-  const auto start = Clock::now();
+bool EndlessStream::take(const PreparedColumn& column) {
   const bool is_too_long = has_begun_ && turns_.back().turn.columns() == kMaxColumns;
-  if (is_too_long) finish();
-  if (cutter_.startsRotation(column.azimuth, column.after_break) || is_too_long) {
+  if (is_too_long) endStream();
+  if (column.starts_turn || is_too_long) {
     endTurn();
     if (isOver()) return false;
     begin(column);
   }
-  time_us_ = origin.time_us;
+  time_us_ = column.origin.time_us;
   OpenTurn& open = turns_.back();
-  open.last_position = positionOf(column);
-  marks_.push_back({open.last_position, origin.received});
-  open.turn.add(column.cells, options_.ground_z, next_index_, returns_);
-  open.turn.time_us = origin.time_us;
+  open.last_position = column.position;
+  marks_.push_back({column.position, column.origin.received});
+  open.turn.add(column, next_index_, returns_);
   next_index_ += static_cast<std::uint32_t>(column.cells.size());
-  clusterer_.addColumn(returns_.data(), returns_.size(), open.last_position);
-  column_latency_.add(Clock::now() - start);
+  clusterer_.addColumn(returns_.data(), returns_.size(), column.position);
   if (marks_.size() >= 2 * kBlock) marks_.erase(marks_.begin(), marks_.end() - kBlock);
-  closeTurns(open.last_position);
+  closeTurns(column.position);
   return true;
 }
 
+void EndlessStream::wait() {
+  finishGround();
+  clusterer_.update();
+}
+
 void EndlessStream::finish() {
+  finishGround();
+  endStream();
+}
+
+void EndlessStream::endStream() {
   is_finishing_ = true;
   clusterer_.finish();
   is_finishing_ = false;
@@ -51,7 +58,7 @@ void EndlessStream::finish() {
   closeTurns(std::numeric_limits<double>::infinity());
 }
 
-void EndlessStream::begin(const Column& column) {
+void EndlessStream::begin(const PreparedColumn& column) {
   if (spare_.empty()) spare_.emplace_back();
   turns_.push_back(std::move(spare_.back()));
   spare_.pop_back();
@@ -104,6 +111,7 @@ void EndlessStream::deliver(const lisco::EndlessCluster& cluster) {
   DeliveredCluster delivered;
   if (++delivered_ == 0) delivered_ = 1;  // after 2^32 clusters; 0 is no cluster
   delivered.found.id = delivered_;
+  points_.clear();
   cluster.forEachRun([&](const std::uint32_t* indices, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
       // The turn that holds the index; differences are correct across the wrap-around of indices.
@@ -111,7 +119,8 @@ void EndlessStream::deliver(const lisco::EndlessCluster& cluster) {
       while (indices[i] - open->first_index >= open->turn.cells.size()) ++open;
       const std::size_t cell = indices[i] - open->first_index;
       open->turn.labels[cell] = delivered.found.id;
-      delivered.found.add(open->turn.cells[cell]);
+      const Cell& place = open->turn.cells[cell];
+      points_.push_back({place.x, place.y, place.z});
     }
   });
   delivered.first_position = cluster.firstPosition();
@@ -123,6 +132,7 @@ void EndlessStream::deliver(const lisco::EndlessCluster& cluster) {
     delivered.latency = Clock::now() - *closed;
     cluster_latency_.add(*delivered.latency);
   }
+  delivered.found.features = lisco::clusterFeatures(points_.data(), points_.size(), sizeof points_[0]);
   listener_.cluster(delivered);
 }
 

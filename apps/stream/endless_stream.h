@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -20,8 +21,7 @@ class EndlessStream : public Stream {
  public:
   EndlessStream(const StreamOptions& options, const Decoder& decoder, Listener& listener);
 
-  bool add(const Column& column, const Origin& origin) override;
-  void wait() override { clusterer_.update(); }
+  void wait() override;
   void finish() override;
   std::optional<std::uint64_t> outliers() const override { return clusterer_.outlierCount(); }
 
@@ -41,10 +41,13 @@ class EndlessStream : public Stream {
     Clock::time_point received;
   };
 
-  void begin(const Column& column);
+  bool take(const PreparedColumn& column) override;
+  void turnIsOver(Clock::time_point /*start*/) override {}
+  double positionOf(const Column& column) override;
+  void begin(const PreparedColumn& column);
   void endTurn();
   void closeTurns(double position);
-  double positionOf(const Column& column);
+  void endStream();
   void deliver(const lisco::EndlessCluster& cluster);
   std::optional<Clock::time_point> closedAt(double reach_end) const;
 
@@ -57,7 +60,8 @@ class EndlessStream : public Stream {
   std::optional<double> last_time_us_;
   std::int64_t time_us_ = 0;
   std::uint32_t delivered_ = 0;
-  std::vector<Mark> marks_;  ///< of the latest columns
+  std::vector<Mark> marks_;                   ///< of the latest columns
+  std::vector<std::array<float, 3>> points_;  ///< of the cluster that is delivered
 };
 
 }  // namespace lisco_apps

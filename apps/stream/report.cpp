@@ -9,33 +9,20 @@
 #include <stdexcept>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
+#include "io/cluster_json.h"
+#include "io/point_geometry.h"
 #include "io/text.h"
 #include "sensors/laser.h"
 
 namespace lisco_apps {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 /// For %llu.
 unsigned long long number(std::uint64_t count) {
   return count;
 }
 
-/// Rounded to 1 / per_unit, without a negative zero.
-double rounded(double value, double per_unit) {
-  return std::round(value * per_unit) / per_unit + 0.;
-}
-constexpr double kPerMetre = 1e4, kPerDegree = 1e3, kPerTurn = 1e5, kPerMillisecond = 1e4;
-
-template <typename Number>
-Json jsonOf(const std::array<Number, 3>& point) {
-  Json json = Json::array();
-  for (const Number value : point) json.push_back(rounded(static_cast<double>(value), kPerMetre));
-  return json;
-}
+constexpr double kPerTurn = 1e5, kPerMillisecond = 1e4;
 
 double secondsOf(std::int64_t time_us) {
   return static_cast<double>(time_us) / 1e6;
@@ -49,11 +36,15 @@ double azimuthOf(double x, double y) {
   return azimuthAt(std::atan2(-y, x) / (360 * kRadiansPerDegree));
 }
 
-void addShape(Json& json, const FoundCluster& cluster) {
-  json["size"] = cluster.size();
-  json["centroid"] = jsonOf(cluster.centroid());
-  json["box"] = {{"min", jsonOf(cluster.lo())}, {"max", jsonOf(cluster.hi())}};
-  json["nearest_range"] = rounded(cluster.nearestRange(), kPerMetre);
+/// The number of returns and the box of the largest cluster.
+std::string describeLargest(const lisco::ClusterFeatures& largest) {
+  if (largest.size == 0) return ", largest 0";
+  return formatted(", largest %zu (%.1f x %.1f x %.1f m)", largest.size, largest.box.length, largest.box.width,
+                   largest.box.height);
+}
+
+std::string groundOf(const Turn& turn) {
+  return turn.ground > 0 ? formatted(", %llu of the ground left out", number(turn.ground)) : "";
 }
 
 std::string lostIn(const Turn& turn) {
@@ -79,16 +70,18 @@ void Report::flush() {
 void Report::count(const FoundCluster& cluster) {
   ++clusters_;
   ++clusters_of_turn_;
-  in_clusters_ += cluster.size();
-  largest_of_turn_ = std::max(largest_of_turn_, cluster.size());
+  in_clusters_ += cluster.features.size;
+  if (cluster.features.size > largest_of_turn_.size) largest_of_turn_ = cluster.features;
 }
 
 std::string Report::countTurn(const char* name, const Turn& turn) {
   ++turns_;
   columns_ += turn.columns();
   returns_ += turn.returns;
+  ground_ += turn.ground;
   return formatted("%s %llu: %zu columns, %llu returns", name, number(turn.number), turn.columns(),
-                   number(turn.returns));
+                   number(turn.returns)) +
+         groundOf(turn);
 }
 
 void Report::rotation(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) {
@@ -106,28 +99,28 @@ void Report::found(const char* name, const Turn& turn, const std::vector<FoundCl
   if (clouds_ != nullptr) clouds_->write(turn);
   if (on_found_) on_found_(turn, clusters);
   if (format_ == Format::kText) {
-    print(heading +
-          formatted(", %zu clusters, largest %zu, after %.2f ms", clusters.size(), largest_of_turn_,
-                    millisecondsOf(latency)) +
-          lostIn(turn));
+    print(heading + formatted(", %zu clusters", clusters.size()) + describeLargest(largest_of_turn_) +
+          formatted(", after %.2f ms", millisecondsOf(latency)) + lostIn(turn));
   } else {
     Json json{{name, turn.number},
               {"time", secondsOf(turn.time_us)},
               {"azimuth", azimuthAt(turn.azimuth / 360)},
               {"columns", turn.columns()},
               {"returns", turn.returns},
+              {"ground", turn.ground},
               {"lost_packets", turn.lost},
               {"latency_ms", rounded(millisecondsOf(latency), kPerMillisecond)},
               {"clusters", Json::array()}};
     for (const FoundCluster& cluster : clusters) {
-      const auto centroid = cluster.centroid();
+      const auto& centroid = cluster.features.centroid;
       Json of_cluster{{"id", cluster.id}, {"azimuth", azimuthOf(centroid[0], centroid[1])}};
-      addShape(of_cluster, cluster);
+      addFeatures(of_cluster, cluster.features);
       json["clusters"].push_back(std::move(of_cluster));
     }
     print(json.dump());
   }
-  clusters_of_turn_ = largest_of_turn_ = 0;
+  clusters_of_turn_ = 0;
+  largest_of_turn_ = {};
 }
 
 void Report::cluster(const DeliveredCluster& cluster) {
@@ -140,7 +133,7 @@ void Report::cluster(const DeliveredCluster& cluster) {
             {"first_azimuth", azimuthAt(cluster.first_position)},
             {"last_azimuth", azimuthAt(cluster.last_position)},
             {"turns", rounded(cluster.last_position - cluster.first_position, kPerTurn)}};
-  addShape(json, cluster.found);
+  addFeatures(json, cluster.found.features);
   json["cut"] = cluster.is_cut;
   json["continued"] = cluster.is_continued;
   json["latency_ms"] = cluster.latency ? Json(rounded(millisecondsOf(*cluster.latency), kPerMillisecond)) : Json();
@@ -150,9 +143,10 @@ void Report::cluster(const DeliveredCluster& cluster) {
 void Report::turnEnds(const Turn& turn) {
   const std::string heading = countTurn("turn", turn);
   if (format_ == Format::kText)
-    print(heading + formatted(", %llu clusters delivered, largest %zu", number(clusters_of_turn_), largest_of_turn_) +
-          lostIn(turn));
-  clusters_of_turn_ = largest_of_turn_ = 0;
+    print(heading + formatted(", %llu clusters delivered", number(clusters_of_turn_)) +
+          describeLargest(largest_of_turn_) + lostIn(turn));
+  clusters_of_turn_ = 0;
+  largest_of_turn_ = {};
 }
 
 void Report::turnIsLabelled(const Turn& turn) {
@@ -202,8 +196,10 @@ void Report::printStatistics(const PacketSource& source, const Decoder& decoder,
     table += formatted("            %llu name another model of sensor\n", number(counts.says_other_model));
   if (counts.clock_jumps > 0)
     table += formatted("            the sensor's clock was set %llu times\n", number(counts.clock_jumps));
-  table += formatted("rotations   %llu\ncolumns     %llu\nreturns     %llu\nclusters    %llu, of %llu returns\n",
-                     number(turns_), number(columns_), number(returns_), number(clusters_), number(in_clusters_));
+  table += formatted("rotations   %llu\ncolumns     %llu\nreturns     %llu", number(turns_), number(columns_),
+                     number(returns_));
+  if (ground_ > 0) table += formatted(" and %llu of the ground, left out", number(ground_));
+  table += formatted("\nclusters    %llu, of %llu returns\n", number(clusters_), number(in_clusters_));
   const std::optional<std::uint64_t> outliers = stream.outliers();
   if (outliers)
     table += formatted("            %llu cut after a turn, %llu continued; %llu outliers\n", number(cut_),

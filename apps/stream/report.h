@@ -64,9 +64,10 @@ class Report : public Listener {
   std::string shown_;                                        ///< status
   Clock::time_point shown_at_;
   bool unflushed_ = false;
-  std::uint64_t turns_ = 0, columns_ = 0, returns_ = 0, clusters_ = 0, in_clusters_ = 0, cut_ = 0, continued_ = 0;
+  std::uint64_t turns_ = 0, columns_ = 0, returns_ = 0, ground_ = 0, clusters_ = 0, in_clusters_ = 0, cut_ = 0,
+                continued_ = 0;
   std::uint64_t clusters_of_turn_ = 0;  ///< delivered since the turn began
-  std::size_t largest_of_turn_ = 0;
+  lisco::ClusterFeatures largest_of_turn_;
 };
 
 }  // namespace lisco_apps

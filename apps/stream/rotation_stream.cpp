@@ -28,34 +28,37 @@ lisco::SensorHints hintsFor(const Decoder& decoder) {
 
 }  // namespace
 
-bool RotationStream::add(const Column& column, const Origin& origin) {
-  auto start = Clock::now();
-  const bool starts = column.starts_rotation.has_value() ? *column.starts_rotation || column.after_break
-                                                         : cutter_.startsRotation(column.azimuth, column.after_break);
-  if (starts || !has_begun_ || turn_.columns() == kMaxColumns) {
-    end();
+bool RotationStream::take(const PreparedColumn& column) {
+  if (column.starts_turn || !has_begun_ || turn_.columns() == kMaxColumns) {
+    end(Clock::now());
     if (isOver()) return false;
-    start = Clock::now();
     begin(column);
   }
-  const auto first_index = static_cast<std::uint32_t>(turn_.cells.size());
-  turn_.add(column.cells, options_.ground_z, first_index, returns_);
-  turn_.time_us = origin.time_us;
+  turn_.add(column, static_cast<std::uint32_t>(turn_.cells.size()), returns_);
   clusterer_.addColumn(returns_.data(), returns_.size());
-  last_column_took_ = Clock::now() - start;
-  column_latency_.add(last_column_took_);
   return true;
 }
 
+/// The rotation's clusters do not wait for columns of the next one.
+void RotationStream::turnIsOver(Clock::time_point start) {
+  finishGround();
+  end(start);
+}
+
+void RotationStream::finish() {
+  turnIsOver(Clock::now());
+}
+
 /// The expected view of the next rotation, which affects the speed only.
-lisco::Parameters RotationStream::parametersFor(const Column& first) const {
+lisco::Parameters RotationStream::parametersFor(const PreparedColumn& first) const {
   lisco::Parameters parameters;
   parameters.sensor = hintsFor(decoder_);
   if (turn_.columns() > 0) {
     // Measured on the last rotation: ranges of returns, and how the sensor turns.
     const auto cell_at = [this](std::size_t laser, std::size_t column) {
-      const Cell& cell = turn_.cells[column * turn_.lasers + laser];
-      return cell.z >= options_.ground_z ? lisco::Return{cell.x, cell.y, cell.z, 0} : lisco::kNoReturn;
+      const std::size_t at = column * turn_.lasers + laser;
+      const Cell& cell = turn_.cells[at];
+      return turn_.uses[at] == CellUse::kClustered ? lisco::Return{cell.x, cell.y, cell.z, 0} : lisco::kNoReturn;
     };
     const lisco::SensorHints estimated =
         lisco::estimateSensor(turn_.columns(), turn_.lasers, {}, lisco::CellSource(cell_at));
@@ -66,22 +69,22 @@ lisco::Parameters RotationStream::parametersFor(const Column& first) const {
   return parameters;
 }
 
-void RotationStream::begin(const Column& column) {
+void RotationStream::begin(const PreparedColumn& column) {
   clusterer_.begin(parametersFor(column));
   turn_.begin(++rotations_, column.cells.size(), column.azimuth);
   has_begun_ = true;
 }
 
-void RotationStream::end() {
+void RotationStream::end(Clock::time_point start) {
   if (!has_begun_) return;
   has_begun_ = false;
-  const auto start = Clock::now();
   clusterer_.update();
   collector_.collect(
       clusterer_, options_, [](std::uint32_t index) { return std::size_t{index}; }, turn_, clusters_);
   const auto latency = last_column_took_ + (Clock::now() - start);
   cluster_latency_.add(latency);
   turn_.lost = takeLost();
+  collector_.measure(turn_, clusters_);
   listener_.rotation(turn_, clusters_, latency);
 }
 

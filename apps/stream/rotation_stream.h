@@ -17,18 +17,19 @@ class RotationStream : public Stream {
  public:
   using Stream::Stream;
 
-  bool add(const Column& column, const Origin& origin) override;
   void wait() override {}
-  void finish() override { end(); }
+  void finish() override;
 
  private:
-  void begin(const Column& column);
-  void end();
-  lisco::Parameters parametersFor(const Column& first) const;
+  bool take(const PreparedColumn& column) override;
+  void turnIsOver(Clock::time_point start) override;
+  void begin(const PreparedColumn& column);
+  /// \param start when the rotation was known to be over
+  void end(Clock::time_point start);
+  lisco::Parameters parametersFor(const PreparedColumn& first) const;
 
   lisco::ColumnClusterer clusterer_;
   Turn turn_;
-  Clock::duration last_column_took_{};
   std::vector<FoundCluster> clusters_;
   ClusterCollector collector_;
 };

@@ -9,8 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "io/point_geometry.h"
+#include "ground_stage.h"
+#include "io/scan_options.h"
 #include "latency.h"
+#include "lisco/cluster_features.h"
 #include "lisco/return.h"
 #include "sensors/decoder.h"
 #include "sensors/rotation_cutter.h"
@@ -22,10 +24,12 @@ struct Turn {
   std::uint64_t number = 0;  ///< from 1
   std::size_t lasers = 0;
   std::vector<Cell> cells;            ///< column by column, in each from the top laser to the bottom one
+  std::vector<CellUse> uses;          ///< of the cells
   std::vector<std::uint32_t> labels;  ///< of the cells: cluster id, 0: in none
   double azimuth = 0;                 ///< of its first column, degrees clockwise
   std::int64_t time_us = 0;           ///< of the packet of its last column, microseconds since 1970
-  std::uint64_t returns = 0;          ///< above the ground
+  std::uint64_t returns = 0;          ///< clustered
+  std::uint64_t ground = 0;           ///< returns left out as ground
   std::uint64_t lost = 0;             ///< packets missing in it, or between it and the next one
 
   std::size_t columns() const { return lasers == 0 ? 0 : cells.size() / lasers; }
@@ -33,26 +37,28 @@ struct Turn {
   /// Starts an empty turn; keeps its memory.
   void begin(std::uint64_t new_number, std::size_t new_lasers, double new_azimuth) {
     cells.clear();
+    uses.clear();
     labels.clear();
-    *this = {new_number, new_lasers, std::move(cells), std::move(labels), new_azimuth, 0, 0, 0};
+    *this = {new_number, new_lasers, std::move(cells), std::move(uses), std::move(labels), new_azimuth, 0, 0, 0, 0};
   }
 
   /// Adds a column.
-  /// \param ground_z returns below it are not clustered, metres
   /// \param first_index source index of the column's first cell; the others follow
   /// \param to_cluster receives the column without the ground
-  void add(const std::vector<Cell>& column, float ground_z, std::uint32_t first_index,
-           std::vector<lisco::Return>& to_cluster) {
-    cells.insert(cells.end(), column.begin(), column.end());
+  void add(const PreparedColumn& column, std::uint32_t first_index, std::vector<lisco::Return>& to_cluster) {
+    cells.insert(cells.end(), column.cells.begin(), column.cells.end());
+    uses.insert(uses.end(), column.uses.begin(), column.uses.end());
     labels.resize(cells.size(), 0);
-    to_cluster.resize(column.size());
-    for (std::size_t i = 0; i < column.size(); ++i) {
-      const Cell& cell = column[i];
-      const bool is_clustered = lisco::isReturn(cell.x, cell.y, cell.z) && cell.z >= ground_z;
+    to_cluster.resize(column.cells.size());
+    for (std::size_t i = 0; i < column.cells.size(); ++i) {
+      const Cell& cell = column.cells[i];
+      const bool is_clustered = column.uses[i] == CellUse::kClustered;
       to_cluster[i] = is_clustered ? lisco::Return{cell.x, cell.y, cell.z, first_index + static_cast<std::uint32_t>(i)}
                                    : lisco::kNoReturn;
-      if (is_clustered) ++returns;
+      returns += is_clustered ? 1 : 0;
+      ground += column.uses[i] == CellUse::kGround ? 1 : 0;
     }
+    time_us = column.origin.time_us;
   }
 };
 
@@ -61,22 +67,18 @@ struct StreamOptions {
   float tolerance = 0;  ///< metres
   std::size_t min_size = 10;
   std::size_t max_size = std::numeric_limits<int>::max();
-  float ground_z = -std::numeric_limits<float>::infinity();  ///< returns below it are left out, metres
-  std::uint64_t rotations = 0;                               ///< after which to end; 0: no limit
-};
-
-/// Where a column came from.
-struct Origin {
-  std::int64_t time_us = 0;    ///< of its packet, microseconds since 1970
-  Clock::time_point received;  ///< when the packet was at hand
+  GroundChoice ground;
+  Region region;
+  std::uint64_t rotations = 0;  ///< after which to end; 0: no limit
 };
 
 /// A turn ends after this many columns, which bounds its memory if the sensor does not turn: 0.01 degrees per column,
 /// the resolution of azimuths in packets.
 inline constexpr std::size_t kMaxColumns = 36000;
 
-struct FoundCluster : ClusterShape {
+struct FoundCluster {
   std::uint32_t id = 0;  ///< from 1
+  lisco::ClusterFeatures features;
 };
 
 /// A cluster of an endless stream.
@@ -115,9 +117,9 @@ class Stream {
       : options_(options), decoder_(decoder), listener_(listener), cutter_(decoder.rotationStart()) {}
   virtual ~Stream() = default;
 
-  /// Clusters the next column.
+  /// Adds the next column.
   /// \return false, without taking it, if it belongs to a rotation beyond StreamOptions::rotations
-  virtual bool add(const Column& column, const Origin& origin) = 0;
+  bool add(const Column& column, const Origin& origin);
   /// To be called when no column has come for a while.
   virtual void wait() = 0;
   /// To be called at the end of the stream.
@@ -131,6 +133,18 @@ class Stream {
   const Latency& clusterLatency() const { return cluster_latency_; }
 
  protected:
+  /// Clusters a column whose ground is known.
+  /// \return false, without taking it, if it belongs to a rotation beyond StreamOptions::rotations
+  virtual bool take(const PreparedColumn& column) = 0;
+  /// Called before the first column of a turn is taken. \param start when that column came
+  virtual void turnIsOver(Clock::time_point start) = 0;
+  /// Whether StreamOptions::rotations counts turns, rather than what take () counts.
+  virtual bool endsWithTurns() const { return true; }
+  /// Of a column in endless streams, turns; called for each column as it comes.
+  virtual double positionOf(const Column& /*column*/) { return 0; }
+
+  /// Passes the columns that wait for the ground filter to take ().
+  void finishGround();
   /// Whether the rotation that the next column starts is beyond StreamOptions::rotations.
   bool isOver() const { return options_.rotations != 0 && rotations_ == options_.rotations; }
   /// Packets missing since the last call.
@@ -146,9 +160,16 @@ class Stream {
   bool has_begun_ = false;       ///< the current turn
   std::uint64_t rotations_ = 0;  ///< begun
   std::vector<lisco::Return> returns_;
+  Clock::duration last_column_took_{};
   Latency column_latency_, cluster_latency_;
 
  private:
+  void pass(const PreparedColumn& column);
+
+  GroundStage stage_{options_.ground, options_.region};
+  std::uint64_t received_turns_ = 0;  ///< some of their columns may wait for the ground filter
+  bool is_open_ = true;               ///< for further columns; false: beyond StreamOptions::rotations
+  bool takes_ = true;                 ///< for columns whose ground is known
   std::uint64_t missing_before_ = 0;
 };
 

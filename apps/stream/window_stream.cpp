@@ -11,32 +11,40 @@ void WindowStream::begin(std::size_t lasers) {
   columns_ = 0;
   clusterer_.begin({options_.tolerance, window_, hop_, lasers});
   cells_.assign(window_ * lasers, kNoCell);
+  uses_.assign(window_ * lasers, CellUse::kNothing);
   azimuths_.assign(window_, 0);
   lost_.assign(window_, 0);
 }
 
-bool WindowStream::add(const Column& column, const Origin& origin) {
+bool WindowStream::take(const PreparedColumn& column) {
   const auto start = Clock::now();
   if (isOver()) return false;
   if (columns_ == 0 || column.cells.size() != lasers_) begin(column.cells.size());
   const std::size_t slot = columns_ % window_;
   std::copy(column.cells.begin(), column.cells.end(), cells_.begin() + static_cast<std::ptrdiff_t>(slot * lasers_));
+  std::copy(column.uses.begin(), column.uses.end(), uses_.begin() + static_cast<std::ptrdiff_t>(slot * lasers_));
   azimuths_[slot] = column.azimuth;
   lost_[slot] = takeLost();
   returns_.resize(lasers_);
   for (std::size_t laser = 0; laser < lasers_; ++laser) {
     const Cell& cell = column.cells[laser];
-    const bool is_clustered = lisco::isReturn(cell.x, cell.y, cell.z) && cell.z >= options_.ground_z;
+    const bool is_clustered = column.uses[laser] == CellUse::kClustered;
     const auto index = static_cast<std::uint32_t>(slot * lasers_ + laser);
     returns_[laser] = is_clustered ? lisco::Return{cell.x, cell.y, cell.z, index} : lisco::kNoReturn;
   }
   ++columns_;
   const bool window_ends = clusterer_.addColumn(returns_.data(), lasers_);
-  const auto took = Clock::now() - start;
-  column_latency_.add(took);
-  turn_.time_us = origin.time_us;
-  if (window_ends) deliver(took);
+  turn_.time_us = column.origin.time_us;
+  if (window_ends) deliver(Clock::now() - start);
   return true;
+}
+
+void WindowStream::wait() {
+  finishGround();
+}
+
+void WindowStream::finish() {
+  finishGround();
 }
 
 void WindowStream::deliver(Clock::duration took) {
@@ -51,6 +59,10 @@ void WindowStream::deliver(Clock::duration took) {
     const std::size_t slot = (first + column) % window_;
     const auto from = cells_.begin() + static_cast<std::ptrdiff_t>(slot * lasers_);
     turn_.cells.insert(turn_.cells.end(), from, from + static_cast<std::ptrdiff_t>(lasers_));
+    const auto use = uses_.begin() + static_cast<std::ptrdiff_t>(slot * lasers_);
+    turn_.uses.insert(turn_.uses.end(), use, use + static_cast<std::ptrdiff_t>(lasers_));
+    turn_.ground +=
+        static_cast<std::uint64_t>(std::count(use, use + static_cast<std::ptrdiff_t>(lasers_), CellUse::kGround));
     turn_.lost += lost_[slot];
   }
   turn_.labels.assign(turn_.cells.size(), 0);
@@ -63,6 +75,7 @@ void WindowStream::deliver(Clock::duration took) {
       turn_, clusters_);
   const auto latency = took + (Clock::now() - start);
   cluster_latency_.add(latency);
+  collector_.measure(turn_, clusters_);
   listener_.window(turn_, clusters_, latency);
 }
 

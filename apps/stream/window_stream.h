@@ -21,18 +21,21 @@ class WindowStream : public Stream {
                std::size_t hop)
       : Stream(options, decoder, listener), window_(window), hop_(hop) {}
 
-  bool add(const Column& column, const Origin& origin) override;
-  void wait() override {}
+  void wait() override;
   /// Columns after the last hop belong to no window.
-  void finish() override {}
+  void finish() override;
 
  private:
+  bool take(const PreparedColumn& column) override;
+  void turnIsOver(Clock::time_point /*start*/) override {}
+  bool endsWithTurns() const override { return false; }
   void begin(std::size_t lasers);
   void deliver(Clock::duration took);
 
   const std::size_t window_, hop_;
   lisco::WindowClusterer clusterer_;
   std::vector<Cell> cells_;          ///< of the last columns: column c is at c % capacity
+  std::vector<CellUse> uses_;        ///< of these cells
   std::vector<double> azimuths_;     ///< of these columns
   std::vector<std::uint64_t> lost_;  ///< packets missing before each of them
   std::size_t lasers_ = 0;

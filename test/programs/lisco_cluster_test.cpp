@@ -4,10 +4,15 @@
 // lisco_cluster, run as a program.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
+#include <map>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include "io/cloud_file.h"
 #include "lisco/version.h"
@@ -41,14 +46,18 @@ TEST_F(LiscoCluster, WritesLabelsTableAndPictures) {
   const Outcome outcome = run("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
-  EXPECT_NE(outcome.out.find("4 rows x 41 columns, 160 returns, 120 above the ground"), std::string::npos)
+  EXPECT_NE(outcome.out.find("4 rows x 41 columns, 160 returns\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("ground    40 returns (25 %) left out, below z = -1.5 m\n"), std::string::npos)
       << outcome.out;
   EXPECT_NE(outcome.out.find("clusters  2 of at least 10"), std::string::npos) << outcome.out;
 
   EXPECT_EQ(textOf(folder_ / "results/clusters.csv"),
-            "id,size,centroid_x,centroid_y,centroid_z,min_x,min_y,min_z,max_x,max_y,max_z,nearest_range\n"
-            "1,60,5.0000,-1.0500,0.1000,5.0000,-2.0000,0.0000,5.0000,-0.1000,0.2000,5.0010\n"
-            "2,60,9.0000,2.9500,0.1000,9.0000,2.0000,0.0000,9.0000,3.9000,0.2000,9.2195\n");
+            "id,size,centroid_x,centroid_y,centroid_z,min_x,min_y,min_z,max_x,max_y,max_z,nearest_range,"
+            "box_x,box_y,box_z,yaw,length,width,height,density\n"
+            "1,60,5.0000,-1.0500,0.1000,5.0000,-2.0000,0.0000,5.0000,-0.1000,0.2000,5.0010,"
+            "5.0000,-1.0500,0.1000,-90.0000,1.9000,0.0000,0.2000,157.8947\n"
+            "2,60,9.0000,2.9500,0.1000,9.0000,2.0000,0.0000,9.0000,3.9000,0.2000,9.2195,"
+            "9.0000,2.9500,0.1000,-90.0000,1.9000,0.0000,0.2000,157.8947\n");
   for (const char* picture : {"range_image.png", "top_view.png"}) {
     SCOPED_TRACE(picture);
     const std::string png = textOf(folder_ / "results" / picture);
@@ -89,6 +98,188 @@ TEST_F(LiscoCluster, WritesOneCloudPerClusterOnRequest) {
   fs::remove(folder_ / "results/clusters/mine.txt");
   ASSERT_EQ(run("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results").status, 0);
   EXPECT_FALSE(fs::exists(folder_ / "results/clusters"));
+}
+
+/// A turn of 32 lasers x 900 steps over flat ground 2 m below, with a wall of 60 columns 8 m ahead.
+std::string rotatingScan() {
+  const auto floats = [](const std::vector<float>& values) {
+    return std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
+  };
+  std::string data;
+  for (int row = 0; row < 32; ++row)
+    for (int column = 0; column < 900; ++column) {
+      const double elevation = (2 - row) * 0.015;
+      const double azimuth = 3.14159265 - column * (2 * 3.14159265 / 900);
+      double range = elevation < 0 ? 2 / -std::sin(elevation) : 200;
+      if (std::abs(column - 450) < 30) range = std::min(range, 8 / std::cos(azimuth));
+      if (range > 100) range = std::nan("");
+      data += floats({static_cast<float>(range * std::cos(elevation) * std::cos(azimuth)),
+                      static_cast<float>(range * std::cos(elevation) * std::sin(azimuth)),
+                      static_cast<float>(range * std::sin(elevation))});
+    }
+  return "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 900\nHEIGHT 32\n"
+         "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 28800\nDATA binary\n" +
+         data;
+}
+
+TEST_F(LiscoCluster, LeavesOutTheGroundUnlessToldOtherwise) {
+  write("turn.pcd", rotatingScan());
+  const std::string with_ground = run("turn.pcd --tolerance 1 --ground none").out;
+  EXPECT_EQ(with_ground.find("ground  "), std::string::npos) << with_ground;
+  const Outcome outcome = run("turn.pcd --tolerance 1");
+  EXPECT_NE(outcome.out.find("left out, by slope; --ground none keeps them"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("clusters  1 of at least 10"), std::string::npos) << outcome.out;
+  EXPECT_EQ(run("turn.pcd --tolerance 1 --ground slope --json").out.find("\"ground\":0,"), std::string::npos);
+  EXPECT_NE(run("turn.pcd --tolerance 1 --ground height:-1.9").out.find("below z = -1.9 m"), std::string::npos);
+}
+
+TEST_F(LiscoCluster, LeavesOutNothingWhereNoSensorTurns) {
+  write("walls.pcd", twoWalls());
+  const Outcome outcome = run("walls.pcd --tolerance 0.3");
+  EXPECT_NE(outcome.out.find("ground    nothing left out: this is not the organized scan of a rotating sensor\n"),
+            std::string::npos)
+      << outcome.out;
+}
+
+TEST_F(LiscoCluster, TakesTheGroundOfEachInput) {
+  write("a.pcd", twoWalls());
+  write("b.pcd", twoWalls());
+  const Outcome outcome = run("a.pcd b.pcd --tolerance 0.3 --ground-z b=-1.5 --ground a=none --ground c=none --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "lisco_cluster: --ground names 'c', which is no input\n");
+  std::istringstream lines(outcome.out);
+  std::string line;
+  std::map<std::string, int> ground;
+  while (std::getline(lines, line)) {
+    const auto json = nlohmann::json::parse(line);
+    ground[json["scan"]] = json["ground"];
+  }
+  EXPECT_EQ(ground, (std::map<std::string, int>{{"a.pcd", 0}, {"b.pcd", 40}}));
+}
+
+TEST_F(LiscoCluster, LeavesOutReturnsByRangeAndPlace) {
+  write("walls.pcd", twoWalls());
+  const auto counts = [this](const std::string& options) {
+    const auto json = nlohmann::json::parse(run("walls.pcd --tolerance 0.3 --ground none --json " + options).out);
+    return std::vector<int>{json["returns"], json["ignored"], json["clustered"]};
+  };
+  EXPECT_EQ(counts(""), (std::vector<int>{160, 0, 160}));
+  EXPECT_EQ(counts("--min-range 6"), (std::vector<int>{160, 80, 80}));
+  EXPECT_EQ(counts("--max-range 6"), (std::vector<int>{160, 80, 80}));
+  EXPECT_EQ(counts("--ignore-box 4,-9,-9,6,9,-0.05"), (std::vector<int>{160, 20, 140}));
+  EXPECT_EQ(counts("--ignore-box 4,-9,-9,6,9,9 --ignore-box 8,-9,-9,9,9,-1"), (std::vector<int>{160, 100, 60}));
+  EXPECT_NE(run("walls.pcd --tolerance 0.3 --min-range 6").out.find("ignored   80 returns (50 %) by range or place"),
+            std::string::npos);
+}
+
+TEST_F(LiscoCluster, PrintsALineOfJsonPerScan) {
+  write("a.pcd", twoWalls());
+  write("b\xFF.pcd", twoWalls());
+  const Outcome outcome = run(". --tolerance 0.3 --ground-z -1.5 --json -o results --write json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 2) << outcome.out;
+  const auto json = nlohmann::json::parse(outcome.out.substr(0, outcome.out.find('\n')));
+  EXPECT_EQ(json["scan"], "a.pcd");
+  EXPECT_EQ(json["tolerance"], 0.3);
+  ASSERT_EQ(json["clusters"].size(), 2U);
+  const auto& cluster = json["clusters"][0];
+  EXPECT_EQ(cluster["id"], 1);
+  EXPECT_EQ(cluster["size"], 60);
+  EXPECT_EQ(cluster["oriented_box"]["length"], 1.9);
+  EXPECT_EQ(cluster["oriented_box"]["yaw"], -90.);
+  EXPECT_TRUE(json["time_ms"].contains("cluster"));
+  const auto written = nlohmann::json::parse(textOf(folder_ / "results/a/clusters.json"));
+  EXPECT_EQ(written["clusters"], json["clusters"]);
+  EXPECT_FALSE(written.contains("time_ms"));
+}
+
+TEST_F(LiscoCluster, WritesTheResultsAskedFor) {
+  write("walls.pcd", twoWalls());
+  const auto written = [this](const std::string& options) {
+    EXPECT_EQ(run("walls.pcd --tolerance 0.3 -o results " + options).status, 0) << options;
+    std::vector<std::string> files;
+    for (const auto& entry : fs::directory_iterator(folder_ / "results"))
+      if (entry.path().filename() != ".lisco_results") files.push_back(entry.path().filename().string());
+    std::sort(files.begin(), files.end());
+    return files;
+  };
+  using Files = std::vector<std::string>;
+  EXPECT_EQ(written("--write table"), Files({"clusters.csv"}));
+  EXPECT_EQ(written(""), Files({"clusters.csv", "labels.pcd", "range_image.png", "top_view.png", "view.html"}));
+  EXPECT_EQ(written("--write json,clouds"), Files({"clusters", "clusters.json"}));
+  EXPECT_EQ(written("--write labels --clouds"), Files({"clusters", "labels.pcd"}));
+  EXPECT_EQ(written("--write semantickitti"), Files({"labels.label", "labels.npy"}));
+}
+
+TEST_F(LiscoCluster, WritesSemanticKittiAndNumpyLabels) {
+  write("walls.pcd", twoWalls());
+  ASSERT_EQ(run("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results --write semantickitti").status, 0);
+  const std::string labels = textOf(folder_ / "results/labels.label");
+  const std::string npy = textOf(folder_ / "results/labels.npy");
+  ASSERT_EQ(labels.size(), 164U * 4);
+  ASSERT_EQ(npy.size() % 64, 164U * 4 % 64);
+  EXPECT_EQ(npy.substr(0, 8), std::string("\x93NUMPY\x01\x00", 8));
+  const std::string header = npy.substr(10, npy.size() - 164 * 4 - 10);
+  EXPECT_EQ(header.rfind("{'descr': '<u4', 'fortran_order': False, 'shape': (4, 41), }", 0), 0U) << header;
+  EXPECT_EQ(header.back(), '\n');
+  EXPECT_EQ(static_cast<unsigned char>(npy[8]) + 256 * static_cast<unsigned char>(npy[9]),
+            static_cast<int>(header.size()));
+  const auto at = [](const std::string& bytes, std::size_t place) {
+    std::uint32_t value;
+    std::memcpy(&value, bytes.data() + place, 4);
+    return value;
+  };
+  for (const auto& [point, id] : {std::pair{0U, 1U}, {20U, 0U}, {40U, 2U}, {3U * 41 + 5, 0U}}) {
+    EXPECT_EQ(at(labels, 4 * point), id << 16);
+    EXPECT_EQ(at(npy, npy.size() - 164 * 4 + 4 * point), id);
+  }
+}
+
+TEST_F(LiscoCluster, KeepsAllFieldsOfTheInput) {
+  // A byte of padding, a field of two values, types of one to eight bytes, and labels.
+  const auto point = [](double x, float y, float z, std::uint8_t ring, std::uint16_t pair, std::int32_t object) {
+    std::string bytes(26, '\7');
+    std::memcpy(&bytes[0], &x, 8);
+    std::memcpy(&bytes[8], &y, 4);
+    std::memcpy(&bytes[12], &z, 4);
+    std::memcpy(&bytes[16], &ring, 1);
+    std::memcpy(&bytes[18], &pair, 2);
+    std::memcpy(&bytes[20], &pair, 2);
+    std::memcpy(&bytes[22], &object, 4);
+    return bytes;
+  };
+  write("rich.pcd",
+        "VERSION 0.7\nFIELDS x y z ring _ pair label\nSIZE 8 4 4 1 1 2 4\nTYPE F F F U U U I\nCOUNT 1 1 1 1 1 2 1\n"
+        "WIDTH 3\nHEIGHT 1\nVIEWPOINT 1 2 3 1 0 0 0\nPOINTS 3\nDATA binary\n" +
+            point(5.125, 1, 2, 7, 300, -4) + point(5.25, 1, 2, 8, 301, -5) + point(9, 1, 2, 9, 302, -6));
+  ASSERT_EQ(run("rich.pcd --tolerance 0.3 --min-size 2 -o results").status, 0);
+  const std::string pcd = textOf(folder_ / "results/labels.pcd");
+  for (const char* line : {"FIELDS x y z ring pair input_label label\n", "SIZE 8 4 4 1 2 4 4\n", "TYPE F F F U U I U\n",
+                           "COUNT 1 1 1 1 2 1 1\n", "VIEWPOINT 1 2 3 1 0 0 0\n", "WIDTH 3\nHEIGHT 1\n"})
+    EXPECT_NE(pcd.find(line), std::string::npos) << line << pcd.substr(0, 300);
+  const std::string data = pcd.substr(pcd.find("DATA binary\n") + 12);
+  ASSERT_EQ(data.size(), 3U * 29);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string expected =
+        point(i == 2 ? 9 : 5.125 + 0.125 * static_cast<double>(i), 1, 2, static_cast<std::uint8_t>(7 + i),
+              static_cast<std::uint16_t>(300 + i), -4 - static_cast<int>(i));
+    EXPECT_EQ(data.substr(29 * i, 17), expected.substr(0, 17)) << i;
+    EXPECT_EQ(data.substr(29 * i + 17, 8), expected.substr(18, 8)) << i;
+    EXPECT_EQ(data[29 * i + 25], i == 2 ? 0 : 1) << i;
+  }
+  // Its own output is an input, too.
+  fs::rename(folder_ / "results/labels.pcd", folder_ / "again.pcd");
+  ASSERT_EQ(run("again.pcd --tolerance 0.3 --min-size 2 -o results").status, 0);
+  EXPECT_NE(textOf(folder_ / "results/labels.pcd").find("FIELDS x y z ring pair input_label input_label2 label\n"),
+            std::string::npos);
+}
+
+TEST_F(LiscoCluster, KeepsTheFieldsOfKittiScans) {
+  write("scan.bin", floats({5, 0, 0, 0.25F, 5, 0.1F, 0, 0.5F}));
+  ASSERT_EQ(run("scan.bin --tolerance 0.3 --min-size 1 -o results").status, 0);
+  const std::string pcd = textOf(folder_ / "results/labels.pcd");
+  EXPECT_NE(pcd.find("FIELDS x y z intensity label\n"), std::string::npos);
+  EXPECT_NE(pcd.find(floats({5, 0.1F, 0, 0.5F}) + std::string("\1\0\0\0", 4)), std::string::npos);
 }
 
 TEST_F(LiscoCluster, ReadsEveryFormat) {
@@ -188,6 +379,22 @@ TEST_F(LiscoCluster, RefusesBadOptionsInOneLine) {
   expectRefusal("walls.pcd --tolerance 0.3 --max-size 5000000000", {"--max-size"});
   expectRefusal("walls.pcd --tolerance 0.3 --min-size 20 --max-size 10", {"--max-size is smaller"});
   expectRefusal("walls.pcd --tolerance 0.3 --ground-z low", {"--ground-z must be a number, not 'low'"});
+  for (const char* method : {"flat", "height", "''", "slope:3"})
+    expectRefusal(std::string("walls.pcd --tolerance 0.3 --ground ") + method,
+                  {"--ground must be slope, height:Z or none, not '"});
+  expectRefusal("walls.pcd --tolerance 0.3 --ground height:low", {"--ground must be a number, not 'low'"});
+  expectRefusal("walls.pcd --tolerance 0.3 --ground none --ground-z 1", {"the ground is given twice"});
+  expectRefusal("walls.pcd --tolerance 0.3 --ground walls=none --ground-z walls=1", {"the ground is given twice"});
+  expectRefusal("walls.pcd --tolerance 0.3 --min-range -1", {"--min-range must not be negative"});
+  expectRefusal("walls.pcd --tolerance 0.3 --max-range far", {"--max-range must be a number, not 'far'"});
+  expectRefusal("walls.pcd --tolerance 0.3 --min-range 5 --max-range 4", {"--max-range is smaller"});
+  expectRefusal("walls.pcd --tolerance 0.3 --ignore-box 1,2,3", {"--ignore-box takes six numbers"});
+  expectRefusal("walls.pcd --tolerance 0.3 --ignore-box 0,0,0,1,-1,1", {"--ignore-box takes the lower corner first"});
+  expectRefusal("walls.pcd --tolerance 0.3 --ignore-box 0,0,0,1,x,1", {"--ignore-box must be a number, not 'x'"});
+  expectRefusal("walls.pcd --tolerance 0.3 -o results --write labels,video",
+                {"--write: 'video' is none of labels, table, pictures, view, clouds, json, semantickitti"});
+  expectRefusal("walls.pcd --tolerance 0.3 -o results --write ''", {"--write: '' is none of"});
+  expectRefusal("walls.pcd --tolerance 0.3 --write labels", {"--write needs --output"});
   expectRefusal("walls.pcd --tolerance 0.3 --ground-z nan", {"ground-z"});
   expectRefusal("walls.pcd --tolerance 0.3 --ground-z 1e300", {"ground-z"});
   expectRefusal("walls.pcd --tolerance 0.3 --nonsense", {"nonsense", "see --help"});
@@ -203,7 +410,7 @@ TEST_F(LiscoCluster, NotesAClusterOfMoreThanHalfOfTheReturns) {
   EXPECT_EQ(run("walls.pcd --tolerance 0.3").out.find("note"), std::string::npos);
   const Outcome outcome = run("walls.pcd --tolerance 300");
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_NE(outcome.out.find("more than half of these returns: is it the ground (see --ground-z)"), std::string::npos)
+  EXPECT_NE(outcome.out.find("more than half of these returns: is it the ground (see --ground)"), std::string::npos)
       << outcome.out;
 }
 
@@ -264,7 +471,7 @@ TEST_F(LiscoCluster, WritesAnyCoordinates) {
   ASSERT_EQ(run("far.pcd --tolerance 0.3 --min-size 1 -o results").status, 0);
   const std::string table = textOf(folder_ / "results/clusters.csv");
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
-  EXPECT_EQ(std::count(table.begin(), table.end(), ','), 3 * 11);
+  EXPECT_EQ(std::count(table.begin(), table.end(), ','), 3 * 19);
 }
 
 TEST_F(LiscoCluster, DrawsScansOfAnyShape) {
@@ -307,7 +514,8 @@ TEST_F(LiscoCluster, PrintsHelpAndVersion) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.status, 0);
   for (const char* option :
-       {"--tolerance", "--min-size", "--max-size", "--ground-z", "--output", "--clouds", "--threads"})
+       {"--tolerance", "--min-size", "--max-size", "--ground-z", "--output", "--clouds", "--threads", "--ground",
+        "--min-range", "--max-range", "--ignore-box", "--write", "--json"})
     EXPECT_NE(help.out.find(option), std::string::npos) << option;
   EXPECT_EQ(run("--version").out.rfind("lisco_cluster " LISCO_VERSION, 0), 0U);
 }

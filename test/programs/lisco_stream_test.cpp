@@ -259,6 +259,33 @@ TEST_P(StreamOfCapture, GivesTheScansAndTheirClusters) {
   EXPECT_EQ(streamed.field("label"), pcdOf(textOf(folder_ / "batch/labels.pcd")).field("label"));
 }
 
+TEST_P(StreamOfCapture, LeavesOutTheGroundUnlessToldOtherwise) {
+  const auto totals = [this](const std::string& options, const char* mode) {
+    const Outcome outcome = run("'" + capture().string() + "' --sensor " + GetParam().sensor +
+                                " --json --stats --rotations 2 --tolerance 0.4 " + options + " --mode " + mode);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const bool has_ground = outcome.err.find("of the ground, left out") != std::string::npos;
+    for (const Json& line : linesOf(outcome.out)) {
+      const bool is_rotation = mode == std::string("rotation");
+      if (is_rotation && line["clusters"].empty()) continue;
+      const Json& cluster = is_rotation ? line["clusters"].back() : line;
+      EXPECT_GE(cluster["oriented_box"]["length"], cluster["oriented_box"]["width"]);
+      EXPECT_GE(cluster["density"], 0);
+    }
+    return std::pair<double, bool>{static_cast<double>(statOf(outcome.err, "returns")), has_ground};
+  };
+  for (const char* mode : {"rotation", "endless"}) {
+    const auto all = totals("--ground none", mode);
+    const auto rest = totals("", mode);
+    EXPECT_FALSE(all.second);
+    EXPECT_TRUE(rest.second);
+    EXPECT_LT(rest.first, 0.8 * all.first) << mode;
+    EXPECT_GT(rest.first, 0.3 * all.first) << mode;
+    EXPECT_LT(totals("--ground none --max-range 8", mode).first, all.first) << mode;
+    EXPECT_EQ(totals("--ground none --ignore-box -300,-300,-300,300,300,300", mode).first, 0) << mode;
+  }
+}
+
 TEST_P(StreamOfCapture, ClustersEachRotationAsABatchDoes) {
   const Outcome all = run(input() + " --json --stats -o all");
   ASSERT_EQ(all.status, 0) << all.err;
@@ -535,7 +562,8 @@ TEST_F(LiscoStream, CountsLostLateAndForeignPackets) {
   payloads.erase(payloads.begin() + 400, payloads.begin() + 580);  // more than a turn
   writeCapture("a.pcap", payloads);
   for (const char* mode : {"rotation", "endless"}) {
-    const Outcome outcome = run(std::string("a.pcap --json --stats -t 0.5 --sensor hdl32e -o clouds --mode ") + mode);
+    const Outcome outcome =
+        run(std::string("a.pcap --json --stats -t 0.5 --ground none --sensor hdl32e -o clouds --mode ") + mode);
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(statOf(outcome.err, "late"), 2);
     EXPECT_EQ(statOf(outcome.err, "position"), 1);
@@ -548,7 +576,7 @@ TEST_F(LiscoStream, CountsLostLateAndForeignPackets) {
       continue;
     }
     expectRotationsAgree(lines, outcome.err, "clouds");
-    expectLabelsOfBatch("clouds", lines.size(), "-t 0.5");
+    expectLabelsOfBatch("clouds", lines.size(), "-t 0.5 --ground none");
     std::size_t lost = 0;
     for (const Json& line : lines) lost += line["lost_packets"].get<std::size_t>();
     EXPECT_EQ(lost, 30U + 180U + 1U);
@@ -569,7 +597,7 @@ TEST_F(LiscoStream, ProposesTheRightSensor) {
 TEST_F(LiscoStream, ReadsAnHdl64eByItsCalibration) {
   write("db.xml", lisco_test::calibrationXml(lisco_test::usualCalibration));
   writeCapture("a.pcap", packetsOf(PacketEncoder("hdl64e"), 800));
-  const std::string options = "a.pcap --sensor hdl64e -t 0.5 ";
+  const std::string options = "a.pcap --sensor hdl64e -t 0.5 --ground none ";
   expectRefusal(options, {"needs its calibration file", "--calibration"});
   const Outcome outcome = run(options + "--calibration db.xml --json --stats -o clouds");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -578,7 +606,7 @@ TEST_F(LiscoStream, ReadsAnHdl64eByItsCalibration) {
   EXPECT_EQ(lines.front()["columns"], 1800);
   EXPECT_GT(lines.front()["clusters"].size(), 3U);
   expectRotationsAgree(lines, outcome.err, "clouds");
-  expectLabelsOfBatch("clouds", lines.size(), "-t 0.5");
+  expectLabelsOfBatch("clouds", lines.size(), "-t 0.5 --ground none");
   const Outcome endless = run(options + "--calibration db.xml --json --stats -o clouds --mode endless");
   ASSERT_EQ(endless.status, 0) << endless.err;
   expectDeliveriesAgree(linesOf(endless.out), endless.err, "clouds");
@@ -689,6 +717,9 @@ TEST_F(LiscoStream, RefusesBadInputInOneLine) {
   expectRefusal("a.pcap" + options + " --min-size 0", {"--min-size"});
   expectRefusal("a.pcap" + options + " --max-size 9", {"--max-size"});
   expectRefusal("a.pcap" + options + " --ground-z inf", {"--ground-z"});
+  expectRefusal("a.pcap" + options + " --ground a=none", {"--ground applies to all: NAME= is not taken here"});
+  expectRefusal("a.pcap" + options + " --ground flat", {"--ground must be slope, height:Z or none, not 'flat'"});
+  expectRefusal("a.pcap" + options + " --ignore-box 1", {"--ignore-box takes six numbers"});
   expectRefusal("a.pcap" + options + " --rotations 0", {"--rotations"});
   expectRefusal("a.pcap" + options + " --port 65536", {"--port must be a whole number from 0 to 65535"});
   expectRefusal("a.pcap" + options + " --port 99", {"no data packet", "only packets to port 99"});
@@ -722,7 +753,8 @@ TEST_F(LiscoStream, ReplacesOnlyItsOwnFiles) {
 TEST_F(LiscoStream, PrintsHelpAndVersion) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.status, 0);
-  for (const char* word : {"--sensor", "--tolerance", "--mode", "--realtime", "--json", "latency_ms"})
+  for (const char* word : {"--sensor", "--tolerance", "--mode", "--realtime", "--json", "latency_ms", "--ground",
+                           "--min-range", "--max-range", "--ignore-box", "oriented_box", "density"})
     EXPECT_NE(help.out.find(word), std::string::npos) << word;
   const Outcome version = run("--version");
   EXPECT_EQ(version.status, 0);

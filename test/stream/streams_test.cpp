@@ -21,6 +21,7 @@ using lisco_apps::Cell;
 using lisco_apps::Column;
 using lisco_apps::DeliveredCluster;
 using lisco_apps::FoundCluster;
+using lisco_apps::GroundChoice;
 using lisco_apps::Stream;
 using lisco_apps::StreamOptions;
 using lisco_apps::Turn;
@@ -34,13 +35,14 @@ class ConsistencyChecker : public lisco_apps::Listener {
     columns += turn.columns();
     std::map<std::uint32_t, std::size_t> sizes = labelsOf(turn);
     EXPECT_EQ(sizes.size(), clusters.size());
-    for (const FoundCluster& cluster : clusters) EXPECT_EQ(cluster.size(), sizes[cluster.id]);
-    for (std::size_t i = 1; i < clusters.size(); ++i) EXPECT_LE(clusters[i].size(), clusters[i - 1].size());
+    for (const FoundCluster& cluster : clusters) EXPECT_EQ(cluster.features.size, sizes[cluster.id]);
+    for (std::size_t i = 1; i < clusters.size(); ++i)
+      EXPECT_LE(clusters[i].features.size, clusters[i - 1].features.size);
     found += clusters.size();
   }
   void cluster(const DeliveredCluster& cluster) override {
     EXPECT_EQ(cluster.found.id, ++found);
-    delivered_[cluster.found.id] = cluster.found.size();
+    delivered_[cluster.found.id] = cluster.found.features.size;
   }
   void turnEnds(const Turn& turn) override {
     EXPECT_EQ(turn.number, ++turns);
@@ -101,11 +103,13 @@ void feed(Stream& stream, Random& random, std::size_t columns) {
 
 TEST(Streams, AcceptIrregularColumns) {
   constexpr std::uint64_t kSeed = 5;
-  for (const float tolerance : {0.1F, 1.5F}) {
+  for (const auto& [tolerance, ground] :
+       {std::pair<float, GroundChoice>{0.1F, lisco_apps::groundChoiceOf("height:0.05")},
+        {1.5F, lisco_apps::groundChoiceOf("slope")}}) {
     StreamOptions options;
     options.tolerance = tolerance;
     options.min_size = 1;
-    options.ground_z = 0.05F;
+    options.ground = ground;
     VelodyneDecoder decoder(lisco_apps::makeVelodyneModel("vlp16"));
     decoder.setStep(0.8);
     constexpr std::size_t kColumns = 30000;

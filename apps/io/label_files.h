@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include "io/clusters.h"
+#include "io/text.h"
+
+namespace lisco_apps {
+
+// The labels of a scan's points in several formats; see writeResults (). They throw std::runtime_error with one line if
+// the file cannot be written.
+void writeLabelledPcd(const ClusteredScan& scan, const fs::path& file);
+void writeSemanticKitti(const ClusteredScan& scan, const fs::path& file);
+void writeNpy(const ClusteredScan& scan, const fs::path& file);
+
+}  // namespace lisco_apps

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "io/cloud_file.h"
+#include "io/scan_options.h"
+
+namespace lisco_apps {
+
+/// What becomes of the returns of a scan.
+struct ScanReturns {
+  pcl::Indices clustered;   ///< the rest, in the cloud's order
+  std::size_t returns = 0;  ///< of the scan
+  std::size_t ignored = 0;  ///< left out by range or place
+  std::size_t ground = 0;   ///< of the others, left out as ground
+  bool is_rotating = true;  ///< false: the slope method found no scan of a rotating sensor, and left out nothing
+};
+
+/// Divides the returns of a cloud. The slope method looks at all returns outside of ignored boxes, so that the ground
+/// goes on beyond the range limits.
+ScanReturns returnsOf(const Cloud& cloud, const GroundChoice& ground, const Region& region);
+
+/// The lines "ignored" and "ground" of a summary; empty if nothing is to be said.
+std::string describe(const ScanReturns& returns, const GroundChoice& ground);
+
+}  // namespace lisco_apps

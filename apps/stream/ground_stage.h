@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "io/scan_options.h"
+#include "latency.h"
+#include "lisco/ground_filter.h"
+#include "sensors/decoder.h"
+
+namespace lisco_apps {
+
+/// Where a column came from.
+struct Origin {
+  std::int64_t time_us = 0;    ///< of its packet, microseconds since 1970
+  Clock::time_point received;  ///< when the packet was at hand
+};
+
+/// What becomes of a cell.
+enum class CellUse : std::uint8_t { kNothing, kClustered, kGround };
+
+/// A column on its way to the clusterer.
+struct PreparedColumn {
+  std::vector<Cell> cells;
+  std::vector<CellUse> uses;  ///< of the cells; kNothing: no return, or left out by range or place
+  double azimuth = 0;         ///< see Column
+  double position = 0;        ///< turns, in endless streams
+  bool starts_turn = false;
+  Origin origin;
+};
+
+/// Tells the ground from the other returns, column by column. By slope, a column comes out once its decisions are final,
+/// up to lisco::GroundFilter::kMaxDelay columns later; otherwise at once.
+class GroundStage {
+ public:
+  GroundStage(const GroundChoice& ground, const Region& region) : ground_(ground), region_(region) {}
+
+  /// The place of the next column, to be filled before add (). All but the uses.
+  PreparedColumn& next() { return waiting_[(first_ + count_) % kPlaces]; }
+  /// Adds the column at next (). \param take called as void (const PreparedColumn&) with columns that are decided
+  template <typename Take>
+  void add(Take&& take) {
+    decideByPlace(next());
+    ++count_;
+    if (ground_.method != GroundChoice::Method::kSlope) {
+      takeFirst(take);
+      return;
+    }
+    const PreparedColumn& column = waiting_[(first_ + count_ - 1) % kPlaces];
+    if (column.cells.size() > lasers_) {
+      finish(take, 1);
+      lasers_ = column.cells.size();
+      filter_.begin({}, lasers_);
+    }
+    fillReturns(column);
+    filter_.addColumn(returns_.data(), returns_.size(), [&](std::size_t, const std::uint8_t* ground, std::size_t) {
+      decideBySlope(ground);
+      takeFirst(take);
+    });
+  }
+
+  /// Decides on the columns that wait by what is known. More columns may follow.
+  /// \param spared so many of the latest columns, which the filter has not seen, wait on
+  template <typename Take>
+  void finish(Take&& take, std::size_t spared = 0) {
+    if (count_ <= spared) return;
+    filter_.finish([&](std::size_t, const std::uint8_t* ground, std::size_t) {
+      decideBySlope(ground);
+      takeFirst(take);
+    });
+  }
+
+ private:
+  static constexpr std::size_t kPlaces = lisco::GroundFilter::kMaxDelay + 2;
+
+  template <typename Take>
+  void takeFirst(Take& take) {
+    const PreparedColumn& column = waiting_[first_];
+    first_ = (first_ + 1) % kPlaces;
+    --count_;
+    take(column);
+  }
+  void decideByPlace(PreparedColumn& column) const;
+  void decideBySlope(const std::uint8_t* ground);
+  void fillReturns(const PreparedColumn& column);
+
+  GroundChoice ground_;
+  Region region_;
+  lisco::GroundFilter filter_;
+  std::size_t lasers_ = 0;                       ///< of the filter; 0: not begun
+  std::array<PreparedColumn, kPlaces> waiting_;  ///< a ring: keeps the memory of its columns
+  std::size_t first_ = 0, count_ = 0;
+  std::vector<lisco::Return> returns_;  ///< for the filter
+};
+
+}  // namespace lisco_apps
