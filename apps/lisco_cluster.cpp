@@ -66,9 +66,8 @@ bool parse(int argc, char** argv, Options& options) {
       "  - a recording, each of whose clouds (sensor_msgs/PointCloud2) or rotations (packets, with --sensor) is a "
       "scan:\n"
       "    .db3 and .mcap of ROS 2, or the folder of such a bag; .bag of ROS 1; .pcap and .pcapng\n"
-      "An unorganized cloud with a field `ring`, or sorted laser by laser, is arranged in rows first: that affects "
-      "the\n"
-      "time only. Ctrl-C ends the program after the scans it has begun.\n\n"
+      "An unorganized cloud with a field `ring`, or sorted laser by laser, is arranged in rows first, in which\n"
+      "the ground is found; the clusters do not depend on it. Ctrl-C ends the program after the scans it has begun.\n\n"
       "Options");
   options.clustering.addTo(shown);
   options.input.addTo(shown);
@@ -80,15 +79,16 @@ bool parse(int argc, char** argv, Options& options) {
     ("threads", countOption("--threads", options.threads, 0),
      "cluster N files at the same time (default 1; 0: one per processor)")
     ("output,o", pathOption("DIR", "--output", options.output),
-     "folder for the results; with several inputs, a folder in it for each; of a recording, a folder in it for each message or rotation, of its number and time")
+     "folder for the results; with several inputs, a folder in it for each; of a recording, a folder in it for each "
+     "message or rotation, of its number and time")
     ("bag", pathOption("FILE.mcap", "--bag", options.bag),
      "write the labelled clouds (sensor_msgs/PointCloud2) and boxes (visualization_msgs/MarkerArray) as a recording of "
      "ROS 2; scans without a time are 0.1 s apart")
     ("write", po::value<std::string>(&write)->value_name("A,B,..."),
-     "the results to write (default labels,table,pictures,view): labels (labels.pcd: the input's fields and `label`, the "
-     "cluster's id or 0; a field `label` of the input becomes `input_label`), table (clusters.csv), pictures "
-     "(range_image.png and top_view.png), view (view.html, a page for browsers), clouds (one PCD per cluster), json (clusters.json), semantickitti "
-     "(labels.label, with the id as instance, and labels.npy)")
+     "the results to write (default labels,table,pictures,view): labels (labels.pcd: the input's fields and `label`, "
+     "the cluster's id or 0; a field `label` of the input becomes `input_label`), table (clusters.csv), pictures "
+     "(range_image.png and top_view.png), view (view.html, a page for browsers), clouds (one PCD per cluster), json "
+     "(clusters.json), semantickitti (labels.label, with the id as instance, and labels.npy)")
     ("clouds", po::bool_switch(&clouds), "also write one cloud per cluster")
     ("json", po::bool_switch(&options.json), "print a line of JSON for each scan instead of text");
   // clang-format on

@@ -27,12 +27,12 @@ ResultKinds resultKindsOf(const std::string& text);
 
 /// Writes results into a folder, all or nothing; replaces the files of an earlier run, removes those of its kinds that
 /// are not asked for now, and refuses to replace any other file of these names, see writeOwnFolder ().
-/// - labels.pcd: all fields of the input, organized as it is, and the field `label` (uint32): 0 in no cluster, otherwise
-///   the cluster's id. A field `label` of the input is written as `input_label`.
+/// - labels.pcd: all fields of the input, organized as it is, and the field `label` (uint32): the cluster's id, 0 in
+///   none. A field `label` of the input is written as `input_label`.
 /// - clusters.csv: a row per cluster.
 /// - clusters.json: jsonOf ().
-/// - labels.label: SemanticKITTI's labels, a uint32 per point of the input: the id in the upper 16 bits (instance), 0 in
-///   the lower ones (class unlabelled). labels.npy: the labels of labels.pcd, uint32, in the input's shape.
+/// - labels.label: SemanticKITTI's labels, a uint32 per point of the input: the id in the upper 16 bits (instance), 0
+///   in the lower ones (class unlabelled). labels.npy: the labels of labels.pcd, uint32, in the input's shape.
 /// \throws std::runtime_error with one line on what cannot be written, or would be overwritten
 void writeResults(const ClusteredScan& scan, const fs::path& folder, const ResultKinds& kinds);
 

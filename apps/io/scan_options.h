@@ -42,7 +42,7 @@ struct Region {
   bool contains(float x, float y, float z) const;
 };
 
-/// Which returns of an input are clustered: the options --ground, --ground-z, --min-range, --max-range and --ignore-box.
+/// Which returns are clustered: the options --ground, --ground-z, --min-range, --max-range and --ignore-box.
 struct ScanOptions {
   PerInput<GroundChoice> ground;
   Region region;

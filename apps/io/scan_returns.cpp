@@ -2,15 +2,41 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "io/scan_returns.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "io/point_geometry.h"
 #include "lisco/ground_filter.h"
-#include "lisco/sensor_hints.h"
+#include "lisco/label_ground.h"
 
 namespace lisco_apps {
 namespace {
+
+/// Whether unorganized points lie around the sensor as those of a rotating one do: on most sides, and hardly any straight
+/// above or below it, where cameras look and the middle of a map is.
+bool isAroundSensor(const Cloud& cloud) {
+  constexpr std::size_t kBins = 360;
+  constexpr double kMinSides = 0.5;
+  constexpr double kSteep = 60 * kPi / 180;
+  constexpr double kMaxSteep = 0.01;  // share of the returns
+  std::vector<bool> sides(kBins, false);
+  std::size_t returns = 0;
+  std::size_t steep = 0;
+  for (const auto& point : cloud) {
+    if (!isReturn(point)) continue;
+    const Eigen::Vector3f from_sensor = point.getVector3fMap() - cloud.sensor_origin_.head<3>();
+    const pcl::PointXYZ relative(from_sensor.x(), from_sensor.y(), from_sensor.z());
+    const double turn = azimuthOf(relative) / (2 * kPi) + 0.5;
+    sides[std::min(kBins - 1, static_cast<std::size_t>(turn * kBins))] = true;
+    steep += std::fabs(elevationOf(relative)) > kSteep ? 1 : 0;
+    ++returns;
+  }
+  return static_cast<double>(std::count(sides.begin(), sides.end(), true)) >= kMinSides * kBins &&
+         static_cast<double>(steep) <= kMaxSteep * static_cast<double>(returns);
+}
 
 /// Per point: 1 on the ground. Empty if the cloud is not the scan of a rotating sensor.
 std::vector<std::uint8_t> groundBySlope(const Cloud& cloud, const Region& region) {
@@ -20,12 +46,19 @@ std::vector<std::uint8_t> groundBySlope(const Cloud& cloud, const Region& region
     const auto& p = cloud[laser * columns + column];
     return region.isOutsideOfBoxes(p.x, p.y, p.z) ? lisco::Return{p.x, p.y, p.z, 0} : lisco::kNoReturn;
   };
-  lisco::GroundParameters parameters;
-  const auto& origin = cloud.sensor_origin_;
-  parameters.sensor =
-      lisco::estimateSensor(columns, lasers, {origin[0], origin[1], origin[2]}, lisco::CellSource(cell_at));
-  if (lasers < 2 || parameters.sensor.steps_per_turn == 0) return {};
+  const std::array<float, 3> origin{cloud.sensor_origin_[0], cloud.sensor_origin_[1], cloud.sensor_origin_[2]};
   std::vector<std::uint8_t> ground(cloud.size());
+  if (lasers < 2) {
+    if (!isAroundSensor(cloud)) return {};
+    std::vector<lisco::Return> points;
+    for (std::size_t i = 0; i < cloud.size(); ++i) points.push_back(cell_at(0, i));
+    lisco::LabelGroundParameters unorganized;
+    unorganized.origin = origin;
+    lisco::labelGround(points.data(), points.size(), sizeof points[0], unorganized, ground.data());
+    return ground;
+  }
+  const lisco::GroundParameters parameters = lisco::estimateGround(columns, lasers, origin, lisco::CellSource(cell_at));
+  if (parameters.sensor.steps_per_turn == 0) return {};
   lisco::GroundFilter().filter(parameters, columns, lasers, cell_at, ground.data());
   return ground;
 }
@@ -65,7 +98,7 @@ std::string describe(const ScanReturns& returns, const GroundChoice& ground) {
   if (ground.method == GroundChoice::Method::kHeight)
     text += "  ground    " + left_out + formatted(", below z = %g m\n", static_cast<double>(ground.height));
   if (ground.method == GroundChoice::Method::kSlope)
-    text += !returns.is_rotating ? "  ground    nothing left out: this is not the organized scan of a rotating sensor\n"
+    text += !returns.is_rotating  ? "  ground    nothing left out: this is not the scan of a rotating sensor\n"
             : returns.ground == 0 ? "  ground    nothing left out: none was found\n"
                                   : "  ground    " + left_out + ", by slope; --ground none keeps them\n";
   return text;

@@ -23,7 +23,7 @@ EndlessStream::EndlessStream(const StreamOptions& options, const Decoder& decode
 bool EndlessStream::take(const PreparedColumn& column) {
   const bool is_too_long = has_begun_ && turns_.back().turn.columns() == kMaxColumns;
   if (is_too_long) endStream();
-  if (column.starts_turn || is_too_long) {
+  if (column.starts_turn || is_too_long || !has_begun_) {
     endTurn();
     if (isOver()) return false;
     begin(column);

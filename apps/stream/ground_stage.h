@@ -33,8 +33,8 @@ struct PreparedColumn {
   Origin origin;
 };
 
-/// Tells the ground from the other returns, column by column. By slope, a column comes out once its decisions are final,
-/// up to lisco::GroundFilter::kMaxDelay columns later; otherwise at once.
+/// Tells the ground from the other returns, column by column. By slope, a column comes out once its decisions are
+/// final, up to lisco::GroundFilter::kMaxDelay columns later; otherwise at once.
 class GroundStage {
  public:
   GroundStage(const GroundChoice& ground, const Region& region) : ground_(ground), region_(region) {}
