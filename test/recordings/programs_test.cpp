@@ -56,7 +56,7 @@ TEST_F(Programs, ClusterEachCloudOfARecording) {
   writeMcap(walls(7), "a.mcap");
   lisco_test::writeDb3(walls(7), folder_ / "a.db3");
   for (const char* const name : {"a.mcap", "a.db3"}) {
-    const Outcome outcome = run(std::string(name) + " -t 0.5 -o results");
+    const Outcome outcome = run(std::string(name) + " -t 0.5 --ground none -o results");
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(countOf("clusters  2 of at least 10", outcome.out), 7U) << outcome.out;
     EXPECT_EQ(countOf("arranged by ring in 4 rows x 60 columns", outcome.out), 7U);
@@ -68,20 +68,20 @@ TEST_F(Programs, ClusterEachCloudOfARecording) {
 
 TEST_F(Programs, TakeAPartOfARecording) {
   writeMcap(walls(20), "a.mcap");
-  Outcome outcome = run("a.mcap -t 0.5 --from 0.45 --to 1.35 --every 3");
+  Outcome outcome = run("a.mcap -t 0.5 --ground none --from 0.45 --to 1.35 --every 3");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   for (const char* const item : {"a.mcap 6 at 1600000000.5", "a.mcap 9 at ", "a.mcap 12 at "})
     EXPECT_NE(outcome.out.find(item), std::string::npos) << outcome.out;
   EXPECT_EQ(countOf("a.mcap ", outcome.out), 3U);
-  outcome = runLine(std::string(LISCO_STREAM) + " a.mcap -t 0.5 --from 0.45 --to 1.35 --every 3");
+  outcome = runLine(std::string(LISCO_STREAM) + " a.mcap -t 0.5 --ground none --from 0.45 --to 1.35 --every 3");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(countOf("60 columns, 240 returns, 2 clusters, largest 120", outcome.out), 3U) << outcome.out;
-  expectRefusal("a.mcap -t 0.5 --from 3 --to 2", {"--to is before --from"});
+  expectRefusal("a.mcap -t 0.5 --ground none --from 3 --to 2", {"--to is before --from"});
 }
 
 TEST_F(Programs, StreamCloudsColumnByColumn) {
   writeMcap(walls(5), "a.mcap");
-  const std::string stream = std::string(LISCO_STREAM) + " a.mcap -t 0.5";
+  const std::string stream = std::string(LISCO_STREAM) + " a.mcap -t 0.5 --ground none";
   Outcome outcome = runLine(stream + " --json");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(countOf("{\"rotation\":", outcome.out), 5U);
@@ -105,8 +105,8 @@ TEST_F(Programs, WriteRotationsAsARecording) {
 
 TEST_F(Programs, CompareTheCloudsOfARecording) {
   writeMcap(walls(3), "a.mcap");
-  const Outcome outcome =
-      runLine(std::string(LISCO_COMPARE) + " a.mcap -t 0.5 --check-only --baselines pcl,lisco --json all.json");
+  const Outcome outcome = runLine(std::string(LISCO_COMPARE) +
+                                  " a.mcap -t 0.5 --ground none --check-only --baselines pcl,lisco --json all.json");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(countOf("4 rows x 60 columns, 240 returns", outcome.out), 3U) << outcome.out;
   EXPECT_NE(outcome.out.find("3/3"), std::string::npos) << outcome.out;
@@ -118,17 +118,17 @@ TEST_F(Programs, ListTheTopicsWhereThereIsAChoice) {
   recording.topics.push_back({"/rear", "sensor_msgs/msg/PointCloud2"});
   recording.messages.push_back({2, 1, recording.messages[1].data});
   writeMcap(recording, "a.mcap");
-  const Outcome outcome = run("a.mcap -t 0.5");
+  const Outcome outcome = run("a.mcap -t 0.5 --ground none");
   EXPECT_EQ(outcome.status, 2);
   for (const char* const part : {"--topic", "/points ", "/rear ", "/text "})
     EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
-  EXPECT_EQ(run("a.mcap -t 0.5 --topic /rear").status, 0);
+  EXPECT_EQ(run("a.mcap -t 0.5 --ground none --topic /rear").status, 0);
 }
 
 TEST_F(Programs, KeepWhatComesBeforeABreak) {
   writeMcap(walls(2000), "a.mcap");
   fs::resize_file(folder_ / "a.mcap", fs::file_size(folder_ / "a.mcap") * 6 / 10);
-  const Outcome outcome = run("a.mcap -t 0.5 --bag out.mcap");
+  const Outcome outcome = run("a.mcap -t 0.5 --ground none --bag out.mcap");
   EXPECT_EQ(outcome.status, 2);
   EXPECT_GT(countOf("clusters  2 of", outcome.out), 200U);
   EXPECT_EQ(countOf("a.mcap: breaks off at byte", outcome.err), 1U) << outcome.err;
@@ -140,8 +140,8 @@ TEST_F(Programs, KeepWhatComesBeforeABreak) {
 
 TEST_F(Programs, LeaveWholeResultsWhenInterrupted) {
   writeMcap(walls(30000), "a.mcap");
-  const Outcome outcome =
-      runLine("sh -c '" + program_ + " a.mcap -t 0.5 --bag out.mcap & p=$!; sleep 1; kill -INT $p; wait $p'");
+  const Outcome outcome = runLine(
+      "sh -c '" + program_ + " a.mcap -t 0.5 --ground none --bag out.mcap & p=$!; sleep 1; kill -INT $p; wait $p'");
   EXPECT_EQ(outcome.status, 2) << outcome.err;
   const std::size_t done = countOf("clusters  2 of", outcome.out);
   EXPECT_GT(done, 0U);
@@ -156,17 +156,17 @@ TEST_F(Programs, RefuseToReplaceAForeignRecording) {
   writeMcap(walls(1), "a.mcap");
   writeMcap(walls(1), "precious.mcap");
   const std::string before = textOf(folder_ / "precious.mcap");
-  expectRefusal("a.mcap -t 0.5 --bag precious.mcap", {"precious.mcap", "not written by this program"});
+  expectRefusal("a.mcap -t 0.5 --ground none --bag precious.mcap", {"precious.mcap", "not written by this program"});
   EXPECT_EQ(textOf(folder_ / "precious.mcap"), before);
-  ASSERT_EQ(run("a.mcap -t 0.5 --bag own.mcap").status, 0);
-  EXPECT_EQ(run("a.mcap -t 0.5 --bag own.mcap").status, 0);
+  ASSERT_EQ(run("a.mcap -t 0.5 --ground none --bag own.mcap").status, 0);
+  EXPECT_EQ(run("a.mcap -t 0.5 --ground none --bag own.mcap").status, 0);
 }
 
 TEST_F(Programs, StreamSlidingWindows) {
   const fs::path capture = data() / "captures/vlp16_street.pcap";
   if (!fs::exists(capture)) GTEST_SKIP() << "no " << capture;
   const std::string command =
-      std::string(LISCO_STREAM) + " " + capture.string() + " --sensor vlp16 -t 0.4 --mode windows";
+      std::string(LISCO_STREAM) + " " + capture.string() + " --sensor vlp16 -t 0.4 --ground none --mode windows";
   const Outcome outcome = runLine(command + " --window 600 --hop 200 --json -o windows");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(countOf("{\"window\":", outcome.out), 10U);
@@ -174,7 +174,7 @@ TEST_F(Programs, StreamSlidingWindows) {
   for (const char* const number : {"000001", "000002", "000005", "000010"}) {
     SCOPED_TRACE(number);
     const std::string file = "windows/rotation_" + std::string(number) + ".pcd";
-    const Outcome batch = run(file + " -t 0.4 -o batch");
+    const Outcome batch = run(file + " -t 0.4 --ground none -o batch");
     ASSERT_EQ(batch.status, 0) << batch.err;
     std::multiset<std::string> sizes;
     std::istringstream table(textOf(folder_ / "batch/clusters.csv"));
