@@ -7,7 +7,7 @@
 
 namespace lisco_apps {
 
-/// A scan and its clusters as the page shows them. Rows of an organized scan are rings.
+/// A scan and its clusters as the page shows them. Without a field of rings, rows of an organized scan are rings.
 /// \param clustered the points that were clustered; other returns are ground
 ViewScan viewScanOf(const ClusteredScan& scan, const pcl::Indices& clustered);
 

@@ -136,14 +136,20 @@ TEST_F(PageTest, OfLiscoClusterShowsItsTable) {
   browser_->open("file://" + results + "/view.html");
   browser_->evaluate("lisco.ready.then(() => 1)");
   const auto table = columnsOf(results + "/clusters.csv");
-  const Json shown = browser_->evaluate("lisco.view.labelling.clusters.map(c => [c.id, c.size, c.range])");
+  const Json shown = browser_->evaluate(
+      "lisco.view.labelling.clusters.map(c => [c.id, c.size, "
+      "c.range, c.length, c.width, c.height, c.yaw * 180 / Math.PI])");
   ASSERT_GT(shown.size(), 10U);
   ASSERT_EQ(shown.size(), table.at("id").size());
   std::size_t clustered = 0;
   for (std::size_t i = 0; i < shown.size(); ++i) {
     EXPECT_EQ(shown[i][0].get<double>(), table.at("id")[i]);
     EXPECT_EQ(shown[i][1].get<double>(), table.at("size")[i]);
-    EXPECT_NEAR(shown[i][2].get<double>(), table.at("nearest_range")[i], 0.002);
+    EXPECT_NEAR(shown[i][2].get<double>(), table.at("nearest_range")[i], 0.0002);
+    std::size_t item = 3;
+    for (const char* side : {"length", "width", "height"})
+      EXPECT_NEAR(shown[i][item++].get<double>(), table.at(side)[i], 0.0002);
+    EXPECT_NEAR(shown[i][item].get<double>(), table.at("yaw")[i], 0.01);
     clustered += shown[i][1].get<std::size_t>();
   }
   const std::string counts = std::to_string(shown.size()) + " clusters of " + std::to_string(clustered) + " points";
