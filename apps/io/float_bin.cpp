@@ -19,7 +19,7 @@ Cloud::Ptr readFloatBin(const fs::path& file, const ReadOptions& options, ReadEx
                          options.bin_fields, content.size(), options.bin_fields * sizeof(float)));
   FloatTable table;
   table.values.resize(content.size() / sizeof(float));
-  std::memcpy(table.values.data(), content.data(), table.values.size() * sizeof(float));
+  if (!table.values.empty()) std::memcpy(table.values.data(), content.data(), table.values.size() * sizeof(float));
   table.fields = options.bin_fields;
   if (table.fields == 0) {
     std::vector<std::size_t> candidates;

@@ -33,7 +33,7 @@ using lisco_apps::ReturnChoice;
 
 std::string md5Of(const std::vector<std::uint32_t>& numbers) {
   boost::uuids::detail::md5 md5;
-  md5.process_bytes(numbers.data(), numbers.size() * sizeof(std::uint32_t));
+  if (!numbers.empty()) md5.process_bytes(numbers.data(), numbers.size() * sizeof(std::uint32_t));
   boost::uuids::detail::md5::digest_type digest;
   md5.get_digest(digest);
   std::string text;
