@@ -2,14 +2,13 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "lisco/cluster_features.h"
+#include "lisco/cluster_order.h"
 #include "stream.h"
 
 namespace lisco_apps {
@@ -24,54 +23,40 @@ class ClusterCollector {
   template <typename Clusterer, typename CellOf>
   void collect(Clusterer& clusterer, const StreamOptions& options, CellOf&& cell_of, Turn& turn,
                std::vector<FoundCluster>& clusters) {
-    constexpr std::uint32_t kUnseen = ~std::uint32_t{0};
-    candidates_.clear();
-    label_of_subcluster_.assign(clusterer.subclusterCount(), kUnseen);
-    clusterer.forEachRun([&](const std::uint32_t*, std::size_t, std::uint32_t subcluster) {
-      if (std::exchange(label_of_subcluster_[subcluster], 0) != kUnseen) return;
-      const std::uint32_t size = clusterer.sizeOf(subcluster);
-      if (size >= options.min_size && size <= options.max_size) candidates_.push_back({size, subcluster});
-    });
-    // The sort is unstable: among equal sizes, only PCL's own call on the same sequence gives PCL's order.
-    std::sort(candidates_.rbegin(), candidates_.rend(),
-              [](const Candidate& a, const Candidate& b) { return a.size < b.size; });
-    clusters.assign(candidates_.size(), {});
-    for (std::size_t i = 0; i < candidates_.size(); ++i)
-      clusters[i].id = label_of_subcluster_[candidates_[i].subcluster] = static_cast<std::uint32_t>(i + 1);
+    order_.assign(clusterer, options.min_size, options.max_size);
+    sizes_.assign(order_.count(), 0);
     clusterer.forEachRun([&](const std::uint32_t* indices, std::size_t count, std::uint32_t subcluster) {
-      const std::uint32_t label = label_of_subcluster_[subcluster];
-      if (label == 0) return;
-      for (std::size_t i = 0; i < count; ++i) turn.labels[cell_of(indices[i])] = label;
+      const std::int32_t label = order_.labelOf(subcluster);
+      if (label == lisco::ClusterOrder::kNoCluster) return;
+      sizes_[static_cast<std::size_t>(label)] += count;
+      for (std::size_t i = 0; i < count; ++i) turn.labels[cell_of(indices[i])] = static_cast<std::uint32_t>(label) + 1;
     });
+    clusters.assign(order_.count(), {});
+    for (std::size_t i = 0; i < clusters.size(); ++i) clusters[i].id = static_cast<std::uint32_t>(i + 1);
   }
 
   /// Computes the features of the clusters of the last collect ().
   void measure(const Turn& turn, std::vector<FoundCluster>& clusters) {
     next_point_.clear();
     std::size_t points = 0;
-    for (const Candidate& candidate : candidates_) {
+    for (const std::size_t size : sizes_) {
       next_point_.push_back(points);
-      points += candidate.size;
+      points += size;
     }
     points_.resize(points);
     for (std::size_t cell = 0; cell < turn.cells.size(); ++cell)
       if (const std::uint32_t label = turn.labels[cell]; label != 0)
         points_[next_point_[label - 1]++] = {turn.cells[cell].x, turn.cells[cell].y, turn.cells[cell].z};
     for (std::size_t i = 0; i < clusters.size(); ++i) {
-      const std::size_t size = candidates_[i].size;
-      clusters[i].features = lisco::clusterFeatures(&points_[next_point_[i] - size], size, sizeof points_[0]);
+      clusters[i].features = lisco::clusterFeatures(&points_[next_point_[i] - sizes_[i]], sizes_[i], sizeof points_[0]);
     }
   }
 
  private:
-  /// A subcluster of an accepted size.
-  struct Candidate {
-    std::uint32_t size, subcluster;
-  };
-  std::vector<Candidate> candidates_;               ///< by first points, then by size
-  std::vector<std::uint32_t> label_of_subcluster_;  ///< 0: in no cluster
-  std::vector<std::array<float, 3>> points_;        ///< of the clusters, one cluster after the other
-  std::vector<std::size_t> next_point_;             ///< of each cluster
+  lisco::ClusterOrder order_;
+  std::vector<std::size_t> sizes_;            ///< of the clusters
+  std::vector<std::array<float, 3>> points_;  ///< of the clusters, one cluster after the other
+  std::vector<std::size_t> next_point_;       ///< of each cluster
 };
 
 }  // namespace lisco_apps
