@@ -33,11 +33,11 @@ class BuildByCMake(build_ext):
             pass  # CMake finds the system's
         options += shlex.split(os.environ.get("CMAKE_ARGS", ""))
         subprocess.run(["cmake", "-S", ROOT, "-B", build, *options], check=True)
-        subprocess.run(["cmake", "--build", build, "--parallel", "--target", "lisco_python"], check=True)
+        subprocess.run(["cmake", "--build", build, "--parallel", "--target", "lisco_python_modules"], check=True)
         target = Path(self.get_ext_fullpath(extension.name))
         target.parent.mkdir(parents=True, exist_ok=True)
-        (made,) = (build / "python" / "lisco").glob("_core*.so")
-        self.copy_file(str(made), str(target))
+        for made in (build / "python" / "lisco").glob("_*.so"):
+            self.copy_file(str(made), str(target.parent / made.name))
 
 
 version = re.search(r"project\(lisco VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)

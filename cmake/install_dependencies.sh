@@ -8,7 +8,7 @@ packages=(g++ cmake ninja-build pkg-config libpcl-dev libhwy-dev libboost-progra
           libcairo2-dev libpcap-dev libsqlite3-dev liblz4-dev libzstd-dev libbz2-dev zlib1g-dev fonts-dejavu-core
           gnuplot-nox libgtest-dev doxygen dpkg-dev file help2man binutils "$@"
           pybind11-dev python3-dev python3-numpy python3-scipy python3-sklearn python3-pytest python3-hypothesis
-          python3-matplotlib python3-distributed python3-pip)
+          python3-matplotlib python3-distributed python3-pip python3-mypy)
 
 missing=()
 for package in "${packages[@]}"; do

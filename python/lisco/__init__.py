@@ -10,12 +10,14 @@ Points with a NaN or infinite coordinate, and points at exactly (0, 0, 0), are n
 """
 
 from ._core import __version__
+from .boxes import boxes, corners
 from .clusterer import Clusterer, cluster
 from .columns import ColumnClusterer, EndlessCluster, EndlessClusterer
 from .ground import ground, remove_ground
 from .plot import plot
 from .reading import read, sensors
 from .streams import Rotation, endless, stream
+from .view import View, view
 
 __all__ = [
     "Clusterer",
@@ -23,8 +25,11 @@ __all__ = [
     "EndlessCluster",
     "EndlessClusterer",
     "Rotation",
+    "View",
     "__version__",
+    "boxes",
     "cluster",
+    "corners",
     "endless",
     "ground",
     "plot",
@@ -32,4 +37,5 @@ __all__ = [
     "remove_ground",
     "sensors",
     "stream",
+    "view",
 ]

@@ -3,9 +3,14 @@
 
 import math
 import operator
-from typing import Any, NamedTuple, Optional, Tuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Tuple
 
 import numpy as np
+
+if TYPE_CHECKING:
+    Array = np.ndarray[Any, np.dtype[Any]]
+else:
+    Array = np.ndarray  # which older versions cannot subscript
 
 MAX_POINTS = 2**31 - 1
 NO_LIMIT = 2**64 - 1
@@ -15,13 +20,13 @@ WANTED = "an array of shape (N, 3 or more) or (H, W, 3 or more), or of records w
 class Axes(NamedTuple):
     """The coordinates of points, as views of two axes: rows and columns."""
 
-    x: np.ndarray
-    y: np.ndarray
-    z: np.ndarray
+    x: Array
+    y: Array
+    z: Array
     shape: Tuple[int, ...]  # of the points, as given
 
 
-def _float_view(values: np.ndarray, name: str) -> np.ndarray:
+def _float_view(values: Array, name: str) -> Array:
     if values.dtype.kind != "f" or values.dtype.itemsize not in (4, 8):
         raise ValueError(f"{name} must be float32 or float64, not {values.dtype}; points.astype(np.float32) converts")
     return values if values.dtype.isnative else values.astype(values.dtype.newbyteorder("="))
@@ -52,6 +57,18 @@ def axes_of(points: Any, name: str = "points") -> Axes:
     if len(shape) == 1:
         x, y, z = x[np.newaxis], y[np.newaxis], z[np.newaxis]
     return Axes(x, y, z, shape)
+
+
+def labels_of(labels: Any, shape: Tuple[int, ...]) -> Array:
+    """Labels of points of a shape, int64."""
+    label = np.asarray(labels)
+    if label.shape != shape:
+        raise ValueError(f"labels must be of the shape of points, {shape}, not {label.shape}")
+    if label.dtype.kind not in "iu":
+        raise ValueError(f"labels must be whole numbers, not {label.dtype}")
+    if label.dtype.kind == "u" and label.size and label.max() >= 2**63:
+        raise ValueError(f"labels must be less than 2^63, not {label.max()}")
+    return np.ascontiguousarray(label.astype(np.int64, copy=False)).reshape(shape)
 
 
 def column_of(points: Any) -> Axes:

@@ -3,10 +3,8 @@
 
 from typing import Any, Optional
 
-import numpy as np
-
 from . import _core
-from ._checks import axes_of, count_of, sizes_of, tolerance_of
+from ._checks import Array, axes_of, count_of, sizes_of, tolerance_of
 
 _MAX_THREADS = 256
 
@@ -40,7 +38,7 @@ class Clusterer:
         self._threads = min(count_of(threads, "threads"), _MAX_THREADS)
         self._labeller = _core.Labeller()
 
-    def cluster(self, points: Any) -> np.ndarray:
+    def cluster(self, points: Any) -> Array:
         """Labels the points of a scan; see `lisco.cluster`.
 
         Parameters
@@ -62,7 +60,7 @@ class Clusterer:
 
 def cluster(
     points: Any, tolerance: float, min_size: int = 1, max_size: Optional[int] = None, threads: int = 1
-) -> np.ndarray:
+) -> Array:
     """Labels points by their Euclidean clusters.
 
     Two points are neighbours if they are less than `tolerance` apart, computed in float32 as PCL does: squared

@@ -6,7 +6,7 @@ from typing import Any, List, NamedTuple, Optional, Sequence
 import numpy as np
 
 from . import _core
-from ._checks import axes_of, column_of, number_of, sizes_of, tolerance_of
+from ._checks import Array, axes_of, column_of, number_of, sizes_of, tolerance_of
 
 
 class ColumnClusterer:
@@ -57,7 +57,7 @@ class ColumnClusterer:
             raise ValueError(f"points must be an array of shape (lasers, columns, 3 or more), not {np.shape(points)}")
         self._columns.add(axes.x, axes.y, axes.z)
 
-    def labels(self) -> np.ndarray:
+    def labels(self) -> Array:
         """Labels of all columns so far, of shape (lasers, columns): those of `lisco.cluster` for these columns."""
         return self._columns.labels()
 
@@ -75,11 +75,11 @@ class ColumnClusterer:
 class EndlessCluster(NamedTuple):
     """A cluster of an endless stream, delivered when no later column can reach it."""
 
-    points: np.ndarray
+    points: Array
     """float32 (N, 3): its returns, metres."""
-    columns: np.ndarray
+    columns: Array
     """int64 (N,): the number of each return's column, from 0."""
-    lasers: np.ndarray
+    lasers: Array
     """int32 (N,): each return's place in its column."""
     first_position: float
     """Of its first column, turns."""

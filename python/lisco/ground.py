@@ -6,12 +6,12 @@ from typing import Any, Optional
 import numpy as np
 
 from . import _core
-from ._checks import Axes, axes_of, number_of
+from ._checks import Array, Axes, axes_of, number_of
 
 _CELLS = 64  # of a column of an unorganized scan; from 16 to 256 the ground is the same within a percent
 
 
-def ground(points: Any, sensor_height: Optional[float] = None, max_slope: float = 20.0) -> np.ndarray:
+def ground(points: Any, sensor_height: Optional[float] = None, max_slope: float = 20.0) -> Array:
     """Which points lie on the ground.
 
     Parameters
@@ -49,7 +49,7 @@ def ground(points: Any, sensor_height: Optional[float] = None, max_slope: float 
     return _unorganized(axes, height, slope)
 
 
-def remove_ground(points: Any, sensor_height: Optional[float] = None, max_slope: float = 20.0) -> np.ndarray:
+def remove_ground(points: Any, sensor_height: Optional[float] = None, max_slope: float = 20.0) -> Array:
     """A copy of a scan whose ground points are no returns: their x, y and z are NaN.
 
     The shape stays, so that labels of the result are labels of the scan.
@@ -74,7 +74,7 @@ def remove_ground(points: Any, sensor_height: Optional[float] = None, max_slope:
     return left
 
 
-def _unorganized(axes: Axes, height: float, slope: float) -> np.ndarray:
+def _unorganized(axes: Axes, height: float, slope: float) -> Array:
     """The ground of points in any order: sorted by azimuth and cut into columns, whose cells may have any order."""
     with np.errstate(invalid="ignore"):
         order = np.argsort(np.arctan2(axes.y[0], axes.x[0]), kind="stable")

@@ -5,18 +5,19 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ._checks import axes_of, number_of
+from ._checks import Array, axes_of, labels_of, number_of
+from .boxes import corners
 
 GREY = "0.75"
 
 
-def _colors(count: int) -> np.ndarray:
+def _colors(number: Array) -> Array:
     """Colours that differ clearly from those before and after: hues a golden section of the circle apart."""
     from matplotlib.colors import hsv_to_rgb
 
-    number = np.arange(count)
     hue = number * (np.sqrt(5) - 1) / 2 % 1
-    return hsv_to_rgb(np.stack([hue, 0.65 + 0.35 * (number % 2), 0.9 - 0.25 * (number // 2 % 2)], axis=1))
+    rgb: Array = hsv_to_rgb(np.stack([hue, 0.65 + 0.35 * (number % 2), 0.9 - 0.25 * (number // 2 % 2)], axis=1))
+    return rgb
 
 
 def plot(points: Any, labels: Any, boxes: Any = None, ax: Any = None, extent: Optional[float] = None) -> Any:
@@ -28,7 +29,7 @@ def plot(points: Any, labels: Any, boxes: Any = None, ax: Any = None, extent: Op
         See `lisco.cluster`.
     labels : array_like of int
         Of shape (N,) or (H, W).
-    boxes : iterable, optional
+    boxes : ndarray, optional
         What `lisco.boxes` returns; drawn as outlines.
     ax : matplotlib.axes.Axes, optional
         To draw on; by default a new figure's.
@@ -40,11 +41,7 @@ def plot(points: Any, labels: Any, boxes: Any = None, ax: Any = None, extent: Op
     matplotlib.axes.Axes
     """
     axes = axes_of(points)
-    label = np.asarray(labels)
-    if label.shape != axes.shape:
-        raise ValueError(f"labels must be of the shape of points, {axes.shape}, not {label.shape}")
-    if label.dtype.kind not in "iu":
-        raise ValueError(f"labels must be whole numbers, not {label.dtype}")
+    label = labels_of(labels, axes.shape)
     if extent is not None and number_of(extent, "extent") <= 0:
         raise ValueError(f"extent must be more than 0, not {extent}")
     if ax is None:
@@ -58,11 +55,11 @@ def plot(points: Any, labels: Any, boxes: Any = None, ax: Any = None, extent: Op
     clustered = shown & (label >= 0)
     ax.scatter(x[alone], y[alone], s=1, color=GREY, linewidths=0, rasterized=True)
     if clustered.any():
-        colors = _colors(int(label[clustered].max()) + 1)
-        ax.scatter(x[clustered], y[clustered], s=2, c=colors[label[clustered]], linewidths=0, rasterized=True)
-    for box in () if boxes is None else boxes:
-        corners = np.asarray(box.corners)
-        ax.plot(*np.concatenate([corners, corners[:1]])[:, :2].T, color="black", linewidth=0.8)
+        colors = _colors(label[clustered])
+        ax.scatter(x[clustered], y[clustered], s=2, c=colors, linewidths=0, rasterized=True)
+    if boxes is not None:
+        for base in corners(boxes)[:, [0, 1, 2, 3, 0], :2]:
+            ax.plot(*base.T, color="black", linewidth=0.8)
     ax.set_aspect("equal")
     if extent is not None:
         ax.set_xlim(-extent, extent)

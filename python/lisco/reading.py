@@ -4,7 +4,7 @@
 import os
 from typing import Any, Iterator, List, NamedTuple, Optional, Union
 
-import numpy as np
+from ._checks import Array
 
 
 class RecordedScan(NamedTuple):
@@ -13,7 +13,7 @@ class RecordedScan(NamedTuple):
     name: str
     time: float
     """Seconds since 1970."""
-    points: Optional[np.ndarray]
+    points: Optional[Array]
     """None if the scan cannot be read."""
     error: str
     """One line; empty if the scan can be read."""
@@ -32,7 +32,7 @@ class Packets:
     @property
     def stagger(self) -> float:
         """Largest difference between the azimuths of a return and of its column, radians."""
-        return self._capture.stagger
+        return float(self._capture.stagger)
 
     def turns(self) -> Iterator[Any]:
         """Turns with points (lasers, columns, 4), azimuths (degrees clockwise), positions (turns) and a time."""
@@ -127,7 +127,7 @@ def read(
     metadata: Any = None,
     topic: Optional[str] = None,
     port: Optional[int] = None,
-) -> Union[np.ndarray, Iterator[np.ndarray]]:
+) -> Union[Array, Iterator[Array]]:
     """Reads a scan, or the scans of a recording, in all formats of the programs.
 
     Parameters
@@ -161,12 +161,13 @@ def read(
     if any(option is not None for option in (sensor, calibration, metadata, topic, port)):
         raise ValueError(f"{name}: only a recording has a sensor, calibration, metadata, topic and port")
     try:
-        return _readers().read_file(name)
+        points: Array = _readers().read_file(name)
+        return points
     except RuntimeError as error:
         raise ValueError(str(error)) from None
 
 
-def _points(scans: Iterator[RecordedScan]) -> Iterator[np.ndarray]:
+def _points(scans: Iterator[RecordedScan]) -> Iterator[Array]:
     for scan in scans:
         if scan.points is None:
             raise ValueError(scan.error)

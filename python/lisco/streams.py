@@ -6,7 +6,7 @@ from typing import Any, Dict, Iterable, Iterator, List, NamedTuple, Optional, Tu
 
 import numpy as np
 
-from ._checks import count_of
+from ._checks import Array, count_of
 from .clusterer import Clusterer
 from .columns import ColumnClusterer, EndlessCluster, EndlessClusterer
 from .reading import is_recording, open_packets, read
@@ -15,9 +15,9 @@ from .reading import is_recording, open_packets, read
 class Rotation(NamedTuple):
     """A rotation and its clusters."""
 
-    points: np.ndarray
+    points: Array
     """(lasers, columns, 3 or more): the columns' points side by side."""
-    labels: np.ndarray
+    labels: Array
     """int32 (lasers, columns): 0 is the largest cluster and so on, -1 is no cluster."""
 
 
@@ -69,14 +69,14 @@ def stream(
     return _rotations(source, ColumnClusterer(tolerance, min_size, max_size), per_rotation)
 
 
-def _scans(source: Any, recording: Dict[str, Any]) -> Iterable[np.ndarray]:
+def _scans(source: Any, recording: Dict[str, Any]) -> Iterable[Array]:
     if os.path.exists(source) and not is_recording(source):
         raise ValueError(f"{os.fspath(source)}: is no recording")
     return read(source, **recording)
 
 
 def _rotations(columns: Iterable[Any], clusterer: ColumnClusterer, per_rotation: int) -> Iterator[Rotation]:
-    held: List[np.ndarray] = []
+    held: List[Array] = []
     for column in columns:
         clusterer.add_column(column)
         held.append(np.array(column))

@@ -15,4 +15,5 @@ PYBIND11_MODULE(_core, module) {
   lisco_python::defineColumns(module);
   lisco_python::defineEndless(module);
   lisco_python::defineGround(module);
+  lisco_python::defineBoxes(module);
 }

@@ -11,5 +11,6 @@ void defineLabeller(pybind11::module_& module);
 void defineColumns(pybind11::module_& module);
 void defineEndless(pybind11::module_& module);
 void defineGround(pybind11::module_& module);
+void defineBoxes(pybind11::module_& module);
 
 }  // namespace lisco_python

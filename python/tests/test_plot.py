@@ -33,3 +33,13 @@ def test_labels_of_another_shape_are_a_value_error():
         lisco.plot(np.ones((5, 3)), np.zeros(5))
     with pytest.raises(ValueError, match="extent"):
         lisco.plot(np.ones((5, 3)), np.zeros(5, int), extent=0)
+
+
+def test_boxes_are_outlines(rng):
+    points = np.concatenate([rng.normal(center, 0.2, size=(50, 3)) for center in (-6, 2)])
+    labels = np.repeat([3, 10**12], 50)
+    boxes = lisco.boxes(points, labels)
+    outlines = lisco.plot(points, labels, boxes).lines
+    assert len(outlines) == 2
+    for outline, corners in zip(outlines, lisco.corners(boxes)):
+        assert np.array_equal(outline.get_xydata(), corners[[0, 1, 2, 3, 0], :2])

@@ -2,8 +2,9 @@
 # `pip install .` of a copy of the sources, without network.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK_DIR})
-foreach(path CMakeLists.txt LICENSE README.md cmake include pyproject.toml python setup.py src)
-  file(COPY ${PROJECT_DIR}/${path} DESTINATION ${WORK_DIR}/source)
+foreach(path apps/view CMakeLists.txt LICENSE README.md cmake include pyproject.toml python setup.py src)
+  get_filename_component(folder source/${path} DIRECTORY)
+  file(COPY ${PROJECT_DIR}/${path} DESTINATION ${WORK_DIR}/${folder})
 endforeach()
 # Not optimized, for one level of vector instructions: compiled in seconds.
 set(ENV{CMAKE_ARGS} "-DCMAKE_CXX_FLAGS_RELEASE=-O0 -DCMAKE_CXX_FLAGS=-DHWY_COMPILE_ONLY_STATIC")

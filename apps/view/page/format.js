@@ -41,10 +41,11 @@ class DifferenceReader {
   }
 }
 
-// Clusters 1, 2, ... of a labelling: those of the header, and the rest measured on the points shown.
+// Clusters 1, 2, ... of a labelling: those of the header, and the rest measured on the points shown. Numbers may be
+// missing: those have no points.
 function clustersOf(scan, listed, classes) {
   const clusters = listed.map(([size, x, y, z, length, width, height, yaw, range], index) =>
-    ({id: index + 1, size, center: [x, y, z], length, width, height, yaw, range}));
+    ({id: index + 1, size, center: [x, y, z], length, width, height, yaw, range})).filter(cluster => cluster.size > 0);
   const measured = [];
   for (let i = 0; i < classes.length; ++i) {
     const id = classes[i] - 1;

@@ -50,16 +50,16 @@ class Distributed:
         dask.config.set({"logging": {"distributed": "critical"}})  # read when distributed is imported
         import distributed
 
-        self._distributed = distributed
+        self._distributed: Any = distributed
         self._patience = patience
-        self._cluster = None
+        self._cluster: Any = None
         self._client: Any = None
         logging.getLogger("distributed").setLevel(logging.CRITICAL)
         if address is None:
             if dask.config.get("distributed.scheduler.worker-ttl") == "5 minutes":
                 dask.config.set({"distributed.scheduler.worker-ttl": self._TTL})
             self._folder = tempfile.TemporaryDirectory(prefix="lisco-archive-")
-            self._cluster = distributed.LocalCluster(
+            self._cluster = self._distributed.LocalCluster(
                 n_workers=workers,
                 threads_per_worker=1,
                 dashboard_address=None,
@@ -122,7 +122,7 @@ class Distributed:
 
     def _window(self) -> int:
         workers = self._client.scheduler_info()["workers"].values()
-        return max(2, self._CALLS_PER_THREAD * sum(worker["nthreads"] for worker in workers))
+        return max(2, self._CALLS_PER_THREAD * sum(int(worker["nthreads"]) for worker in workers))
 
     def _finished(self, pending: Dict[Any, Arguments]) -> List[Any]:
         """Futures that are not pending any more; waits for one, for at most a second."""

@@ -125,7 +125,8 @@ def _counts(out: str, files: List[str], settings: Settings, executor: Any) -> Di
     path = os.path.join(out, COUNTS)
     if os.path.exists(path):
         with open(path, encoding="utf-8") as file:
-            return json.load(file)
+            known: Dict[str, int] = json.load(file)
+            return known
     recordings = [(file, settings) for file in files if is_recording(file)]
     counts = dict(executor.map(_counted, recordings))
     write_whole(path, canonical(counts))

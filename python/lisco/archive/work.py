@@ -10,6 +10,7 @@ from typing import Any, Dict, Iterator, List, Optional
 
 import numpy as np
 
+from .._checks import Array
 from ..clusterer import Clusterer
 from ..ground import remove_ground
 from ..reading import RecordedScan, read, recorded_scans
@@ -49,7 +50,8 @@ def published(out: str, piece: Piece) -> Optional[Dict[str, Any]]:
     """The report of a piece, with or without failures; None if there is none."""
     try:
         with open(os.path.join(out, "pieces", piece.name, REPORT), encoding="utf-8") as file:
-            return json.load(file)
+            report: Dict[str, Any] = json.load(file)
+            return report
     except FileNotFoundError:
         return None
 
@@ -126,7 +128,7 @@ def _write_results(folder: str, piece: Piece, settings: Settings) -> Dict[str, A
     clusterer = Clusterer(settings.tolerance, settings.min_size, settings.max_size)
     scans: List[Dict[str, Any]] = []
     failures: List[str] = []
-    rows: List[np.ndarray] = []
+    rows: List[Array] = []
     with zipfile.ZipFile(os.path.join(folder, LABELS), "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
         for name, seconds, points, error in _scans(piece, settings):
             if points is None:
@@ -137,7 +139,7 @@ def _write_results(folder: str, piece: Piece, settings: Settings) -> Dict[str, A
             member = zipfile.ZipInfo(f"{number:06d}.npy", _EPOCH)
             member.compress_type = zipfile.ZIP_DEFLATED
             with archive.open(member, "w", force_zip64=True) as file:
-                np.lib.format.write_array(file, labels, allow_pickle=False)
+                np.lib.format.write_array(file, labels, allow_pickle=False)  # type: ignore[no-untyped-call]
             found = measure(points, labels, number)
             rows.append(found)
             scans.append({"name": name, "time": seconds, "points": int(labels.size), "clusters": len(found)})
@@ -147,7 +149,7 @@ def _write_results(folder: str, piece: Piece, settings: Settings) -> Dict[str, A
     return report
 
 
-def _cluster(clusterer: Clusterer, points: np.ndarray, settings: Settings) -> np.ndarray:
+def _cluster(clusterer: Clusterer, points: Array, settings: Settings) -> Array:
     if settings.remove_ground:
         points = remove_ground(points)
     if settings.ground_z is not None:
@@ -158,7 +160,7 @@ def _cluster(clusterer: Clusterer, points: np.ndarray, settings: Settings) -> np
     return clusterer.cluster(points)
 
 
-def measure(points: np.ndarray, labels: np.ndarray, scan: int) -> np.ndarray:
+def measure(points: Array, labels: Array, scan: int) -> Array:
     """A row of ROW for each cluster. Sums are taken in the order of the points: equal on every machine."""
     xyz = points.reshape(-1, points.shape[-1])[:, :3].astype(np.float32, copy=False)
     label = labels.ravel()
