@@ -121,9 +121,9 @@ bool parse(int argc, char** argv, Options& options) {
      "read a capture at the pace of its recording, without breaks of more than ten seconds (default: as fast as "
      "possible)")
     ("output,o", pathOption("DIR", "--output", options.output),
-     "folder for rotation_000001.pcd and so on: each rotation (or window) as an organized cloud of x y z intensity label, where "
-     "the label is the cluster's id, 0 for none; in mode endless, written once all its clusters have been delivered. "
-     "Removes those of an earlier run")
+     "folder for rotation_000001.pcd and so on: each rotation (or window) as an organized cloud of x y z intensity "
+     "label, where the label is the cluster's id, 0 for none; in mode endless, written once all its clusters have been "
+     "delivered. Removes those of an earlier run")
     ("bag", pathOption("FILE.mcap", "--bag", options.bag),
      "write each rotation or window as a recording of ROS 2: the labelled cloud (sensor_msgs/PointCloud2) and boxes "
      "(visualization_msgs/MarkerArray)")

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs Debian's (or Ubuntu's) packages for building, running and testing, and those given as arguments. Does nothing,
-# and needs no network, if all are installed.
+# Installs Debian's (or Ubuntu's) packages for building, running and testing, and those given as arguments. Does
+# nothing, and needs no network, if all are installed.
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config libpcl-dev libhwy-dev libboost-program-options-dev nlohmann-json3-dev

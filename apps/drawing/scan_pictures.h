@@ -16,8 +16,8 @@ namespace lisco_apps {
 /// Draws both pictures of a scan, with the ids of its larger clusters, in the same colours:
 /// - the scan as the sensor sees it, one cell per laser and step (an unorganized scan is projected by azimuth and
 ///   elevation): clusters in colours, noise grey, ground dark, no return black;
-/// - the scan from above, x (forward) up and y to the left, with the oriented boxes of the clusters, the sensor, rings of
-///   equal range and a scale. A camera's cloud (all points ahead in +z) is shown with z up and x to the right, with
+/// - the scan from above, x (forward) up and y to the left, with the oriented boxes of the clusters, the sensor, rings
+///   of equal range and a scale. A camera's cloud (all points ahead in +z) is shown with z up and x to the right, with
 ///   axis-aligned boxes.
 /// \throws std::runtime_error if a file cannot be written
 void drawPictures(const ClusteredScan& scan, const fs::path& range_image_png, const fs::path& top_view_png);

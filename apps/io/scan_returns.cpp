@@ -15,8 +15,8 @@
 namespace lisco_apps {
 namespace {
 
-/// Whether unorganized points lie around the sensor as those of a rotating one do: on most sides, and hardly any straight
-/// above or below it, where cameras look and the middle of a map is.
+/// Whether unorganized points lie around the sensor as those of a rotating one do: on most sides, and hardly any
+/// straight above or below it, where cameras look and the middle of a map is.
 bool isAroundSensor(const Cloud& cloud) {
   constexpr std::size_t kBins = 360;
   constexpr double kMinSides = 0.5;

@@ -26,8 +26,8 @@ struct LabelledScan {
   std::vector<Box> boxes;
 };
 
-/// Results as a recording that ROS 2's and Foxglove's tools play: for each scan a sensor_msgs/PointCloud2 of x, y, z and
-/// label on /lisco/points, and a visualization_msgs/MarkerArray of boxes on /lisco/boxes.
+/// Results as a recording that ROS 2's and Foxglove's tools play: for each scan a sensor_msgs/PointCloud2 of x, y, z
+/// and label on /lisco/points, and a visualization_msgs/MarkerArray of boxes on /lisco/boxes.
 class ResultBag {
  public:
   /// \throws std::runtime_error as McapWriter ()

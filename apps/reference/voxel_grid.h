@@ -17,8 +17,8 @@ namespace lisco_reference {
 /// Cells have a side of 0.9999 eps / sqrt(3), so that all points of a cell are neighbours and a cell is one component.
 /// Points are sorted by cell (radix sort by z, y, x). Points within eps lie at most two cells apart per axis: each row
 /// of cells along x is compared with itself and with the rows that follow within two steps of y and z, which are found
-/// by cursors that move forward only; two rows are merged like sorted lists. Two cells are compared by root, then by box,
-/// then point by point up to the first pair of neighbours. Memory is kept from scan to scan.
+/// by cursors that move forward only; two rows are merged like sorted lists. Two cells are compared by root, then by
+/// box, then point by point up to the first pair of neighbours. Memory is kept from scan to scan.
 class VoxelGrid {
  public:
   /// Finds the connected components of `returns`.

@@ -80,8 +80,8 @@ class Decoder {
   /// Calls visit for each column of the packet, in the order of time.
   virtual Kind decode(const Packet& packet, const Visitor& visit) = 0;
 
-  /// Gives the columns of packets that wait for others before them: to be called at the end of the packets, and when none
-  /// has come for a while.
+  /// Gives the columns of packets that wait for others before them: to be called at the end of the packets, and when
+  /// none has come for a while.
   virtual void flush(const Visitor& /*visit*/) {}
 
   /// Measures on a whole capture, which is read to its end, what is less exact while decoding.

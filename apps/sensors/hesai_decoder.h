@@ -14,13 +14,13 @@
 
 namespace lisco_apps {
 
-/// Decodes a Hesai sensor's packets to columns, in the maker's frame: x to the right, y forward (the azimuth 0), z up. The
-/// intensity is the reflectivity.
+/// Decodes a Hesai sensor's packets to columns, in the maker's frame: x to the right, y forward (the azimuth 0), z up.
+/// The intensity is the reflectivity.
 ///
 /// The azimuth of a return is that of its block and the offset of its laser, as in the maker's software: the offsets
-/// describe a sensor that turns. The strongest of several returns is that of the greatest reflectivity. Late packets, by
-/// their numbers, or by their times if they have none, are dropped. Position packets are those of the GPS. Foreign ones
-/// are detected by their length, their header, or an azimuth of more than 360 degrees.
+/// describe a sensor that turns. The strongest of several returns is that of the greatest reflectivity. Late packets,
+/// by their numbers, or by their times if they have none, are dropped. Position packets are those of the GPS. Foreign
+/// ones are detected by their length, their header, or an azimuth of more than 360 degrees.
 class HesaiDecoder : public Decoder {
  public:
   explicit HesaiDecoder(HesaiModel model, ReturnChoice returns = ReturnChoice::kBoth);

@@ -18,7 +18,8 @@ inline constexpr double kViewError = kViewStep * 0.8660254037844387;
 inline constexpr double kViewReach = kViewStep * (1 << 23);
 
 /// Encodes a scan for the page (see doc/view.md): the size of a JSON header (uint32, little-endian), the header, and
-/// for each property of the points a stream of bytes. Points come in the scan's order, or in Z-order if that is smaller.
+/// for each property of the points a stream of bytes. Points come in the scan's order, or in Z-order if that is
+/// smaller.
 std::string encodeViewScan(const ViewScan& scan);
 
 }  // namespace lisco_apps

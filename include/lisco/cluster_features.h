@@ -40,9 +40,9 @@ struct ClusterFeatures {
 ///   lisco::ClusterFeatures car = lisco::clusterFeatures(points.data(), points.size() / 3, 3 * sizeof(float));
 ///   car.box.yaw, car.box.length, car.box.width ...
 ///
-/// The oriented box is an L-shape fit (Zhang et al. 2017, closeness criterion): a LiDAR sees two sides of a vehicle, and
-/// of the boxes around its returns, the one is taken whose sides the returns are nearest to. The candidates are the
-/// edges of the convex hull, so that the box turns with the cluster. (The box of the least area is up to 25 degrees
+/// The oriented box is an L-shape fit (Zhang et al. 2017, closeness criterion): a LiDAR sees two sides of a vehicle,
+/// and of the boxes around its returns, the one is taken whose sides the returns are nearest to. The candidates are
+/// the edges of the convex hull, so that the box turns with the cluster. (The box of the least area is up to 25 degrees
 /// wrong for two visible sides, as any right triangle has the same area between its legs as over its hypotenuse.)
 ///
 /// Sums and differences are taken in double precision, relative to the first point: map coordinates lose nothing.

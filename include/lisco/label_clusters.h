@@ -47,10 +47,11 @@ LISCO_EXPORT std::size_t labelClusters(const void* points, std::size_t count, st
 /// labelClusters () for points in memory of any layout, scan after scan:
 ///
 ///   lisco::ClusterLabeller labeller;
-///   while (...) clusters = labeller.label(count, [&](std::size_t laser, std::size_t column) { ... }, parameters, labels);
+///   const auto cell_at = [&](std::size_t laser, std::size_t column) { return lisco::Return{...}; };
+///   while (...) clusters = labeller.label(count, cell_at, parameters, labels);
 ///
-/// Nothing is allocated once the buffers have grown to the largest scan seen (see ColumnClusterer). Not thread safe; any
-/// number of instances may work side by side.
+/// Nothing is allocated once the buffers have grown to the largest scan seen (see ColumnClusterer). Not thread safe;
+/// any number of instances may work side by side.
 class LISCO_EXPORT ClusterLabeller {
  public:
   ClusterLabeller();

@@ -46,8 +46,8 @@ class CellSource {
   };
 
   /// \param cells callable as Return (std::size_t laser, std::size_t column), or, which reads a whole block, as
-  ///        void (std::size_t laser, std::size_t first, std::size_t count, const Destination& to); by several threads at
-  ///        once where the reader says so
+  ///        void (std::size_t laser, std::size_t first, std::size_t count, const Destination& to); by several threads
+  ///        at once where the function that takes it says so
   template <typename Cells>
   explicit CellSource(Cells& cells) : context_(std::addressof(cells)), read_(&readFrom<Cells>) {}
 

@@ -18,7 +18,8 @@ def car(yaw, place=(12.0, -5.0, 0.3), length=4.4, width=1.8):
     sides = [(x, -width / 2) for x in along] + [(length / 2, y) for y in across]
     points = np.array([(x, y, z) for x, y in sides for z in np.linspace(0, 1.4, 8)])
     sine, cosine = np.sin(yaw), np.cos(yaw)
-    turned = np.stack([cosine * points[:, 0] - sine * points[:, 1], sine * points[:, 0] + cosine * points[:, 1]], axis=1)
+    x, y = points[:, 0], points[:, 1]
+    turned = np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=1)
     return np.concatenate([turned, points[:, 2:]], axis=1) + place
 
 

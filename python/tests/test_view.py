@@ -20,7 +20,8 @@ SECONDS = 120
 def scan():
     """Three posts of 40, 30 and 20 returns at 4 m, 6 m and 8 m, five points apart, and two rows of ground."""
     posts = [
-        np.stack([np.full(n, 4.0 + 2 * i), np.zeros(n), 0.02 * np.arange(n)], axis=1) for i, n in enumerate((40, 30, 20))
+        np.stack([np.full(n, 4.0 + 2 * i), np.zeros(n), 0.02 * np.arange(n)], axis=1)
+        for i, n in enumerate((40, 30, 20))
     ]
     alone = np.stack([np.full(5, -5.0), 3.0 * np.arange(5), np.zeros(5)], axis=1)
     ground = np.stack([np.arange(25) - 12.0, np.full(25, 3.0), np.full(25, -2.0)], axis=1)

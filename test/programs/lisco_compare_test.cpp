@@ -492,7 +492,9 @@ TEST_F(LiscoCompare, ContinuesAfterABadFile) {
   EXPECT_EQ(outcome.status, 2);
   EXPECT_EQ(linesOf(outcome.err), 4U) << outcome.err;
   expectSaid("lisco_compare: hollow: holds no scans\n", outcome.err);
-  expectSaid("lisco_compare: b.bin: is no cloud of floats: its size, 3 bytes, is no multiple of 12, 16, 20, ... or 64\n", outcome.err);
+  expectSaid(
+      "lisco_compare: b.bin: is no cloud of floats: its size, 3 bytes, is no multiple of 12, 16, 20, ... or 64\n",
+      outcome.err);
   expectSaid("lisco_compare: none.pcd: no returns to cluster\n", outcome.err);
   expectSaid("lisco_compare: missing.pcd: does not exist\n", outcome.err);
   expectSaid("\na.pcd: 4 rows", outcome.out);

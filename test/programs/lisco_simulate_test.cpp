@@ -305,7 +305,8 @@ TEST_F(LiscoSimulate, PrintsHelpAndVersion) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.status, 0);
   for (const char* word : {"Usage: lisco_simulate", "--scene", "--case", "singletons", "--gap", "--vehicle", "--sensor",
-                           "os1-128", "--drop-outs", "--terrain", "field", "--rotations", "poses.csv", "--pitch", "--pcap"})
+                           "os1-128", "--drop-outs", "--terrain", "field", "--rotations", "poses.csv", "--pitch",
+                           "--pcap"})
     EXPECT_NE(help.out.find(word), std::string::npos) << word;
   const Outcome version = run("--version");
   EXPECT_EQ(version.status, 0);

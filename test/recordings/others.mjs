@@ -136,7 +136,8 @@ const [what, path] = process.argv.slice(2);
 if (what === 'write') {
   await write(path + '/none.mcap', {});
   await write(path + '/unchunked.mcap', {useChunks: false});
-  await write(path + '/lz4.mcap', {compressChunk: (data) => ({compression: 'lz4', compressedData: lz4.compress(data)})});
+  await write(path + '/lz4.mcap',
+              {compressChunk: (data) => ({compression: 'lz4', compressedData: lz4.compress(data)})});
   await write(path + '/zstd.mcap',
               {compressChunk: (data) => ({compression: 'zstd', compressedData: zstd.compress(data)})});
 } else {

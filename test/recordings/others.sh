@@ -33,7 +33,7 @@ expected=
 for method in none lz4 zstd unchunked; do
   "$cluster" "written/$method.mcap" --topic /points -t 0.5 --min-size 3 >out.txt 2>err.txt
   said=$(grep -E '^  (read|scan|clusters|sizes)' out.txt)
-  [ "$(grep -c '^  clusters  2 of' out.txt)" = 5 ] || { cat out.txt; echo "$method: not 2 clusters in each of 5"; exit 1; }
+  [ "$(grep -c '^  clusters  2 of' out.txt)" = 5 ] || { cat out.txt; echo "$method: not 2 clusters in all 5"; exit 1; }
   grep -q 'arranged by ring in 4 rows x 60 columns' out.txt || { cat out.txt; echo "$method: not arranged"; exit 1; }
   [ -z "$expected" ] || [ "$said" = "$expected" ] || { echo "$method gives other clusters"; exit 1; }
   expected=$said
@@ -64,6 +64,6 @@ fi
 python3 "$here/rosbag_writer.py" written
 for method in none bz2 lz4; do
   "$cluster" "written/$method.bag" -t 0.5 --min-size 3 >out.txt 2>err.txt
-  [ "$(grep -c '^  clusters  2 of' out.txt)" = 5 ] || { cat out.txt; echo "$method: not 2 clusters in each of 5"; exit 1; }
+  [ "$(grep -c '^  clusters  2 of' out.txt)" = 5 ] || { cat out.txt; echo "$method: not 2 clusters in all 5"; exit 1; }
 done
 echo "5 clouds in 3 bags of ROS 1"

@@ -31,8 +31,8 @@ struct OusterSensor {
 /// Ranges in millimetres by frame, column, pixel and return.
 using OusterWorld = std::function<std::uint32_t(std::size_t, std::size_t, std::size_t, std::size_t)>;
 
-/// The packets of a frame that its window lets through. The signal and the reflectivity of a pixel are its number modulo
-/// 256, and more by one for the second return.
+/// The packets of a frame that its window lets through. The signal and the reflectivity of a pixel are its number
+/// modulo 256, and more by one for the second return.
 std::vector<Bytes> ousterFrame(const OusterSensor& sensor, std::size_t frame, const OusterWorld& world,
                                std::uint32_t initialization = 7);
 

@@ -1,4 +1,4 @@
-// A camera that turns about a target. Display coordinates: x ahead, y to the left, z up, metres, from the page's origin.
+// A camera that turns about a target. Display coordinates: x ahead, y to the left, z up, metres, from its origin.
 
 const FIELD_OF_VIEW = 50 * Math.PI / 180;  // vertical
 

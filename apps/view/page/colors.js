@@ -70,7 +70,8 @@ function pointColors(scan, labelling, look) {
   const classes = labelling.classes;
   const palette = PALETTES[look.theme].map(rgb);
   const plain = {ground: packed(rgb(PLAIN[look.theme].ground)), noise: packed(rgb(PLAIN[look.theme].noise))};
-  const dimmed = color => color.map(value => Math.round(look.theme === 'dark' ? value * 0.3 : 255 - (255 - value) * 0.3));
+  const faded = value => look.theme === 'dark' ? value * 0.3 : 255 - (255 - value) * 0.3;
+  const dimmed = color => color.map(value => Math.round(faded(value)));
   labelling.colors ||= clusterColors(labelling.clusters, palette.length);
   const of_class = [plain.ground, plain.noise];
   labelling.clusters.forEach((cluster, index) => {

@@ -19,7 +19,8 @@ function connect(view) {
   byId('back').addEventListener('click', () => view.show(view.frame - 1));
   byId('next').addEventListener('click', () => view.show(view.frame + 1));
   for (const id of ['left', 'right'])
-    byId(id).addEventListener('change', () => view.setLabellings(Number(byId('left').value), Number(byId('right').value)));
+    byId(id).addEventListener(
+        'change', () => view.setLabellings(Number(byId('left').value), Number(byId('right').value)));
   byId('fold').addEventListener('click', () => {
     const folded = byId('panel').classList.toggle('folded');
     byId('fold').setAttribute('aria-expanded', !folded);

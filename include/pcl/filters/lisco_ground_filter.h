@@ -26,11 +26,11 @@ namespace pcl {
  *
  * As in pcl::PassThrough, points that are no measurements (a NaN or infinite coordinate, or exactly (0, 0, 0)) are
  * always removed. setIndices (), getRemovedIndices (), setKeepOrganized () and setUserFilterValue () act as in all
- * filters; only the indexed points are looked at. Indices stay in the order given.
+ * filters; only the indexed points are read. Indices stay in the order given.
  *
  * The cloud's z axis points up, to within about 10 degrees. Organized scans (height = lasers, width = steps of the
- * rotation) are filtered column by column, as lisco::GroundFilter does it; the sensor's position and tilt are estimated.
- * Unorganized clouds, in any order, are sorted by azimuth about sensor_origin_ first. \ingroup filters
+ * rotation) are filtered column by column, as lisco::GroundFilter does it; the sensor's position and tilt are
+ * estimated. Unorganized clouds, in any order, are sorted by azimuth about sensor_origin_ first. \ingroup filters
  */
 template <typename PointT>
 class LiscoGroundFilter : public FilterIndices<PointT> {

@@ -13,7 +13,7 @@ inline constexpr std::size_t kOwnBrick = kNearBricks / 2;
 
 /// The voxels around one. Bit x + 4 y + 16 z of a word is a voxel of a brick.
 struct Neighbourhood {
-  /// of[voxel][i]: the voxels of near brick i whose numbers differ by 2 at most from those of the voxel of the own brick.
+  /// of[voxel][i]: the voxels of near brick i whose numbers differ by 2 at most from those of a voxel of the own brick.
   std::uint64_t of[64][kNearBricks] = {};
 
   constexpr Neighbourhood() {
@@ -24,17 +24,7 @@ struct Neighbourhood {
             const int x = (voxel & 3) + dx;
             const int y = (voxel >> 2 & 3) + dy;
             const int z = (voxel >> 4) + dz;
-            const int brick = (z < 0   ? 0
-                               : z > 3 ? 2
-                                       : 1) *
-                                  9 +
-                              (y < 0   ? 0
-                               : y > 3 ? 2
-                                       : 1) *
-                                  3 +
-                              (x < 0   ? 0
-                               : x > 3 ? 2
-                                       : 1);
+            const int brick = (z + 4) / 4 * 9 + (y + 4) / 4 * 3 + (x + 4) / 4;
             of[voxel][brick] |= std::uint64_t{1} << ((x & 3) | (y & 3) << 2 | (z & 3) << 4);
           }
   }

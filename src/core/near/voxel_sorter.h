@@ -19,15 +19,15 @@ struct VoxelNumbering {
   std::size_t axis[3];  ///< minor, middle and major: 0 for x, 1 for y, 2 for z
   double corner[3];     ///< of the box, metres, by x, y and z
   double per_metre;     ///< voxels
-  /// A key is, from its highest bits on, a brick's number along the major, middle and minor axis, and the voxel's in it.
+  /// Of a key: from the highest bit on, a brick's number along the major, middle and minor axis, and the voxel's in it.
   unsigned minor_bits, middle_bits, bits;
 };
 
 /// Algorithm 4 on near returns that are read at once: sorts them by voxel and joins neighbours plane by plane.
 ///
 /// The returns of a run in a voxel are a *fragment*. Fragments are sorted by key (radix sort), so that the returns of a
-/// voxel, of a brick of 4 x 4 x 4 voxels, and of a plane of bricks across the major axis lie side by side. Each plane is
-/// linked within and with the plane before. Threads share the planes.
+/// voxel, of a brick of 4 x 4 x 4 voxels, and of a plane of bricks across the major axis lie side by side. Each plane
+/// is linked within and with the plane before. Each thread links a slab of consecutive planes.
 class VoxelSorter {
  public:
   /// Joins all neighbours among some returns.
