@@ -55,7 +55,6 @@ class Probe {
     tolerance_ = lisco::Tolerance(tolerance);
     lasers_ = 0;
     points_.clear();
-    subclusters_.reset(0);
     for (FarPart& part : parts_) part.prepare(tolerance_, hints, columns);
     part_ = &parts_.front();
   }
@@ -140,11 +139,6 @@ class Probe {
     lasers_ = std::max(lasers_, laser + 1);
     part_->image.addLasers(lasers_);
     if (info_.far == 0) return 0;
-    if (!part_->image.started) {
-      const auto first = static_cast<std::size_t>(__builtin_ctzll(info_.far));
-      part_->image.start(block_.x[lisco::RingBlock::kMargin + first], block_.y[lisco::RingBlock::kMargin + first],
-                         first_column + static_cast<std::uint32_t>(first));
-    }
     return part_->image.place(block_, info_, laser, first_column);
   }
 

@@ -204,7 +204,6 @@ class Probe {
     tolerance_ = lisco::Tolerance(tolerance);
     added_.clear();
     runs_ = 0;
-    subclusters_.reset(0);
     voxels_.grid.prepare(tolerance_);
     others_.grid.prepare(tolerance_);
   }

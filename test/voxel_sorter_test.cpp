@@ -113,7 +113,7 @@ bool isEasy(const Cloud& cloud) {
 /// \return whether the returns were sorted
 bool expectTrueSets(lisco::VoxelSorter& sorter, const Cloud& cloud) {
   lisco::DisjointSets subclusters;
-  subclusters.reset(cloud.elementCount());
+  subclusters.reserve(cloud.elementCount());
   for (std::uint32_t i = 0; i < cloud.elementCount(); ++i) subclusters.create(i);
   for (const auto& [a, b] : cloud.merged) subclusters.merge(a, b);
   const std::vector<lisco::NearReturns> parts = partsOf(cloud);
@@ -495,7 +495,7 @@ TEST(VoxelSorter, LosesNoJoinOfAnotherThread) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     for (lisco::DisjointSets* sets : {&right, &subclusters}) {
-      sets->reset(kSets);
+      sets->reserve(kSets);
       for (std::uint32_t i = 0; i < kSets; ++i) sets->create(i);
     }
     const std::size_t count = 2 + seed % 3;

@@ -16,9 +16,24 @@ void forEachBit(ColumnBits bits, Visit&& visit) {
   for (; bits != 0; bits &= bits - 1) visit(static_cast<std::size_t>(__builtin_ctzll(bits)));
 }
 
+/// Number of bits set, without the instruction for it, which the oldest processors do not have.
+inline std::uint32_t countBits(ColumnBits bits) {
+  bits -= bits >> 1 & 0x5555555555555555U;
+  bits = (bits & 0x3333333333333333U) + (bits >> 2 & 0x3333333333333333U);
+  bits = (bits + (bits >> 4)) & 0x0F0F0F0F0F0F0F0FU;
+  return static_cast<std::uint32_t>(bits * 0x0101010101010101U >> 56);
+}
+
 /// Bits first, first + 1, ... ; none from 64 on.
 inline ColumnBits bitsFrom(std::size_t first) {
   return first < 64 ? ~ColumnBits{0} << first : 0;
+}
+
+/// The end of the chain that begins with a column, 64 at most.
+/// \param ends columns that no chain goes on with
+inline std::size_t endOfChain(ColumnBits ends, std::size_t begin) {
+  const ColumnBits after = ends & bitsFrom(begin + 1);
+  return after != 0 ? static_cast<std::size_t>(__builtin_ctzll(after)) : std::size_t{64};
 }
 
 /// Calls visit(begin, end) for each chain of consecutive members; a chain ends before the next start as well.
@@ -26,10 +41,7 @@ inline ColumnBits bitsFrom(std::size_t first) {
 template <typename Visit>
 void forEachChain(ColumnBits starts, ColumnBits members, Visit&& visit) {
   const ColumnBits ends = ~members | starts;
-  forEachBit(starts, [&](std::size_t begin) {
-    const ColumnBits after = ends & bitsFrom(begin + 1);
-    visit(begin, after != 0 ? static_cast<std::size_t>(__builtin_ctzll(after)) : std::size_t{64});
-  });
+  forEachBit(starts, [&](std::size_t begin) { visit(begin, endOfChain(ends, begin)); });
 }
 
 }  // namespace lisco

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "convex_hull.h"
-#include "pi.h"
+#include "core/convex_hull.h"
+#include "core/pi.h"
 
 namespace lisco {
 namespace {

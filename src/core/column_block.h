@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/partition.h"
 #include "core/ring_block.h"
 #include "lisco/return.h"
 
@@ -19,9 +18,9 @@ class ColumnBlock {
     const auto nothing = [](std::size_t, std::size_t) { return kNoReturn; };
     const CellSource empty(nothing);
     if (rings_.size() < lasers) rings_.resize(lasers);
-    for (; lasers_ < lasers; ++lasers_) fill(rings_[lasers_], 0, empty, lasers_, 0, columns_);
-    for (std::size_t laser = 0; laser < lasers; ++laser) fill(rings_[laser], columns_, cells, laser, first, count);
-    for (std::size_t laser = lasers; laser < lasers_; ++laser) fill(rings_[laser], columns_, empty, laser, 0, count);
+    for (; lasers_ < lasers; ++lasers_) rings_[lasers_].read(0, empty, lasers_, 0, columns_);
+    for (std::size_t laser = 0; laser < lasers; ++laser) rings_[laser].read(columns_, cells, laser, first, count);
+    for (std::size_t laser = lasers; laser < lasers_; ++laser) rings_[laser].read(columns_, empty, laser, 0, count);
     columns_ += count;
   }
   /// Appends a column.

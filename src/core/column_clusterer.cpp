@@ -37,7 +37,7 @@ class ColumnClusterer::Rotation {
  private:
   void divide(std::size_t columns, std::size_t lasers, const CellSource& cells);
   void receiveAtOnce(std::size_t columns, std::size_t lasers, const CellSource& cells);
-  std::size_t tryFar(std::size_t columns, std::size_t lasers, const CellSource& cells);
+  std::size_t tryFar(std::size_t lasers, const CellSource& cells);
   void preparePart(std::size_t i);
   void readPart(std::size_t i, std::size_t begin, std::size_t end, std::size_t lasers, const CellSource& cells);
   void receiveInSequence(std::size_t columns, std::size_t lasers, const CellSource& cells);
@@ -64,7 +64,7 @@ class ColumnClusterer::Rotation {
   std::size_t partition_count_ = 0;  ///< in use; 0: not divided yet
   std::vector<Part> parts_;
   bool are_linked_ = false;  ///< all partitions but the last, with each other
-  enum class Near { kCollected, kSorted, kInVoxels } near_ = Near::kInVoxels;  ///< near returns
+  enum class Near { kCollected, kSorted, kInVoxels } near_ = Near::kInVoxels;  ///< state of the near returns
   VoxelSorter sorter_;
   std::vector<const NearReturns*> near_returns_;
   LoadBalancer balancer_;
@@ -78,11 +78,20 @@ class ColumnClusterer::Rotation {
 
 namespace {
 
+// In brackets, the section of benchmarks/suite.sh that shows the effect.
+
 /// Columns that come first and at once, from which on near returns are collected and sorted; fewer are put into voxels,
-/// as are columns that follow.
+/// as are columns that follow (recordings).
 constexpr std::size_t kWorthSorting = 256;
-/// Columns of these that tell whether far returns are worth a range image.
+/// Columns of these on which the work of far returns is measured. Fewer: a worse estimate; more: a later change
+/// (recordings).
 constexpr std::size_t kTriedColumns = 128;
+/// Columns that are read from their source; fewer are gathered into blocks, which evens out their work (latency).
+constexpr std::size_t kWorthReadingAtOnce = 16;
+/// Cells from which on several threads take less time than one (threads).
+constexpr std::size_t kWorthThreads = 8192;
+/// Of reading a cell, in the segment linker's units, for balancing (threads).
+constexpr std::size_t kWorkOfCell = 2;
 
 }  // namespace
 
@@ -96,7 +105,6 @@ void ColumnClusterer::Rotation::begin(const Parameters& parameters) {
   partition_count_ = 0;
   are_linked_ = is_sorted_ = false;
   near_ = Near::kInVoxels;
-  subclusters_.reset(0);
   sizes_.clear();
   scheduler_.begin(parameters_.block_columns);
   // Single-threaded path, prepared here so that the first column costs no more than the rest.
@@ -133,26 +141,28 @@ void ColumnClusterer::Rotation::update() {
 
 /// Divides the columns among threads, if there are enough of them.
 void ColumnClusterer::Rotation::divide(std::size_t columns, std::size_t lasers, const CellSource& cells) {
-  constexpr std::size_t kWorthThreads = 8192;  // cells
   std::size_t count = 1;
   if (parameters_.threads > 1 && columns * lasers >= kWorthThreads) {
     balancer_.prepare(columns, lasers, cells);
     count = balancer_.partCount(parameters_.threads);
   }
-  parts_.assign(count, {0, columns});
+  parts_.resize(count);
   if (count > 1)
     balancer_.divide(count, [&](std::size_t part, std::size_t first, std::size_t end) { parts_[part] = {first, end}; });
   usePartitions(count);
-  for (std::size_t i = 0; i < count; ++i)
+  for (std::size_t i = 1; i < count; ++i)
     partitions_[i].first_element = static_cast<std::uint32_t>(lasers * parts_[i].first);  // at most a run for each cell
 }
 
 /// Each thread reads its part of the columns, and links its far returns as far as it goes without the others. Near
 /// returns are collected.
 void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t lasers, const CellSource& cells) {
-  if (partition_count_ > 1) subclusters_.reset(lasers * columns + RingBlock::kColumns);
+  if (partition_count_ == 1)
+    parts_.assign(1, {0, columns});
+  else
+    subclusters_.reserve(lasers * columns + RingBlock::kColumns);
   near_ = Near::kCollected;
-  const std::size_t tried = tryFar(columns, lasers, cells);
+  const std::size_t tried = tryFar(lasers, cells);
   inParallel(partition_count_, [&](std::size_t i) {
     if (i > 0) preparePart(i);
     readPart(i, i == 0 ? tried : parts_[i].first, parts_[i].end, lasers, cells);
@@ -162,13 +172,11 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
 
 /// Reads the first columns. If linking far returns takes longer than sorting, all returns of the rotation are near.
 /// \return the columns read
-std::size_t ColumnClusterer::Rotation::tryFar(std::size_t columns, std::size_t lasers, const CellSource& cells) {
-  if (partition_count_ > 1) {
+std::size_t ColumnClusterer::Rotation::tryFar(std::size_t lasers, const CellSource& cells) {
+  if (partition_count_ > 1)
     preparePart(0);
-  } else {
-    parts_.assign(1, {0, columns});
-    partitions_[0].collectNear();  // prepared when it was taken into use
-  }
+  else
+    partitions_[0].collectNear();  // prepared by usePartitions ()
   const std::size_t tried = std::min(kTriedColumns, parts_[0].end);
   if (!partitions_[0].hasFar()) return 0;
   readPart(0, 0, tried, lasers, cells);
@@ -185,7 +193,6 @@ void ColumnClusterer::Rotation::preparePart(std::size_t i) {
 
 void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t begin, std::size_t end, std::size_t lasers,
                                          const CellSource& cells) {
-  constexpr std::size_t kWorkOfCell = 2;  // in the segment linker's units
   Partition& partition = partitions_[i];
   if (!partition.hasFar()) {
     partition.readLasers(cells, begin, end, lasers, subclusters_);
@@ -205,7 +212,6 @@ void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t begin, std::
 
 /// Whole blocks of columns are read at once; single columns are gathered into blocks, whose work is spread.
 void ColumnClusterer::Rotation::receiveInSequence(std::size_t columns, std::size_t lasers, const CellSource& cells) {
-  constexpr std::size_t kWorthReadingAtOnce = 16;  // columns
   Partition& partition = lastPartition();
   partition.addLasers(lasers);
   for (std::size_t first = 0; first < columns;) {
@@ -258,25 +264,18 @@ void ColumnClusterer::Rotation::stopCollecting() {
   for (std::size_t i = 0; i < partition_count_; ++i) partitions_[i].stopCollecting(subclusters_);
 }
 
-/// Numbers the subclusters by their first runs. A root is the first element of its set.
+/// Numbers the subclusters by their first runs.
 void ColumnClusterer::Rotation::numberSubclusters() {
   sizes_.clear();
   for (std::size_t i = 0; i < partition_count_; ++i) {
-    Partition& partition = partitions_[i];
-    std::uint32_t element = partition.first_element;
-    for (Run& run : partition.runs.runs) {
-      const std::uint32_t root = subclusters_.find(element);
-      if (root == element) {
-        run.subcluster = static_cast<std::uint32_t>(sizes_.size());
-        sizes_.push_back(0);
-      } else {
-        std::size_t owner = i;
-        while (root < partitions_[owner].first_element) --owner;
-        run.subcluster = runsOf(owner).runs[root - partitions_[owner].first_element].subcluster;
-      }
-      sizes_[run.subcluster] += run.count;
-      ++element;
-    }
+    const auto subclusterOf = [&](std::uint32_t root) {
+      std::size_t owner = i;
+      while (root < partitions_[owner].first_element) --owner;
+      return runsOf(owner).runs[root - partitions_[owner].first_element].subcluster;
+    };
+    std::uint32_t element = partitions_[i].first_element;
+    for (Run& run : partitions_[i].runs.runs)
+      run.subcluster = numberElement(element++, run.count, subclusters_, sizes_, subclusterOf);
   }
 }
 
@@ -286,7 +285,6 @@ void ColumnClusterer::Rotation::usePartitions(std::size_t count) {
   for (std::size_t i = 0; i < count; ++i)
     partitions_[i].runs.source_index.reserve(parameters_.expected_returns / count);
   if (count > 1) return;  // prepared by their threads
-  partitions_.front().first_element = 0;
   partitions_.front().prepare(tolerance_, parameters_.sensor, ~std::size_t{0});
 }
 

@@ -3,7 +3,7 @@
 //
 // Andrew's monotone chain, after points inside of an octagon of extreme points have been discarded (Akl and
 // Toussaint): sorting is what takes the time, and few points of a cluster remain.
-#include "convex_hull.h"
+#include "core/convex_hull.h"
 
 #include <algorithm>
 #include <array>

@@ -14,18 +14,17 @@ namespace lisco {
 /// halved on the way (van Leeuwen and van der Weide 1977).
 class DisjointSets {
  public:
-  /// Forgets all elements and reserves capacity for some. Keeps its memory.
-  void reset(std::size_t capacity) {
+  /// Provides memory for elements below a number. Other elements stay as they are.
+  void reserve(std::size_t capacity) {
     if (parents_.size() < capacity) parents_.resize(capacity);
   }
-  std::size_t capacity() const { return parents_.size(); }
-
-  /// createH: a new set of one element below capacity ().
-  void create(std::uint32_t element) { parents_[element] = element; }
-  /// Grows beyond the capacity of reset ().
+  /// The same, with some to spare: for a number that grows step by step.
   void grow(std::size_t capacity) {
     if (parents_.size() < capacity) parents_.resize(capacity + capacity / 2);
   }
+
+  /// createH: makes an element a set of its own, whatever it was before.
+  void create(std::uint32_t element) { parents_[element] = element; }
 
   /// getH: the root of the set that holds the element.
   std::uint32_t find(std::uint32_t element) {
@@ -83,5 +82,22 @@ class DisjointSets {
   bool is_shared_ = false;
   std::vector<Merge>* log_ = nullptr;
 };
+
+/// Returns the number of an element's set, and adds to the size of that. Sets are numbered in the order of their roots.
+/// Elements come ascending: a root, the lowest element of its set, before the others.
+/// \param sizes of the sets numbered so far
+/// \param number_of callable as std::uint32_t (std::uint32_t root): the number returned for it
+template <typename NumberOf>
+std::uint32_t numberElement(std::uint32_t element, std::uint32_t size, DisjointSets& sets,
+                            std::vector<std::uint32_t>& sizes, NumberOf&& number_of) {
+  const std::uint32_t root = sets.find(element);
+  if (root == element) {
+    sizes.push_back(size);
+    return static_cast<std::uint32_t>(sizes.size() - 1);
+  }
+  const std::uint32_t number = number_of(root);
+  sizes[number] += size;
+  return number;
+}
 
 }  // namespace lisco

@@ -12,18 +12,12 @@
 #include "core/endless_sets.h"
 #include "core/neighbour.h"
 #include "core/partition.h"
-#include "core/pi.h"
 #include "core/stream_position.h"
+#include "core/stream_reach.h"
 
 namespace lisco {
 
 namespace {
-
-constexpr std::int64_t kComparable = 4;  // panes whose returns may be neighbours
-
-// Horizontal distances, metres, between which squares neither underflow nor overflow a float.
-constexpr float kMinFloatRho = 1e-18F;
-constexpr float kMaxFloatRho = 1e18F;
 
 void check(const EndlessParameters& parameters) {
   if (!(parameters.stagger >= 0 && parameters.stagger <= EndlessParameters::kMaxStagger))
@@ -67,16 +61,12 @@ class EndlessClusterer::Stream {
     bool operator<(const Waiting& other) const { return reach_end > other.reach_end; }  // a heap with the first on top
   };
   class PaneLinker;
-  /// False until the call that it lives in has come to its end.
-  class UsableAfter;
 
   Pane& pane(std::int64_t number) { return panes_[EndlessSets::slotOf(number)]; }
   void startPane(std::int64_t number, Ticks now);
   void processBlock();
   void readBlock();
-  ColumnBits findOutliers(const RingBlock& block, RingBlockInfo& info, double* rho) const;
   void createSets(const RingBlockInfo& info, const double* rho, ColumnBits outliers);
-  Ticks reachEnd(Ticks column, double rho, Ticks known) const;
   void replayMerges(Pane& pane);
   void wait(Element root);
   void deliverUpTo(Ticks now);
@@ -85,17 +75,13 @@ class EndlessClusterer::Stream {
   EndlessParameters parameters_;
   Callback callback_;
   Tolerance tolerance_;
-  SensorHints sensor_;           ///< its origin; without steps, all returns are near
-  float cos_stagger_ = 0;        ///< rounded down so that no return is wrongly an outlier
-  double turns_of_stagger_ = 0;  ///< of both returns of a pair, rounded up
-  double near_rho_ = 0;          ///< up to here a neighbour may lie at any azimuth, metres
-  bool usable_ = false;          ///< begun, and left by no exception since
+  StreamReach reach_;
+  bool usable_ = false;  ///< begun, and left by no exception since
 
   ColumnBlock block_;
-  std::array<double, RingBlock::kColumns> positions_{};         ///< of the columns of the block
-  std::array<float, RingBlock::kColumns> cosines_{}, sines_{};  ///< of their azimuths
-  double position_ = 0;                                         ///< of the latest column
-  double given_position_ = 0;                                   ///< the last one that was given, or 0
+  std::array<double, RingBlock::kColumns> positions_{};  ///< of the columns of the block
+  double position_ = 0;                                  ///< of the latest column
+  double given_position_ = 0;                            ///< the last one that was given, or 0
   double columns_since_given_ = 0;
   bool any_column_ = false;
 
@@ -108,38 +94,23 @@ class EndlessClusterer::Stream {
   std::uint64_t returns_ = 0, outliers_ = 0;
 };
 
-class EndlessClusterer::Stream::UsableAfter {
- public:
-  explicit UsableAfter(Stream& stream) : stream_(stream) { stream_.usable_ = false; }
-  void done() { stream_.usable_ = true; }
-
- private:
-  Stream& stream_;
-};
-
 // --- Receiving columns ----------------------------------------------------------------------------------------------
 
 void EndlessClusterer::Stream::begin(const EndlessParameters& parameters, Callback callback) {
   check(parameters);
   if (!usable_) *this = Stream();
-  UsableAfter call(*this);
+  usable_ = false;
   parameters_ = parameters;
   parameters_.block_columns = std::clamp<std::size_t>(parameters.block_columns, 1, RingBlock::kColumns);
   callback_ = std::move(callback);
   tolerance_ = Tolerance(parameters.tolerance);
-  sensor_.origin = parameters.origin;
-  constexpr double kCosineRounding = 1e-6;
-  const double cosine = std::cos(parameters.stagger) - kCosineRounding;
-  cos_stagger_ = static_cast<float>(cosine);
-  turns_of_stagger_ = 2 * (std::acos(cosine - kCosineRounding) / (2 * kPi));
-  constexpr double kUnderflow = 1e-22;  // metres, as in Tolerance::reach ()
-  near_rho_ = std::sqrt(static_cast<double>(tolerance_.squared())) * (1 + kNearMargin) + kUnderflow;
+  reach_.begin(parameters);
   block_.clear();
   any_column_ = false;
   for (Pane& pane : panes_) pane.in_use = false;
   waiting_.clear();
   returns_ = outliers_ = 0;
-  call.done();
+  usable_ = true;
 }
 
 double EndlessClusterer::Stream::nextPosition() const {
@@ -162,37 +133,34 @@ void EndlessClusterer::Stream::addColumn(const Return* cells, std::size_t lasers
     throw std::invalid_argument("lisco::EndlessClusterer: a column of more cells than lasers were declared");
   if (!(std::fabs(position) <= EndlessParameters::kMaxPosition) || (any_column_ && position < position_))
     throw std::invalid_argument("lisco::EndlessClusterer: a position out of range or less than the one before");
-  UsableAfter call(*this);
+  usable_ = false;
   const Ticks now = ticksOf(position);
   if (!any_column_ || paneOf(now) != current_) startPane(paneOf(now), now);
   any_column_ = true;
   position_ = given_position_ = position;
   columns_since_given_ = 0;
 
-  const double turns = position - std::floor(position);
-  const double azimuth = parameters_.start_azimuth + (parameters_.clockwise ? -2 : 2) * kPi * turns;
   positions_[block_.columns()] = position;
-  cosines_[block_.columns()] = static_cast<float>(std::cos(azimuth));
-  sines_[block_.columns()] = static_cast<float>(std::sin(azimuth));
+  reach_.setColumn(block_.columns(), position);
   block_.add(cells, lasers);
   if (block_.columns() == parameters_.block_columns) processBlock();
-  call.done();
+  usable_ = true;
 }
 
 void EndlessClusterer::Stream::update() {
-  UsableAfter call(*this);
+  usable_ = false;
   processBlock();
-  call.done();
+  usable_ = true;
 }
 
 void EndlessClusterer::Stream::finish() {
   if (!any_column_) return;
-  UsableAfter call(*this);
+  usable_ = false;
   processBlock();
   deliverUpTo(std::numeric_limits<Ticks>::max());
   for (Pane& pane : panes_) pane.in_use = false;
   any_column_ = false;
-  call.done();
+  usable_ = true;
 }
 
 std::size_t EndlessClusterer::Stream::returnsHeld() const {
@@ -224,8 +192,10 @@ void EndlessClusterer::Stream::startPane(std::int64_t number, Ticks now) {
 
   current_ = number;
   sets_.startPane(number);
+  SensorHints sensor;  // without steps, all returns are near
+  sensor.origin = parameters_.origin;
   Pane& pane = this->pane(number);
-  pane.prepare(tolerance_, sensor_, 0);
+  pane.prepare(tolerance_, sensor, 0);
   pane.merges.clear();
   pane.number = number;
   pane.in_use = true;
@@ -236,31 +206,10 @@ void EndlessClusterer::Stream::startPane(std::int64_t number, Ticks now) {
 /// Joins clusters of the current pane with those of an older one.
 class EndlessClusterer::Stream::PaneLinker : public PairVisitor {
  public:
-  PaneLinker(Stream& stream, std::int64_t older) : stream_(stream), older_(older) {
-    // All returns of the older pane lie on one side of the ray at the azimuth of its end plus the stagger.
-    const EndlessParameters& parameters = stream.parameters_;
-    const auto panes = static_cast<double>(EndlessSets::slotOf(older + 1));  // two turns of panes
-    const double direction = parameters.clockwise ? -1 : 1;
-    const double azimuth =
-        parameters.start_azimuth +
-        direction * (2 * kPi * panes / static_cast<double>(kPanesPerTurn) + kPi * stream.turns_of_stagger_);
-    across_ = {-direction * std::sin(azimuth), direction * std::cos(azimuth)};
-  }
+  PaneLinker(Stream& stream, std::int64_t older)
+      : stream_(stream), older_(older), end_of_older_(stream.reach_.rayAfter(older)) {}
 
-  /// False if the box lies beyond that ray, further from it than the tolerance.
-  bool reaches(const Box& own) const override {
-    double least = 0;
-    double largest = 0;
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      const double origin = static_cast<double>(stream_.sensor_.origin[axis]);
-      const double lo = static_cast<double>(own.lo[axis]) - origin;
-      const double hi = static_cast<double>(own.hi[axis]) - origin;
-      least += std::min(across_[axis] * lo, across_[axis] * hi);
-      largest = std::max({largest, std::fabs(lo), std::fabs(hi)});
-    }
-    constexpr double kRounding = 1e-5;
-    return !(least > stream_.tolerance_.reach() * (1 + kRounding) + largest * kRounding);
-  }
+  bool reaches(const Box& own) const override { return stream_.reach_.reaches(own, end_of_older_); }
 
   bool inDifferentSets(std::uint32_t own, std::uint32_t others) override {
     const Element a = rootOfOwn(own);
@@ -284,7 +233,7 @@ class EndlessClusterer::Stream::PaneLinker : public PairVisitor {
 
   Stream& stream_;
   std::int64_t older_;
-  std::array<double, 2> across_{};  ///< unit vector from the ray towards later columns
+  StreamReach::Ray end_of_older_;
 };
 
 /// Reads the columns of the block and compares them with all that may be neighbours.
@@ -297,9 +246,9 @@ void EndlessClusterer::Stream::readBlock() {
     pane.readRing(block_.ring(laser), laser, 0, block_.columns(), pane.subclusters,
                   [&](const RingBlock& block, RingBlockInfo& info) {
                     std::array<double, RingBlock::kColumns> rho;
-                    const ColumnBits outliers = findOutliers(block, info, rho.data());
+                    const ColumnBits outliers = reach_.findOutliers(block, info, rho.data());
                     info.starts |= outliers | (outliers << 1 & info.returns);
-                    outliers_ += static_cast<std::uint64_t>(__builtin_popcountll(outliers));
+                    outliers_ += countBits(outliers);
                     createSets(info, rho.data(), outliers);
                     return info.returns & ~outliers;
                   });
@@ -307,7 +256,7 @@ void EndlessClusterer::Stream::readBlock() {
   returns_ += pane.runs.returns - before;
   pane.linkWithin(pane.subclusters);
   replayMerges(pane);
-  for (std::int64_t older = current_ - kComparable + 1; older < current_; ++older)
+  for (std::int64_t older = current_ - StreamReach::kComparablePanes + 1; older < current_; ++older)
     if (this->pane(older).in_use && this->pane(older).number == older) {
       PaneLinker linker(*this, older);
       pane.linkPanes(this->pane(older), VoxelLinker::Part::kNew, linker);
@@ -320,30 +269,6 @@ void EndlessClusterer::Stream::readBlock() {
   }
 }
 
-/// Finds the returns whose azimuth differs from that of their column by more than the stagger.
-/// \param rho receives the horizontal distances, metres: in double, since squares may overflow or underflow a float
-ColumnBits EndlessClusterer::Stream::findOutliers(const RingBlock& block, RingBlockInfo& info, double* rho) const {
-  ColumnBits outliers = 0;
-  forEachBit(info.returns, [&](std::size_t i) {
-    const float x = block.x[RingBlock::kMargin + i];
-    const float y = block.y[RingBlock::kMargin + i];
-    bool is_inlier;
-    if (info.rho[i] > kMinFloatRho && info.rho[i] < kMaxFloatRho) {
-      rho[i] = static_cast<double>(info.rho[i]);
-      is_inlier =
-          (x - sensor_.origin[0]) * cosines_[i] + (y - sensor_.origin[1]) * sines_[i] >= cos_stagger_ * info.rho[i];
-    } else {
-      const double east = static_cast<double>(x) - static_cast<double>(sensor_.origin[0]);
-      const double north = static_cast<double>(y) - static_cast<double>(sensor_.origin[1]);
-      rho[i] = std::hypot(east, north);
-      is_inlier = east * static_cast<double>(cosines_[i]) + north * static_cast<double>(sines_[i]) >=
-                  static_cast<double>(cos_stagger_) * rho[i];
-    }
-    if (!is_inlier) outliers |= ColumnBits{1} << i;
-  });
-  return outliers;
-}
-
 /// Makes a cluster of each run of a row.
 void EndlessClusterer::Stream::createSets(const RingBlockInfo& info, const double* rho, ColumnBits outliers) {
   Set* set = nullptr;
@@ -352,26 +277,8 @@ void EndlessClusterer::Stream::createSets(const RingBlockInfo& info, const doubl
     const Ticks column = ticksOf(positions_[i]);
     ++set->size;
     set->last_position = positions_[i];
-    set->reach_end = (outliers >> i & 1) != 0 ? column : reachEnd(column, rho[i], set->reach_end);
+    set->reach_end = (outliers >> i & 1) != 0 ? column : reach_.endOf(column, current_, rho[i], set->reach_end);
   });
-}
-
-/// The position from which on no column can reach a return, nor what was reached up to `known`.
-/// \param rho horizontal distance, metres
-Ticks EndlessClusterer::Stream::reachEnd(Ticks column, double rho, Ticks known) const {
-  const Ticks latest = (current_ + kComparable) * kTicksPerPane;
-  if (!(rho > near_rho_)) return latest;
-  constexpr double kRhoRounding = 1 + 1e-6;
-  constexpr double kRadiansToTicks = static_cast<double>(kTicksPerTurn) / (2 * kPi);
-  const double sine = std::min(tolerance_.reach() * kRhoRounding / rho, 1.0);
-  const double stagger = turns_of_stagger_ * static_cast<double>(kTicksPerTurn);
-  const auto end = [&](double asine) {
-    // The column's position was rounded down by less than a tick.
-    return std::min(column + 1 + static_cast<Ticks>(std::ceil(stagger + asine * kRadiansToTicks)), latest);
-  };
-  // asin (t) <= t + (pi / 2 - 1) t^3 for t in 0..1
-  if (end(sine + (kPi / 2 - 1) * sine * sine * sine) <= known) return known;
-  return std::max(known, end(std::asin(sine)));
 }
 
 /// Joins the clusters of the runs that the pane has joined.

@@ -46,6 +46,11 @@ HWY_INLINE FloatMask lanesOf(std::uint64_t bits) {
   return hn::LoadMaskBits(kFloats, bytes);
 }
 
+/// The bits of the lanes that hold the next `count` elements: all, or fewer at the end of a list.
+HWY_INLINE std::uint32_t lanesBelow(std::size_t count) {
+  return count < kLanes ? (1U << count) - 1 : ~0U;
+}
+
 /// The bits of the kLanes columns from k on, shifted to 0.
 HWY_INLINE std::uint64_t bitsAt(std::uint64_t bits, std::size_t k) {
   return bits >> k & ((std::uint64_t{1} << kLanes) - 1);

@@ -10,8 +10,8 @@ namespace lisco {
 /// The exact predicate: two points are neighbours iff squaredDistance of their differences is less than
 /// Tolerance::squared (), in float, with each operation rounded in this order (doc/contract.md). Files that use it are
 /// compiled with -ffp-contract=off: a fused multiply-add changes d2 for most pairs. The vectorized form is
-/// areNeighbours in lanes-inl.h; everything else that rejects or accepts pairs is a bound on it (doc/algorithm.md,
-/// "Bounds").
+/// areNeighbours in lanes-inl.h; all else that rejects or accepts pairs is a bound on it: Tolerance::reach () and Box
+/// here, and those of doc/algorithm.md, "The predicate and its bounds".
 inline float squaredDistance(float dx, float dy, float dz) {
   return (dx * dx + dy * dy) + dz * dz;
 }

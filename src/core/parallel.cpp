@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-// Without OpenMP, and under ThreadSanitizer, which does not know OpenMP's barriers.
+// Without OpenMP, and under ThreadSanitizer, which reports races across OpenMP's barriers.
 #ifdef __has_feature
 #if __has_feature(thread_sanitizer)
 #define LISCO_STD_THREADS
@@ -34,7 +34,7 @@ void inParallel(std::size_t threads, void (*work)(void* context, std::size_t thr
   const auto run = [&](std::size_t thread) {
     try {
       work(context, thread);
-    } catch (...) {  // may not leave the thread; the first one tells
+    } catch (...) {  // must not leave the thread; the first one is rethrown below
       if (!has_failed.test_and_set()) failure = std::current_exception();
     }
   };
@@ -44,7 +44,7 @@ void inParallel(std::size_t threads, void (*work)(void* context, std::size_t thr
   std::size_t started = 1;
   try {
     for (; started < threads; ++started) running.emplace_back(run, started);
-  } catch (...) {  // there are no more threads: this one does what is left
+  } catch (...) {  // no more threads can be started: this one does the rest
   }
   run(0);
   for (std::size_t thread = started; thread < threads; ++thread) run(thread);

@@ -28,12 +28,6 @@ class Merger : public PairVisitor {
 
 }  // namespace
 
-void fill(RingBlock& block, std::size_t at, const CellSource& cells, std::size_t laser, std::size_t first,
-          std::size_t count) {
-  const std::size_t to = RingBlock::kMargin + at;
-  cells.read(laser, first, count, {block.x + to, block.y + to, block.z + to, block.source_index + at});
-}
-
 void Partition::prepare(const Tolerance& tolerance, const SensorHints& hints, std::size_t columns) {
   tolerance_ = tolerance;
   runs.clear();
@@ -65,7 +59,7 @@ void Partition::stopCollecting(DisjointSets& subclusters) {
 void Partition::readColumns(const CellSource& cells, std::size_t first_cell, std::size_t count, std::size_t lasers,
                             std::uint32_t first_column, DisjointSets& subclusters) {
   for (std::size_t laser = 0; laser < lasers; ++laser) {
-    fill(block_, 0, cells, laser, first_cell, count);
+    block_.read(0, cells, laser, first_cell, count);
     readRing(block_, laser, first_column, count, subclusters);
   }
   segments_.link(image_, subclusters);
@@ -76,7 +70,7 @@ void Partition::readLasers(const CellSource& cells, std::size_t first, std::size
   for (std::size_t laser = 0; laser < lasers; ++laser)
     for (std::size_t column = first; column < end; column += RingBlock::kColumns) {
       const std::size_t count = std::min(end - column, RingBlock::kColumns);
-      fill(block_, 0, cells, laser, column, count);
+      block_.read(0, cells, laser, column, count);
       readRing(block_, laser, static_cast<std::uint32_t>(column), count, subclusters);
     }
 }

@@ -110,10 +110,6 @@ class Partition {
   RingBlockInfo info_{};
 };
 
-/// Copies cells of one laser into a ring block, from its column `at` on.
-void fill(RingBlock& block, std::size_t at, const CellSource& cells, std::size_t laser, std::size_t first,
-          std::size_t count);
-
 template <typename Choose>
 void Partition::readRing(RingBlock& block, std::size_t laser, std::uint32_t first_column, std::size_t columns,
                          DisjointSets& subclusters, Choose&& choose) {
@@ -122,14 +118,7 @@ void Partition::readRing(RingBlock& block, std::size_t laser, std::uint32_t firs
   const ColumnBits chosen = choose(block, info_);
   runs.add(block, info_, laser, first_column, columns, first_element, subclusters);
   ColumnBits unplaced = 0;
-  if (info_.far != 0) {
-    if (!image_.started) {
-      const auto first = static_cast<std::size_t>(__builtin_ctzll(info_.far));
-      image_.start(block.x[RingBlock::kMargin + first], block.y[RingBlock::kMargin + first],
-                   first_column + static_cast<std::uint32_t>(first));
-    }
-    unplaced = image_.place(block, info_, laser, first_column);
-  }
+  if (info_.far != 0) unplaced = image_.place(block, info_, laser, first_column);
   const ColumnBits near = chosen & (~info_.interior | unplaced);
   if (near == 0) return;
   if (collects_near_)

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "lisco/return.h"
+
 namespace lisco {
 
 /// What one laser measured in up to 64 consecutive columns; sets of its columns are bits of a machine word.
@@ -15,6 +17,12 @@ struct RingBlock {
 
   float x[kMargin + kColumns], y[kMargin + kColumns], z[kMargin + kColumns];
   std::uint32_t source_index[kColumns];
+
+  /// Copies cells of one laser, from the block's column `at` on.
+  void read(std::size_t at, const CellSource& cells, std::size_t laser, std::size_t first, std::size_t count) {
+    const std::size_t to = kMargin + at;
+    cells.read(laser, first, count, {x + to, y + to, z + to, source_index + at});
+  }
 };
 
 /// What is measured on a ring block, as seen from the sensor.

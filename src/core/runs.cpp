@@ -19,11 +19,11 @@ void Runs::add(const RingBlock& block, RingBlockInfo& info, std::size_t laser, s
                std::size_t columns, std::uint32_t first_element, DisjointSets& subclusters) {
   const auto first_run = static_cast<std::uint32_t>(runs.size());
   const auto first_cell = static_cast<std::uint32_t>(source_index.size());
-  const std::size_t end_run = first_run + static_cast<std::size_t>(__builtin_popcountll(info.starts));
+  const std::size_t end_run = first_run + countBits(info.starts);
   subclusters.grow(first_element + end_run);
   runs.resize(end_run);
   source_index.insert(source_index.end(), block.source_index, block.source_index + columns);
-  returns += static_cast<std::size_t>(__builtin_popcountll(info.returns));
+  returns += countBits(info.returns);
   std::uint32_t number = first_run;
   if (info.starts == info.returns) {  // runs of one return, as in unordered clouds
     forEachBit(info.returns, [&](std::size_t i) {

@@ -128,18 +128,12 @@ void WindowClusterer::Window::finishPane() {
 
 /// Numbers the subclusters of a pane.
 void WindowClusterer::Window::numberWithin(Pane& pane) {
+  const std::vector<Run>& runs = pane.runs.runs;
   pane.sizes.clear();
   pane.subcluster.clear();
-  for (std::uint32_t run = 0; run < pane.runs.runs.size(); ++run) {
-    const std::uint32_t root = pane.subclusters.find(run);  // the first of its set
-    if (root == run) {
-      pane.subcluster.push_back(static_cast<std::uint32_t>(pane.sizes.size()));
-      pane.sizes.push_back(0);
-    } else {
-      pane.subcluster.push_back(pane.subcluster[root]);
-    }
-    pane.sizes[pane.subcluster.back()] += pane.runs.runs[run].count;
-  }
+  for (std::uint32_t run = 0; run < runs.size(); ++run)
+    pane.subcluster.push_back(numberElement(run, runs[run].count, pane.subclusters, pane.sizes,
+                                            [&](std::uint32_t root) { return pane.subcluster[root]; }));
 }
 
 /// Makes each subcluster of the window's panes an element of its forest.
@@ -151,7 +145,7 @@ void WindowClusterer::Window::placePanes() {
     elements += static_cast<std::uint32_t>(pane(number).sizes.size());
     returns_ += pane(number).runs.returns;
   }
-  window_.reset(elements);
+  window_.reserve(elements);
   for (std::uint32_t element = 0; element < elements; ++element) window_.create(element);
   subcluster_of_element_.resize(elements);
 }
@@ -206,17 +200,10 @@ void WindowClusterer::Window::numberSubclusters() {
   sizes_.clear();
   for (std::uint64_t number = oldest_; number != newest_ + 1; ++number) {
     Pane& own = pane(number);
-    for (std::uint32_t i = 0; i < own.sizes.size(); ++i) {
-      const std::uint32_t element = own.first_in_window + i;
-      const std::uint32_t root = window_.find(element);
-      if (root == element) {
-        subcluster_of_element_[element] = static_cast<std::uint32_t>(sizes_.size());
-        sizes_.push_back(0);
-      } else {
-        subcluster_of_element_[element] = subcluster_of_element_[root];
-      }
-      sizes_[subcluster_of_element_[element]] += own.sizes[i];
-    }
+    for (std::uint32_t i = 0; i < own.sizes.size(); ++i)
+      subcluster_of_element_[own.first_in_window + i] =
+          numberElement(own.first_in_window + i, own.sizes[i], window_, sizes_,
+                        [&](std::uint32_t root) { return subcluster_of_element_[root]; });
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "lisco/cxx17.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -132,41 +133,41 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
   /** \brief Position of the sensor, metres, in the coordinates of the points (default: the origin): the centre of the
    * azimuths.
    */
-  inline void setSensorOrigin(const Eigen::Vector4f& origin) { parameters_.origin = {origin[0], origin[1], origin[2]}; }
+  inline void setSensorOrigin(const Eigen::Vector4f& origin) { sensor_origin_ = {origin[0], origin[1], origin[2]}; }
   /** \brief Get the position of the sensor. */
   inline Eigen::Vector4f getSensorOrigin() const {
-    return (Eigen::Vector4f(parameters_.origin[0], parameters_.origin[1], parameters_.origin[2], 0.0F));
+    return (Eigen::Vector4f(sensor_origin_[0], sensor_origin_[1], sensor_origin_[2], 0.0F));
   }
 
   /** \brief Set whether the sensor turns clockwise, seen from above (default false). */
-  inline void setClockwise(bool clockwise) { parameters_.clockwise = clockwise; }
+  inline void setClockwise(bool clockwise) { clockwise_ = clockwise; }
   /** \brief Get whether the sensor turns clockwise. */
-  inline bool getClockwise() const { return (parameters_.clockwise); }
+  inline bool getClockwise() const { return (clockwise_); }
 
   /** \brief Set the azimuth of position 0, radians, counter-clockwise from the x axis (default 0). */
-  inline void setStartAzimuth(double azimuth) { parameters_.start_azimuth = azimuth; }
+  inline void setStartAzimuth(double azimuth) { start_azimuth_ = azimuth; }
   /** \brief Get the azimuth of position 0. */
-  inline double getStartAzimuth() const { return (parameters_.start_azimuth); }
+  inline double getStartAzimuth() const { return (start_azimuth_); }
 
   /** \brief Set by how much, in radians, a return's azimuth may differ from that of its column, 0..pi/8 (default pi/8).
    * Clusters are delivered the later, the larger it is. A return that differs by more is a cluster of its own.
    */
-  inline void setStagger(double stagger) { parameters_.stagger = stagger; }
+  inline void setStagger(double stagger) { stagger_ = stagger; }
   /** \brief Get by how much a return's azimuth may differ from that of its column. */
-  inline double getStagger() const { return (parameters_.stagger); }
+  inline double getStagger() const { return (stagger_); }
 
   /** \brief Set the number of columns of a turn (default 0: unknown), so that columns can be added without a position.
    */
-  inline void setColumnsPerTurn(double columns) { parameters_.columns_per_turn = columns; }
+  inline void setColumnsPerTurn(double columns) { columns_per_turn_ = columns; }
   /** \brief Get the number of columns of a turn. */
-  inline double getColumnsPerTurn() const { return (parameters_.columns_per_turn); }
+  inline double getColumnsPerTurn() const { return (columns_per_turn_); }
 
   /** \brief Set how many columns are clustered together, 1..64 (default 16). The fewer, the sooner clusters are
    * delivered.
    */
-  inline void setBlockColumns(std::size_t columns) { parameters_.block_columns = columns; }
+  inline void setBlockColumns(std::size_t columns) { block_columns_ = columns; }
   /** \brief Get how many columns are clustered together. */
-  inline std::size_t getBlockColumns() const { return (parameters_.block_columns); }
+  inline std::size_t getBlockColumns() const { return (block_columns_); }
 
  private:
   using Base::cluster_tolerance_;
@@ -183,7 +184,12 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
   /** \brief Adds a column at the position given, or at the engine's next one (nullptr). */
   bool addColumnAt(const PointT* points, std::size_t count, const double* given_position);
 
-  lisco::EndlessParameters parameters_;
+  std::array<float, 3> sensor_origin_{};
+  bool clockwise_ = false;
+  double start_azimuth_ = 0;
+  double stagger_ = lisco::EndlessParameters::kMaxStagger;
+  double columns_per_turn_ = 0;
+  std::size_t block_columns_ = 16;
 
   class State;
   std::unique_ptr<State> state_;

@@ -54,7 +54,7 @@ inline constexpr double kMinBinInCoarseness = 2;  ///< width of a bin over the r
 
 // --- Cost of linking: measured --------------------------------------------------------------------------------------
 
-/// Of looking for a segment's neighbours in a sector, in comparisons of registers of bins.
+/// Of searching a segment's neighbours in a sector, in comparisons of registers of bins.
 inline constexpr std::uint32_t kSegmentCost = 2;
 /// Units of work where it is done in parts, about 5 ns each.
 inline constexpr std::uint32_t kWorkOfSameBins = 12;  ///< of a laser
@@ -62,12 +62,12 @@ inline constexpr std::uint32_t kWorkOfCutting = 20;   ///< of a laser
 inline constexpr std::uint32_t kWorkOfBins = 2;       ///< of comparing a register of bins
 inline constexpr std::uint32_t kWorkOfSegment = 10;
 inline constexpr std::uint32_t kWorkOfPair = 6;  ///< of segments that are compared
-/// Of placing, as far as it tells whether far returns are worth a range image; and the most work that is, of a far
-/// return: about what sorting takes. Least regret over the scans at rest, moved, deskewed and with dual returns
-/// (benchmarks/suite.sh recordings).
-inline constexpr std::uint32_t kWorkOfRealigning = 8;
-inline constexpr std::uint32_t kWorkOfUnplaced = 200;
+/// Far returns are worth a range image if placing and linking them takes this much work each at most, about what
+/// sorting takes. Least regret over the scans at rest, moved, deskewed and with dual returns (benchmarks/suite.sh
+/// recordings).
 inline constexpr double kMaxWorkOfFar = 12;
+inline constexpr std::uint32_t kWorkOfRealigning = 8;  ///< of placing a return off the expected bin
+inline constexpr std::uint32_t kWorkOfUnplaced = 200;
 /// Segments that exceed their laser's nearest one by this factor get a mask of their own.
 inline constexpr float kWorthNarrowing = 1.25F;
 /// Returns of a segment from which on its bounds are computed in vectors.

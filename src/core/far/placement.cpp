@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
+//
 // Puts returns into azimuth bins: several at once where they continue a laser's sequence of bins.
 #include <algorithm>
 #include <cmath>
@@ -126,7 +127,7 @@ class Placement {
     const ColumnBits placed = store(together);
     unplaced_ |= together & ~placed;
     const auto last = static_cast<std::size_t>(63 - __builtin_clzll(together));
-    image_.placed += static_cast<std::size_t>(__builtin_popcountll(placed));
+    image_.placed += countBits(placed);
     image_.begin = std::min(image_.begin, static_cast<std::size_t>(first_bin_ + __builtin_ctzll(together)));
     image_.end = std::max(image_.end, static_cast<std::size_t>(first_bin_ + static_cast<std::int64_t>(last) + 1));
     noteLate(placed);

@@ -101,18 +101,20 @@ void RangeImage::addLayer() {
   elevations_changed = true;
 }
 
-void RangeImage::start(float x_start, float y_start, std::uint32_t column) {
+void RangeImage::start(const RingBlock& block, const RingBlockInfo& info, std::uint32_t column) {
   started = true;
-  const double azimuth =
-      std::atan2(static_cast<double>(y_start - range.origin[1]), static_cast<double>(x_start - range.origin[0]));
+  const auto first = static_cast<std::uint32_t>(__builtin_ctzll(info.far));
+  const double azimuth = std::atan2(static_cast<double>(block.y[RingBlock::kMargin + first] - range.origin[1]),
+                                    static_cast<double>(block.x[RingBlock::kMargin + first] - range.origin[0]));
   start_azimuth = azimuth - static_cast<double>(direction * static_cast<float>(kMargin) * radians_per_bin);
   start_cosine = static_cast<float>(std::cos(start_azimuth));
   start_sine = static_cast<float>(std::sin(start_azimuth));
-  first_column = column;
+  first_column = column + first;
 }
 
 ColumnBits RangeImage::place(const RingBlock& block, const RingBlockInfo& info, std::size_t laser,
                              std::uint32_t column) {
+  if (!started) start(block, info, column);
   const Row& first_row = rows[firstRowOf(laser)];
   if (info.lowest < first_row.lowest || info.highest > first_row.highest) {
     for (std::size_t row = firstRowOf(laser); row < firstRowOf(laser + 1); ++row) {

@@ -63,10 +63,7 @@ struct RangeImage {
   /// Grows to a number of lasers.
   void addLasers(std::size_t count);
 
-  /// Sets bin 0 a margin before the azimuth of the first far return.
-  void start(float x_start, float y_start, std::uint32_t column);
-
-  /// Puts the far returns of a ring block into their bins.
+  /// Puts the far returns of a ring block, one at least, into their bins. The first of all sets bin 0.
   /// \param column the block's first, counted from the first of the rotation
   /// \return those that are unplaced
   ColumnBits place(const RingBlock& block, const RingBlockInfo& info, std::size_t laser, std::uint32_t column);
@@ -95,6 +92,9 @@ struct RangeImage {
   Rows someRows(std::size_t part, std::size_t parts) const {
     return {rows.size() * part / parts, rows.size() * (part + 1) / parts};
   }
+
+  /// Sets bin 0 a margin before the azimuth of a block's first far return.
+  void start(const RingBlock& block, const RingBlockInfo& info, std::uint32_t column);
 
   /// Whether another layer would hold enough returns whose bins are taken to be worth its memory.
   bool isLayerWorthwhile() const;

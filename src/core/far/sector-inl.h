@@ -11,6 +11,7 @@
 
 #include <algorithm>
 
+#include "core/bits.h"
 #include "core/disjoint_sets.h"
 #include "core/far/constants.h"
 #include "core/far/range_image.h"
@@ -33,30 +34,28 @@ void cutSector(const RangeImage& image, std::int64_t number, float later, const 
     sector.begin[row] = count;
     if (image.rows[row].isEmpty()) continue;
     const std::size_t cell = image.at(row, first_bin);
-    std::uint32_t returns = 0;
+    ColumnBits returns = 0;  // bit i: bin i of the sector
     for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
       const FloatVector x = hn::LoadU(kFloats, &image.x[cell + k]);
-      returns |= bitsOf(hn::Eq(x, x)) << k;
+      returns |= ColumnBits{bitsOf(hn::Eq(x, x))} << k;
     }
     if (returns == 0) continue;
     float rho[RangeImage::kSector];
-    std::uint32_t starts = 0;
+    ColumnBits starts = 0;
     for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
       const FloatVector x = hn::LoadU(kFloats, &image.x[cell + k]);
       const FloatVector east = hn::Sub(x, hn::Set(kFloats, image.range.origin[0]));
       const FloatVector north =
           hn::Sub(hn::LoadU(kFloats, &image.y[cell + k]), hn::Set(kFloats, image.range.origin[1]));
       hn::StoreU(hn::Sqrt(hn::Add(hn::Mul(east, east), hn::Mul(north, north))), kFloats, rho + k);
-      starts |= bitsOf(differ(&image.element[cell + k - 1], hn::LoadU(kWords, &image.element[cell + k]))) << k;
+      const FloatMask changes = differ(&image.element[cell + k - 1], hn::LoadU(kWords, &image.element[cell + k]));
+      starts |= ColumnBits{bitsOf(changes)} << k;
     }
     starts = returns & (starts | ~(returns << 1));
-    const std::uint32_t ends = ~returns | starts;  // and the sector's
-    while (starts != 0) {
-      const auto first = static_cast<std::uint32_t>(__builtin_ctz(starts));
-      starts &= starts - 1;
-      const std::uint32_t after = ends & ~((2U << first) - 1) & 0xFFFFU;
-      const std::uint32_t end = after != 0 ? static_cast<std::uint32_t>(__builtin_ctz(after))
-                                           : static_cast<std::uint32_t>(RangeImage::kSector);
+    const ColumnBits ends = ~returns | starts;
+    for (; starts != 0; starts &= starts - 1) {
+      const auto first = static_cast<std::uint32_t>(__builtin_ctzll(starts));
+      const auto end = static_cast<std::uint32_t>(endOfChain(ends, first));
       float nearest = rho[first];
       float farthest = rho[first];
       float lowest = image.z[cell + first];
@@ -66,7 +65,7 @@ void cutSector(const RangeImage& image, std::int64_t number, float later, const 
         FloatVector high_rho = low_rho;
         FloatVector low_z = hn::Set(kFloats, lowest);
         FloatVector high_z = low_z;
-        const std::uint64_t lanes = ((std::uint64_t{1} << end) - 1) & ~((std::uint64_t{1} << first) - 1);
+        const ColumnBits lanes = bitsFrom(first) & ~bitsFrom(end);
         for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
           const FloatMask inside = lanesOf(lanes >> k);
           const FloatVector rho_here = hn::LoadU(kFloats, rho + k);

@@ -12,7 +12,8 @@
 
 namespace lisco {
 
-/// The segments of a sector of sixteen bins, ordered by laser and bin: what each run has there, with measured bounds.
+/// The segments of a sector of sixteen bins, ordered by row and bin: the returns of each run there, with measured
+/// bounds.
 struct Sector {
   static constexpr std::int64_t kNone = -1;
   std::int64_t number = kNone;
@@ -22,7 +23,7 @@ struct Sector {
   std::vector<std::uint32_t> root;       ///< of its subcluster, perhaps outdated
   std::vector<std::uint32_t> cell;       ///< index of its first return in the image
   std::vector<std::uint8_t> count;       ///< of returns
-  std::vector<std::uint32_t> begin;      ///< of each laser's segments, and the end
+  std::vector<std::uint32_t> begin;      ///< of each row's segments, and the end
 };
 
 /// The paper's neighbor mask (Algorithm 2) of one laser's returns in a sector, from measured bounds.
@@ -46,8 +47,8 @@ struct SegmentLinkerState {
 };
 
 /// Algorithm 4 on range images: joins far returns that are neighbours. Returns in the same bin of adjacent lasers are
-/// compared first, several at once, which joins most of what belongs together. Then each segment looks at the segments
-/// in its neighbor mask that are in another subcluster by then: bounds first, returns last.
+/// compared first, several at once, which joins most of what belongs together. Then each segment is compared with the
+/// segments in its neighbor mask that are in another subcluster by then: bounds first, returns last.
 ///
 /// Finds all pairs of placed returns; pairs with an unplaced one are found by linkTo (). Serves one image.
 class SegmentLinker : private SegmentLinkerState {
@@ -58,7 +59,7 @@ class SegmentLinker : private SegmentLinkerState {
   /// Links what has come since the last call, as far as all lasers have passed it.
   void link(RangeImage& image, DisjointSets& subclusters);
 
-  /// The same part by part: schedule () tells what is linked next.
+  /// The same part by part: schedule () sets what linkPart () links.
   void schedule(RangeImage& image);
   std::size_t partsLeft(const RangeImage& image) const {
     return (image.scheduled - image.linked) / RangeImage::kSector * kParts - linked_parts_;

@@ -29,7 +29,6 @@ struct Returns {
 bool haveNeighbours(Returns a, Returns b) {
   if (a.count > b.count) std::swap(a, b);
   const FloatVector r2 = hn::Set(kFloats, a.image->tolerance.squared());
-  const std::uint32_t lanes = (1U << b.count) - 1;
   for (std::size_t i = a.cell; i < a.cell + a.count; ++i) {
     const FloatVector x = hn::Set(kFloats, a.image->x[i]);
     const FloatVector y = hn::Set(kFloats, a.image->y[i]);
@@ -38,7 +37,7 @@ bool haveNeighbours(Returns a, Returns b) {
       const FloatMask near = areNeighbours(hn::Sub(x, hn::LoadU(kFloats, &b.image->x[b.cell + k])),
                                            hn::Sub(y, hn::LoadU(kFloats, &b.image->y[b.cell + k])),
                                            hn::Sub(z, hn::LoadU(kFloats, &b.image->z[b.cell + k])), r2);
-      if ((bitsOf(near) & lanes >> k) != 0) return true;
+      if ((bitsOf(near) & lanesBelow(b.count - k)) != 0) return true;
     }
   }
   return false;
@@ -149,7 +148,7 @@ class SegmentSearch {
     mask.by_bins = by_bins < kSegmentCost * by_segments;
   }
 
-  /// Compares a row's bins in a sector with all bins of its mask, up to its own, sixteen at a time. Where the other
+  /// Compares a row's bins in a sector with all bins of its mask, up to its own, a vector at a time. Where the other
   /// row is compared by segments, this one compares both directions.
   void compareBins(std::int64_t sector, std::size_t row) {
     const NeighborMask& mask = state_.masks[row];
@@ -252,7 +251,7 @@ class SegmentSearch {
     mask.last_row = static_cast<std::uint32_t>(last);
   }
 
-  /// cluster (p) of Algorithm 4 for a segment: compares it with the segments of a sector that its mask shows.
+  /// cluster (p) of Algorithm 4 for a segment: compares it with the segments of a sector within its mask.
   /// \param limit only with those before this one
   HWY_INLINE void search(Segment& segment, Sector& other, std::uint32_t limit) {
     const std::uint32_t begin = other.begin[segment.first_row];
@@ -264,8 +263,8 @@ class SegmentSearch {
       const FloatMask range = hn::And(hn::Le(load(other.nearest), all(segment.farthest)),
                                       hn::Ge(load(other.farthest), all(segment.nearest)));
       // Most segments nearby are in the same subcluster already.
-      std::uint32_t left = bitsOf(hn::And(range, differ(&other.root[i], hn::Set(kWords, segment.root))));
-      if (end - i < kLanes) left &= (1U << (end - i)) - 1;
+      const FloatMask apart = hn::And(range, differ(&other.root[i], hn::Set(kWords, segment.root)));
+      std::uint32_t left = bitsOf(apart) & lanesBelow(end - i);
       if (left == 0) continue;
       const FloatMask height =
           hn::And(hn::Le(load(other.lowest), all(segment.highest)), hn::Ge(load(other.highest), all(segment.lowest)));

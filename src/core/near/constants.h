@@ -12,6 +12,12 @@ namespace lisco {
 /// in voxels whose numbers differ by 2 at most, whatever rounding does (doc/algorithm.md).
 inline constexpr double kVoxelSide = 0.9999 / 1.7320508075688772;
 
+/// Largest voxel number of a hashed voxel. In float, up to 2^20: rounding moves a return by less than an eighth of a
+/// voxel, so that neighbours, which are 1.7323 sides apart at most, lie in voxels whose numbers differ by 2 at most. In
+/// double, up to 2^51, likewise.
+inline constexpr float kMaxFloatNumber = 1 << 20;
+inline constexpr double kMaxDoubleNumber = 2251799813685248.0;
+
 /// Floats that are read behind the last point, by vectors.
 inline constexpr std::size_t kReadBehind = 16;
 

@@ -12,10 +12,9 @@
 
 #include "core/lanes-inl.h"
 
-#ifndef LISCO_NEAR_KERNELS_ONCE
-#define LISCO_NEAR_KERNELS_ONCE
+HWY_BEFORE_NAMESPACE();
 namespace lisco {
-namespace {
+namespace HWY_NAMESPACE {
 
 /// Points of a span that may have neighbours in a box.
 struct GatheredPoints {
@@ -23,18 +22,6 @@ struct GatheredPoints {
   float x[kMax], y[kMax], z[kMax];
   std::size_t count = 0;
 };
-
-/// Up to here, rounding in float moves a return by less than an eighth of a voxel: neighbours, which are 1.7323 sides
-/// apart at most, lie in voxels whose numbers differ by 2 at most.
-constexpr float kMaxFloatNumber = 1 << 20;
-
-}  // namespace
-}  // namespace lisco
-#endif
-
-HWY_BEFORE_NAMESPACE();
-namespace lisco {
-namespace HWY_NAMESPACE {
 
 /// Zero where a number is NaN or too large to be converted to an integer: vector instructions convert any number, C++
 /// defines only those in range.
@@ -77,7 +64,7 @@ bool numberReturns(const RingBlock& block, std::uint64_t which, float per_metre,
 }
 
 /// Gathers the points of a clique, from one on, that may have neighbours in a box.
-/// \return the first point that is not looked at
+/// \return the first point that is left
 std::size_t gather(const PointSpan& clique, std::size_t from, const Box& box, float squared_tolerance,
                    GatheredPoints& points) {
   const FloatVector r2 = hn::Set(kFloats, squared_tolerance);

@@ -12,9 +12,7 @@ namespace lisco {
 
 namespace {
 
-/// 2^51: up to here, voxel numbers computed in double are exact enough.
-constexpr double kMaxNumber = 2251799813685248.0;
-constexpr std::size_t kMinSlots = 256;
+constexpr std::size_t kMinSlots = 256;  // of the hash table: 1 KiB
 
 std::uint32_t hashOf(const std::array<std::uint32_t, 3>& key) {
   // Teschner et al. 2003, with a final mix so that flat scenes use the whole table.
@@ -60,7 +58,8 @@ void VoxelGrid::add(const RingBlock& block, const RingBlockInfo& info, ColumnBit
     forEachBit(which, [&](std::size_t i) {
       const float point[3] = {block_x[i], block_y[i], block_z[i]};
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double number = std::clamp(static_cast<double>(point[axis]) * voxels_per_metre_, -kMaxNumber, kMaxNumber);
+        const double number =
+            std::clamp(static_cast<double>(point[axis]) * voxels_per_metre_, -kMaxDoubleNumber, kMaxDoubleNumber);
         numbers.of[axis][1 + i] = static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(number)));
       }
     });

@@ -130,12 +130,4 @@ struct VoxelGrid {
   std::array<RecentClique, kRecentCliques> recent_cliques_{};  ///< by the hash of the voxel
 };
 
-/// Number of bits set, without the instruction for it, which the oldest processors do not have.
-inline std::uint32_t countBits(std::uint64_t bits) {
-  bits -= bits >> 1 & 0x5555555555555555U;
-  bits = (bits & 0x3333333333333333U) + (bits >> 2 & 0x3333333333333333U);
-  bits = (bits + (bits >> 4)) & 0x0F0F0F0F0F0F0F0FU;
-  return static_cast<std::uint32_t>(bits * 0x0101010101010101U >> 56);
-}
-
 }  // namespace lisco

@@ -112,8 +112,7 @@ class PlaneLinker {
       };
       // Box::squaredGap, lane by lane
       const FloatMask near = areNeighbours(gap(0), gap(1), gap(2), squared_tolerance_);
-      std::uint32_t left = bitsOf(hn::And(near, differ(&other.root[k], hn::Set(kWords, root))));
-      if (end - k < kLanes) left &= (1U << (end - k)) - 1;
+      std::uint32_t left = bitsOf(hn::And(near, differ(&other.root[k], hn::Set(kWords, root)))) & lanesBelow(end - k);
       for (; left != 0; left &= left - 1) {
         const std::uint32_t candidate = k + static_cast<std::uint32_t>(__builtin_ctz(left));
         const std::uint32_t other_root = other.root[candidate] = subclusters_.find(other.root[candidate]);
@@ -155,10 +154,9 @@ class PlaneLinker {
         FloatVector z;
         FloatVector elements;
         hn::LoadInterleaved4(kFloats, &many->points[k].x, x, y, z, elements);
-        std::uint32_t near =
-            bitsOf(areNeighbours(hn::Sub(own_x, x), hn::Sub(own_y, y), hn::Sub(own_z, z), squared_tolerance_));
-        if (end - k < kLanes) near &= (1U << (end - k)) - 1;
-        if (near != 0) return true;
+        const FloatMask near =
+            areNeighbours(hn::Sub(own_x, x), hn::Sub(own_y, y), hn::Sub(own_z, z), squared_tolerance_);
+        if ((bitsOf(near) & lanesBelow(end - k)) != 0) return true;
       }
     }
     return false;

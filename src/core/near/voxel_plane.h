@@ -76,7 +76,7 @@ struct VoxelPlane {
   }
 };
 
-/// What linking planes needs to know of the voxels' keys.
+/// The parts of an item, which is a key and a fragment's number, and the tolerance.
 struct PlaneLayout {
   unsigned number_bits;  ///< of an item, below its key
   unsigned minor_bits;   ///< of a brick's key

@@ -55,10 +55,16 @@ pcl::LiscoEndlessExtraction<PointT>::~LiscoEndlessExtraction() = default;
 
 template <typename PointT>
 bool pcl::LiscoEndlessExtraction<PointT>::beginStream() {
-  lisco::EndlessParameters parameters = parameters_;
+  lisco::EndlessParameters parameters;
   parameters.tolerance = static_cast<float>(cluster_tolerance_);
   parameters.min_size = min_pts_per_cluster_;
   parameters.max_size = max_pts_per_cluster_;
+  parameters.origin = sensor_origin_;
+  parameters.clockwise = clockwise_;
+  parameters.start_azimuth = start_azimuth_;
+  parameters.stagger = stagger_;
+  parameters.columns_per_turn = columns_per_turn_;
+  parameters.block_columns = block_columns_;
   const bool begun = state_->begun;
   state_->begun = false;  // stays so after an exception, here and below
   try {
