@@ -70,7 +70,9 @@ def _parser() -> argparse.ArgumentParser:
     add("--topic", help="of bags, if they have several of clouds or packets")
     add("--port", type=_count(1), metavar="N", help="of captures: only packets to it")
     add("--piece", type=_count(1), default=200, metavar="N", help="scans of a piece of work (default: 200)")
-    add("--scheduler", metavar="ADDRESS", help="of Dask, such as tcp://host:8786 (default: an embedded one)")
+    add("--no-table", action="store_true", help="do not merge the clusters of the pieces (clusters.npy) into one table")
+    add("--scheduler", metavar="ADDRESS", help="of Dask, such as tcp://host:8786, or its scheduler file, "
+        "NAME.json (default: an embedded one)")
     add("--workers", type=_count(0), default=os.cpu_count() or 1, metavar="N", help="processes of the embedded "
         "scheduler (default: one for each core); 0: no scheduler, all in this process")
     add("--patience", type=_number, default=300.0, metavar="S", help="seconds to wait for a scheduler (default: 300)")
@@ -92,7 +94,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
             executor = Serial()
         else:
             executor = Distributed(given.scheduler, given.workers, given.patience)
-        done = run(given.inputs, os.path.abspath(given.output), settings, executor)
+        done = run(given.inputs, os.path.abspath(given.output), settings, executor, table=not given.no_table)
     except KeyboardInterrupt:
         print("lisco.archive: interrupted; the same command goes on", file=sys.stderr)
         return 2

@@ -2,13 +2,26 @@
 """Calls of a function, in this process or on Dask's workers."""
 
 import collections
+import json
 import logging
+import pickle
 import tempfile
 import time
 import uuid
+import zlib
 from typing import Any, Callable, Deque, Dict, Iterator, List, Optional, Tuple
 
 Arguments = Tuple[Any, ...]
+
+
+def packed(arguments: Arguments) -> bytes:
+    """Arguments in few bytes: the load on a scheduler grows with the size of messages."""
+    return zlib.compress(pickle.dumps(arguments, protocol=4), 1)
+
+
+def call_packed(function: Callable[..., Any], arguments: bytes) -> Any:
+    """Calls a function with arguments as `packed` gives them."""
+    return function(*pickle.loads(zlib.decompress(arguments)))
 
 
 class Serial:
@@ -34,7 +47,8 @@ class Distributed:
     Parameters
     ----------
     address : str, optional
-        Of a scheduler, such as tcp://host:8786; by default, an embedded one is started.
+        Of a scheduler, such as tcp://host:8786, or the file that it writes with --scheduler-file (NAME.json); by
+        default, an embedded one is started.
     workers : int
         Processes of the embedded scheduler.
     patience : float
@@ -91,7 +105,8 @@ class Distributed:
                 while waiting and len(pending) < self._window():
                     arguments = waiting.popleft()
                     key = f"lisco-{uuid.uuid4().hex}"
-                    pending[self._client.submit(function, *arguments, key=key, pure=False)] = arguments
+                    future = self._client.submit(call_packed, function, packed(arguments), key=key, pure=False)
+                    pending[future] = arguments
                 for future in self._finished(pending):
                     arguments = pending.pop(future)
                     if future.status == "finished":
@@ -132,15 +147,21 @@ class Distributed:
             pass
         return [future for future in pending if future.status != "pending"]
 
+    def _current_address(self) -> str:
+        if not str(self._address).endswith(".json"):
+            return str(self._address)
+        with open(str(self._address), encoding="utf-8") as file:
+            return str(json.load(file)["address"])
+
     def _connect(self) -> None:
         if self._client is not None:
             self._client.close(timeout=5)
         deadline = time.monotonic() + self._patience
         while True:
             try:
-                self._client = self._distributed.Client(self._address, timeout=5)
+                self._client = self._distributed.Client(self._current_address(), timeout=5)
                 return
-            except (OSError, TimeoutError, self._distributed.TimeoutError) as error:
+            except (OSError, ValueError, TimeoutError, self._distributed.TimeoutError) as error:
                 if time.monotonic() > deadline:
                     raise OSError(f"{self._address}: no scheduler answers: {error}") from None
                 time.sleep(1)

@@ -77,8 +77,21 @@ class Locked:
         self._file.close()
 
 
-def run(inputs: List[str], out: str, settings: Settings, executor: Any, stream: TextIO = sys.stderr) -> Summary:
+def run(
+    inputs: List[str], out: str, settings: Settings, executor: Any, stream: TextIO = sys.stderr, table: bool = True
+) -> Summary:
     """Clusters all scans of the inputs into a folder; goes on where an earlier run stopped.
+
+    Parameters
+    ----------
+    inputs, out, settings
+        Paths, the folder, and how scans are read and clustered.
+    executor
+        Of `lisco.archive.executors`.
+    stream
+        For the progress.
+    table
+        Merge the tables of the pieces into one.
 
     Raises
     ------
@@ -94,22 +107,33 @@ def run(inputs: List[str], out: str, settings: Settings, executor: Any, stream: 
         _check_state(out, cutting.identity(files, settings))
         _remove_temporary(out)
         plan = list(cutting.cut(files, _counts(out, files, settings, executor), settings))
-        done = {piece.number for piece in plan if report_of(out, piece) is not None}
+        done: Dict[int, Dict[str, Any]] = {}
+        for piece in plan:
+            earlier = report_of(out, piece)
+            if earlier is not None:
+                done[piece.number] = earlier
         progress = Progress(sum(piece.scans for piece in plan), stream)
         failures: Dict[int, List[str]] = {}
-        scans = sum(piece.scans for piece in plan if piece.number in done)
+        scans = sum(len(report["scans"]) for report in done.values())
+        clusters = sum(map(_clusters, done.values()))
         progress.add(scans, is_new=False)
         missing = [(out, piece, settings) for piece in plan if piece.number not in done]
         for number, report in executor.map(_numbered, missing):
             scans += len(report["scans"])
+            clusters += _clusters(report)
             progress.add(len(report["scans"]), is_new=True)
             if report["failures"]:
                 failures[number] = report["failures"]
         progress.clear()
-        clusters = merge(out, plan)
+        if table:
+            merge(out, plan)
         _remove_temporary(out)
     lines = [line for number in sorted(failures) for line in failures[number]]
     return Summary(scans, clusters, lines, time.monotonic() - start)
+
+
+def _clusters(report: Dict[str, Any]) -> int:
+    return sum(int(scan["clusters"]) for scan in report["scans"])
 
 
 def _numbered(out: str, piece: Piece, settings: Settings) -> Any:

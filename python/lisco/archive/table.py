@@ -14,19 +14,12 @@ from .work import CLUSTERS, ROW, published
 TABLE = "clusters.sqlite"
 
 
-def merge(out: str, pieces: Iterable[Piece]) -> int:
-    """Writes the table under a temporary name and renames it. Holds the clusters of one piece at a time.
-
-    Returns
-    -------
-    int
-        Number of clusters.
-    """
+def merge(out: str, pieces: Iterable[Piece]) -> None:
+    """Writes the table under a temporary name and renames it. Holds the clusters of one piece at a time."""
     final = os.path.join(out, TABLE)
     temporary = f"{final}.{uuid.uuid4().hex}.tmp"
     names = ROW.names or ()
     columns = ", ".join(f"{name} {'INTEGER' if ROW[name].kind == 'i' else 'REAL'} NOT NULL" for name in names)
-    total = 0
     try:
         connection = sqlite3.connect(temporary, isolation_level=None)
         try:
@@ -56,7 +49,6 @@ def merge(out: str, pieces: Iterable[Piece]) -> int:
                 marks = ", ".join("?" * len(names))
                 connection.executemany(f"INSERT INTO clusters VALUES ({marks})", rows.tolist())
                 first += len(scans)
-                total += len(rows)
             connection.execute("COMMIT")
         finally:
             connection.close()
@@ -68,4 +60,3 @@ def merge(out: str, pieces: Iterable[Piece]) -> int:
     finally:
         if os.path.exists(temporary):
             os.remove(temporary)
-    return total

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What a worker does: clusters the scans of a piece, and publishes the results all at once."""
 
+import io
 import json
 import os
 import shutil
@@ -143,7 +144,10 @@ def _write_results(folder: str, piece: Piece, settings: Settings) -> Dict[str, A
             found = measure(points, labels, number)
             rows.append(found)
             scans.append({"name": name, "time": seconds, "points": int(labels.size), "clusters": len(found)})
-    np.save(os.path.join(folder, CLUSTERS), np.concatenate([np.empty(0, ROW)] + rows))
+    with open(os.path.join(folder, CLUSTERS), "wb") as table:
+        content = io.BytesIO()  # of a file on a full disk, NumPy does not say why it cannot be written
+        np.save(content, np.concatenate([np.empty(0, ROW)] + rows))
+        table.write(content.getbuffer())
     report = {"scans": scans, "failures": failures}
     write_whole(os.path.join(folder, REPORT), canonical(report))
     return report
