@@ -25,6 +25,7 @@
 #include "captured_rotations.h"
 #include "compare/comparison.h"
 #include "compare/report.h"
+#include "ground_heights.h"
 #include "io/cloud_file.h"
 #include "io/options.h"
 #include "io/text.h"

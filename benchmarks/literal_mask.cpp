@@ -14,6 +14,7 @@
 #include <pcl/search/kdtree.h>
 
 #include "compare/comparison.h"
+#include "ground_heights.h"
 #include "io/cloud_file.h"
 #include "io/options.h"
 #include "io/stagger.h"

@@ -25,6 +25,7 @@
 
 #include "compare/comparison.h"
 #include "compare/report.h"
+#include "ground_heights.h"
 #include "io/cloud_file.h"
 #include "io/options.h"
 #include "io/output_file.h"

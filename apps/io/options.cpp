@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <limits>
 #include <stdexcept>
 
 #include <boost/algorithm/string.hpp>
@@ -117,13 +116,6 @@ void ClusterOptions::addTo(po::options_description& shown) {
 void ClusterOptions::check() const {
   if (tolerance == 0) throw std::runtime_error("--tolerance is missing; see --help");
   if (max_size < min_size) throw std::runtime_error("--max-size is smaller than --min-size");
-}
-
-PerInput<float> groundHeights(const std::vector<std::string>& items) {
-  PerInput<float> heights(-std::numeric_limits<float>::infinity());
-  for (const std::string& item : items)
-    heights.set(item, [](const std::string& text) { return heightOf(text, "--ground-z"); });
-  return heights;
 }
 
 }  // namespace lisco_apps

@@ -104,9 +104,6 @@ class PerInput {
   Value otherwise_;
 };
 
-/// Heights of the ground by items of --ground-z, metres: minus infinity where no item applies.
-PerInput<float> groundHeights(const std::vector<std::string>& items);
-
 /// The body of main (): turns an exception into one line on stderr and exit code 2.
 template <typename Run>
 int runProgram(const char* name, Run&& run) {

@@ -5,10 +5,9 @@
 #include <cmath>
 
 #include "lisco/return.h"
+#include "pi.h"
 
 namespace lisco_apps {
-
-constexpr double kPi = 3.14159265358979323846;
 
 template <typename Point>
 bool isReturn(const Point& p) {

@@ -7,9 +7,11 @@
 #include <cstddef>
 #include <vector>
 
+#include "pi.h"
+
 namespace lisco_apps {
 
-inline constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.;
+inline constexpr double kRadiansPerDegree = kPi / 180.;
 
 /// One laser, and its place in the sensor.
 struct Laser {

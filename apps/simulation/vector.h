@@ -4,9 +4,11 @@
 
 #include <cmath>
 
+#include "pi.h"
+
 namespace lisco_simulation {
 
-constexpr double kPi = 3.14159265358979323846;
+using lisco_apps::kPi;
 
 /// A position or a direction: x ahead, y to the left, z up; metres.
 struct Vector {
