@@ -123,7 +123,7 @@ void VoxelGrid::gatherCells(const std::vector<lisco::Return>& returns) {
   keys_.resize(count + 1);
   cells_.resize(count + 1);
   rows_.clear();
-  components_.reset(count);
+  components_.reserve(count);
   std::uint32_t cells = 0;
   for (std::size_t i = 0; i < count;) {
     const std::uint64_t key = items_[i] >> number_bits_;
