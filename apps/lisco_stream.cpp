@@ -23,6 +23,7 @@
 #include "io/options.h"
 #include "io/scan_options.h"
 #include "io/text.h"
+#include "live/live_view.h"
 #include "recordings/cloud_columns.h"
 #include "recordings/options.h"
 #include "recordings/packet_input.h"
@@ -57,6 +58,8 @@ struct Options {
   fs::path output, bag;
   bool json = false;
   bool statistics = false;
+  std::optional<HttpAddress> http;
+  unsigned viewers = 0;  ///< before a capture is read
 };
 
 Mode modeOf(const std::string& text) {
@@ -83,6 +86,7 @@ bool parse(int argc, char** argv, Options& options) {
       "            reach it. A cluster of a whole turn is cut there, and continued by others.\n"
       "  windows   The clusters of the last --window columns, after every --hop columns: those of PCL's\n"
       "            EuclideanClusterExtraction on these columns as an organized cloud, in the same order.\n"
+      "With --http, a page in any browser shows the columns as they come, the subclusters so far, and the clusters.\n"
       "Ctrl-C ends the program after the packets received so far; a second one ends it at once.\n\n"
       "With --json, each line of the output is an object. Metres; azimuths in degrees clockwise, 0 ahead;\n"
       "time is when the last packet came, in seconds since 1970.\n"
@@ -128,6 +132,11 @@ bool parse(int argc, char** argv, Options& options) {
      "write each rotation or window as a recording of ROS 2: the labelled cloud (sensor_msgs/PointCloud2) and boxes "
      "(visualization_msgs/MarkerArray)")
     ("json", po::bool_switch(&options.json), "print JSON lines instead of text")
+    ("http", textOption("[ADDRESS:]PORT", [&](const std::string& text) { options.http = httpAddressOf(text); }),
+     "serve a page that shows the stream to any number of browsers, at http://ADDRESS:PORT/ (default ADDRESS 127.0.0.1: "
+     "this machine only; PORT 0: any that is free). Slow viewers lose frames and delay nothing")
+    ("viewers", countOption("--viewers", options.viewers, 1),
+     "with --http, begin a capture or recording when N viewers have opened the page (default: at once)")
     ("stats", po::bool_switch(&options.statistics),
      "print a table of packets, columns, clusters and latencies at the end (with --json, on stderr)");
   // clang-format on
@@ -153,6 +162,9 @@ bool parse(int argc, char** argv, Options& options) {
     throw std::runtime_error("--bag is for rotations and windows only");
   if (options.mode != Mode::kWindows && options.window + options.hop > 0)
     throw std::runtime_error("--window and --hop are for --mode windows only");
+
+  if (options.viewers > 0 && (!options.http || options.capture.empty()))
+    throw std::runtime_error("--viewers is for captures and recordings with --http only");
 
   clustering.check();
   scan.check();
@@ -262,7 +274,8 @@ Clock::time_point receivedAt(const Packet& packet, bool is_live) {
 }
 
 /// Clusters packets until the source ends, a signal comes, or the stream has the wanted rotations.
-void takePackets(const Input& input, Decoder& decoder, OtherSensors& others, Stream& stream, Report& report) {
+void takePackets(const Input& input, Decoder& decoder, OtherSensors& others, Stream& stream, Report& report,
+                 LiveView* live) {
   bool is_open = true;
   Packet packet;
   Origin origin;
@@ -284,6 +297,7 @@ void takePackets(const Input& input, Decoder& decoder, OtherSensors& others, Str
     }
     report.flush();
     report.showStatus(decoder, stream);
+    if (live != nullptr) live->handOver(decoder, stream);
   }
 }
 
@@ -305,11 +319,17 @@ LabelledScan labelledScanOf(const Turn& turn, const std::vector<FoundCluster>& c
   return scan;
 }
 
-std::unique_ptr<Stream> makeStream(const Options& options, const Decoder& decoder, Report& report) {
+std::unique_ptr<Stream> makeStream(const Options& options, const Decoder& decoder, Listener& report) {
   if (options.mode == Mode::kEndless) return std::make_unique<EndlessStream>(options.stream, decoder, report);
   if (options.mode == Mode::kWindows)
     return std::make_unique<WindowStream>(options.stream, decoder, report, options.window, options.hop);
   return std::make_unique<RotationStream>(options.stream, decoder, report);
+}
+
+/// Waits until the page has as many viewers, or for a signal.
+void waitForViewers(const LiveView& live, unsigned viewers) {
+  while (live.viewers() < viewers && !Interruption::happened())
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
 }
 
 int run(const Options& options) {
@@ -329,12 +349,23 @@ int run(const Options& options) {
       bag->write(labelledScanOf(turn, clusters));
     });
   }
-  const std::unique_ptr<Stream> stream = makeStream(options, decoder, report);
+  std::unique_ptr<LiveView> live;
+  if (options.http) {
+    const std::string source =
+        options.capture.empty() ? "UDP port " + std::to_string(*options.port) : options.capture.filename().string();
+    live = std::make_unique<LiveView>(*options.http, report, options.stream, source + ", " + decoder.name(),
+                                      options.window);
+    report.warn("view at " + live->url());
+  }
+  const std::unique_ptr<Stream> stream =
+      makeStream(options, decoder, live ? live->listener() : static_cast<Listener&>(report));
 
   OtherSensors others;
-  takePackets(input, decoder, others, *stream, report);
+  if (live) waitForViewers(*live, options.viewers);
+  takePackets(input, decoder, others, *stream, report, live.get());
   stream->finish();
   report.flush();
+  if (live) live->finish(decoder, *stream);
   if (bag) bag->finish();
   if (options.statistics) report.printStatistics(*input.source, decoder, *stream);
 

@@ -28,12 +28,13 @@ bool EndlessStream::take(const PreparedColumn& column) {
     if (isOver()) return false;
     begin(column);
   }
+  listener_.column(column);
   time_us_ = column.origin.time_us;
   OpenTurn& open = turns_.back();
   open.last_position = column.position;
   marks_.push_back({column.position, column.origin.received});
-  open.turn.add(column, next_index_, returns_);
-  next_index_ += static_cast<std::uint32_t>(column.cells.size());
+  open.turn.add(column, static_cast<std::uint32_t>(next_cell_), returns_);
+  next_cell_ += column.cells.size();
   clusterer_.addColumn(returns_.data(), returns_.size(), column.position);
   if (marks_.size() >= 2 * kBlock) marks_.erase(marks_.begin(), marks_.end() - kBlock);
   closeTurns(column.position);
@@ -63,7 +64,7 @@ void EndlessStream::begin(const PreparedColumn& column) {
   turns_.push_back(std::move(spare_.back()));
   spare_.pop_back();
   turns_.back().turn.begin(++rotations_, column.cells.size(), column.azimuth);
-  turns_.back().first_index = next_index_;
+  turns_.back().first_cell = next_cell_;
   has_begun_ = true;
 }
 
@@ -112,15 +113,18 @@ void EndlessStream::deliver(const lisco::EndlessCluster& cluster) {
   if (++delivered_ == 0) delivered_ = 1;  // after 2^32 clusters; 0 is no cluster
   delivered.found.id = delivered_;
   points_.clear();
+  cells_.clear();
+  delivered.cells = &cells_;
   cluster.forEachRun([&](const std::uint32_t* indices, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
       // The turn that holds the index; differences are correct across the wrap-around of indices.
       auto open = turns_.rbegin();
-      while (indices[i] - open->first_index >= open->turn.cells.size()) ++open;
-      const std::size_t cell = indices[i] - open->first_index;
+      while (indices[i] - static_cast<std::uint32_t>(open->first_cell) >= open->turn.cells.size()) ++open;
+      const std::size_t cell = indices[i] - static_cast<std::uint32_t>(open->first_cell);
       open->turn.labels[cell] = delivered.found.id;
       const Cell& place = open->turn.cells[cell];
       points_.push_back({place.x, place.y, place.z});
+      cells_.push_back(open->first_cell + cell);
     }
   });
   delivered.first_position = cluster.firstPosition();

@@ -32,8 +32,8 @@ class EndlessStream : public Stream {
   /// A turn some of whose clusters may be open.
   struct OpenTurn {
     Turn turn;
-    std::uint32_t first_index = 0;  ///< source index of its first cell
-    double last_position = 0;       ///< of its last column
+    std::uint64_t first_cell = 0;  ///< number of its first cell
+    double last_position = 0;      ///< of its last column
   };
   /// A column that may close clusters.
   struct Mark {
@@ -56,12 +56,13 @@ class EndlessStream : public Stream {
   std::deque<OpenTurn> turns_;  ///< the current one is last
   std::vector<OpenTurn> spare_;
   bool is_finishing_ = false;
-  std::uint32_t next_index_ = 0;  ///< wraps around to 0
+  std::uint64_t next_cell_ = 0;  ///< number of the next cell; its lower half is the cell's source index
   std::optional<double> last_time_us_;
   std::int64_t time_us_ = 0;
   std::uint32_t delivered_ = 0;
   std::vector<Mark> marks_;                   ///< of the latest columns
   std::vector<std::array<float, 3>> points_;  ///< of the cluster that is delivered
+  std::vector<std::uint64_t> cells_;          ///< of the same
 };
 
 }  // namespace lisco_apps

@@ -68,17 +68,17 @@ void Report::flush() {
 }
 
 void Report::count(const FoundCluster& cluster) {
-  ++clusters_;
+  ++totals_.clusters;
   ++clusters_of_turn_;
-  in_clusters_ += cluster.features.size;
+  totals_.in_clusters += cluster.features.size;
   if (cluster.features.size > largest_of_turn_.size) largest_of_turn_ = cluster.features;
 }
 
 std::string Report::countTurn(const char* name, const Turn& turn) {
-  ++turns_;
-  columns_ += turn.columns();
-  returns_ += turn.returns;
-  ground_ += turn.ground;
+  ++totals_.turns;
+  totals_.columns += turn.columns();
+  totals_.returns += turn.returns;
+  totals_.ground += turn.ground;
   return formatted("%s %llu: %zu columns, %llu returns", name, number(turn.number), turn.columns(),
                    number(turn.returns)) +
          groundOf(turn);
@@ -125,8 +125,8 @@ void Report::found(const char* name, const Turn& turn, const std::vector<FoundCl
 
 void Report::cluster(const DeliveredCluster& cluster) {
   count(cluster.found);
-  if (cluster.is_cut) ++cut_;
-  if (cluster.is_continued) ++continued_;
+  if (cluster.is_cut) ++totals_.cut;
+  if (cluster.is_continued) ++totals_.continued;
   if (format_ == Format::kText) return;
   Json json{{"id", cluster.found.id},
             {"time", secondsOf(cluster.time_us)},
@@ -166,8 +166,8 @@ void Report::showStatus(const Decoder& decoder, const Stream& stream) {
   else
     shown_ =
         formatted("%llu rotations, %llu columns, packets: %llu lost, %llu late; %llu clusters, ms: p50 %.2f, p99 %.2f",
-                  number(turns_), number(counts.columns), number(counts.missing), number(counts.late),
-                  number(clusters_), latency.percentileMs(0.5), latency.percentileMs(0.99));
+                  number(totals_.turns), number(counts.columns), number(counts.missing), number(counts.late),
+                  number(totals_.clusters), latency.percentileMs(0.5), latency.percentileMs(0.99));
   status_.show(shown_);
 }
 
@@ -196,14 +196,14 @@ void Report::printStatistics(const PacketSource& source, const Decoder& decoder,
     table += formatted("            %llu name another model of sensor\n", number(counts.says_other_model));
   if (counts.clock_jumps > 0)
     table += formatted("            the sensor's clock was set %llu times\n", number(counts.clock_jumps));
-  table += formatted("rotations   %llu\ncolumns     %llu\nreturns     %llu", number(turns_), number(columns_),
-                     number(returns_));
-  if (ground_ > 0) table += formatted(" and %llu of the ground, left out", number(ground_));
-  table += formatted("\nclusters    %llu, of %llu returns\n", number(clusters_), number(in_clusters_));
+  table += formatted("rotations   %llu\ncolumns     %llu\nreturns     %llu", number(totals_.turns),
+                     number(totals_.columns), number(totals_.returns));
+  if (totals_.ground > 0) table += formatted(" and %llu of the ground, left out", number(totals_.ground));
+  table += formatted("\nclusters    %llu, of %llu returns\n", number(totals_.clusters), number(totals_.in_clusters));
   const std::optional<std::uint64_t> outliers = stream.outliers();
   if (outliers)
-    table += formatted("            %llu cut after a turn, %llu continued; %llu outliers\n", number(cut_),
-                       number(continued_), number(*outliers));
+    table += formatted("            %llu cut after a turn, %llu continued; %llu outliers\n", number(totals_.cut),
+                       number(totals_.continued), number(*outliers));
   table += "latency in ms\n" + rowOf("column", stream.columnLatency()) +
            rowOf(outliers ? "delivery" : "rotation", stream.clusterLatency());
   std::fputs(table.c_str(), format_ == Format::kJson ? stderr : stdout);

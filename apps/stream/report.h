@@ -24,6 +24,13 @@ class Report : public Listener {
  public:
   enum class Format { kText, kJson };
 
+  /// Of all rotations, windows or turns so far.
+  struct Totals {
+    std::uint64_t turns = 0, columns = 0, returns = 0, ground = 0;
+    std::uint64_t clusters = 0, in_clusters = 0;  ///< and their returns
+    std::uint64_t cut = 0, continued = 0;         ///< clusters of an endless stream
+  };
+
   explicit Report(Format format, const LabelledClouds* clouds = nullptr) : format_(format), clouds_(clouds) {}
   /// Writes labelled clouds from now on.
   void writeTo(const LabelledClouds& clouds) { clouds_ = &clouds; }
@@ -45,6 +52,8 @@ class Report : public Listener {
   /// Prints a line on stderr.
   void warn(const std::string& text);
 
+  const Totals& totals() const { return totals_; }
+
   /// Prints the closing table on stdout, or on stderr if stdout is JSON.
   void printStatistics(const PacketSource& source, const Decoder& decoder, const Stream& stream);
 
@@ -64,8 +73,7 @@ class Report : public Listener {
   std::string shown_;                                        ///< status
   Clock::time_point shown_at_;
   bool unflushed_ = false;
-  std::uint64_t turns_ = 0, columns_ = 0, returns_ = 0, ground_ = 0, clusters_ = 0, in_clusters_ = 0, cut_ = 0,
-                continued_ = 0;
+  Totals totals_;
   std::uint64_t clusters_of_turn_ = 0;  ///< delivered since the turn began
   lisco::ClusterFeatures largest_of_turn_;
 };

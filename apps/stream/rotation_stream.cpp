@@ -34,6 +34,7 @@ bool RotationStream::take(const PreparedColumn& column) {
     if (isOver()) return false;
     begin(column);
   }
+  listener_.column(column);
   turn_.add(column, static_cast<std::uint32_t>(turn_.cells.size()), returns_);
   clusterer_.addColumn(returns_.data(), returns_.size());
   return true;

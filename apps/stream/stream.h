@@ -83,6 +83,7 @@ struct FoundCluster {
 
 /// A cluster of an endless stream.
 struct DeliveredCluster {
+  const std::vector<std::uint64_t>* cells = nullptr;  ///< numbers, from the first cell of the stream's first column
   FoundCluster found;
   double first_position = 0, last_position = 0;  ///< of its first and last column, turns
   bool is_cut = false, is_continued = false;     ///< see lisco::EndlessCluster
@@ -94,6 +95,9 @@ struct DeliveredCluster {
 class Listener {
  public:
   virtual ~Listener() = default;
+
+  /// A column has been received; results that cover it follow.
+  virtual void column(const PreparedColumn& /*column*/) {}
 
   /// A rotation has been clustered: clusters largest first, cells labelled.
   virtual void rotation(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) = 0;

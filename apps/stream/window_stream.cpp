@@ -20,6 +20,7 @@ bool WindowStream::take(const PreparedColumn& column) {
   const auto start = Clock::now();
   if (isOver()) return false;
   if (columns_ == 0 || column.cells.size() != lasers_) begin(column.cells.size());
+  listener_.column(column);
   const std::size_t slot = columns_ % window_;
   std::copy(column.cells.begin(), column.cells.end(), cells_.begin() + static_cast<std::ptrdiff_t>(slot * lasers_));
   std::copy(column.uses.begin(), column.uses.end(), uses_.begin() + static_cast<std::ptrdiff_t>(slot * lasers_));

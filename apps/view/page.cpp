@@ -46,20 +46,34 @@ std::string quoted(const std::string& text) {
   return result;
 }
 
-}  // namespace
-
-std::string viewPage(const std::string& title, const std::vector<std::string>& scans) {
+/// The page with its data.
+std::string pageWith(const std::string& data) {
   const std::string_view page = emptyViewPage();
   const std::size_t mark = page.find(kDataMark);
   std::string result(page.substr(0, mark));
-  result += "<script type=\"application/json\" id=\"title\">" + quoted(title) + "</script>\n";
-  for (const std::string& scan : scans) {
-    result += "<script type=\"text/plain\" class=\"scan\">";
-    appendBase64(compressed(scan), result);
-    result += "</script>\n";
-  }
+  result += data;
   result += page.substr(mark + kDataMark.size());
   return result;
+}
+
+std::string jsonScript(const char* id, const std::string& text) {
+  return std::string("<script type=\"application/json\" id=\"") + id + "\">" + quoted(text) + "</script>\n";
+}
+
+}  // namespace
+
+std::string viewPage(const std::string& title, const std::vector<std::string>& scans) {
+  std::string data = jsonScript("title", title);
+  for (const std::string& scan : scans) {
+    data += "<script type=\"text/plain\" class=\"scan\">";
+    appendBase64(compressed(scan), data);
+    data += "</script>\n";
+  }
+  return pageWith(data);
+}
+
+std::string liveViewPage(const std::string& title, const std::string& path) {
+  return pageWith(jsonScript("title", title) + jsonScript("live", path));
 }
 
 }  // namespace lisco_apps

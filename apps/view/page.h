@@ -20,4 +20,9 @@ std::string_view emptyViewPage();
 /// \throws std::runtime_error if a scan cannot be compressed
 std::string viewPage(const std::string& title, const std::vector<std::string>& scans);
 
+/// A page that shows the frames of a stream, which it receives by WebSocket (see doc/view.md).
+/// \param title see viewPage ()
+/// \param path of the WebSocket on the page's own server
+std::string liveViewPage(const std::string& title, const std::string& path);
+
 }  // namespace lisco_apps

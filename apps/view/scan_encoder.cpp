@@ -172,15 +172,17 @@ void encodeLabels(const ViewScan& scan, const ViewLabelling& labelling, const Sh
 
 }  // namespace
 
-std::string encodeViewScan(const ViewScan& scan) {
+std::string encodeViewScan(const ViewScan& scan, PointOrder order) {
   Shown shown = shownOf(scan.points);
   std::string streams = encodedPositions(shown.positions);
-  Shown sorted = shown;
-  sortByZOrder(sorted);
-  std::string sorted_positions = encodedPositions(sorted.positions);
-  if (sorted_positions.size() < streams.size()) {
-    streams = std::move(sorted_positions);
-    shown = std::move(sorted);
+  if (order == PointOrder::kSmallest) {
+    Shown sorted = shown;
+    sortByZOrder(sorted);
+    std::string sorted_positions = encodedPositions(sorted.positions);
+    if (sorted_positions.size() < streams.size()) {
+      streams = std::move(sorted_positions);
+      shown = std::move(sorted);
+    }
   }
 
   Json header{{"name", scan.name},

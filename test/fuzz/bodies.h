@@ -44,4 +44,7 @@ void fuzzHesai(const std::uint8_t* data, std::size_t size);
 /// Packets of an Ouster sensor, or its metadata.
 void fuzzOuster(const std::uint8_t* data, std::size_t size);
 
+/// Requests to the server of the live view, what its viewers send, and its addresses.
+void fuzzHttp(const std::uint8_t* data, std::size_t size);
+
 }  // namespace lisco_test

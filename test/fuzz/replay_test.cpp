@@ -42,7 +42,7 @@ INSTANTIATE_TEST_SUITE_P(Bodies, Fuzz,
                                          Target{"readers", fuzzReaders, 2000},
                                          Target{"recordings", fuzzRecordings, 2000},
                                          Target{"packets", fuzzPackets, 6000}, Target{"hesai", fuzzHesai, 6000},
-                                         Target{"ouster", fuzzOuster, 6000}),
+                                         Target{"ouster", fuzzOuster, 6000}, Target{"http", fuzzHttp, 6000}),
                          [](const auto& target) { return std::string(target.param.name); });
 
 std::vector<Bytes> corpus() {

@@ -23,6 +23,7 @@ function boxLines(scan, labelling, {shown, selected, theme}) {
   const palette = PALETTES[theme].map(rgb);
   labelling.clusters.forEach((cluster, index) => {
     const is_selected = cluster.id === selected;
+    if (cluster.swept) return;
     if (!shown && !is_selected) return;
     const color = is_selected ? mark : packed(palette[labelling.colors[index]]);
     const corners = cornersOf(cluster);

@@ -31,9 +31,12 @@ function scaleColors(theme) {
 
 // A colour's number per cluster: each cluster, the largest first, takes the colour whose nearest cluster so far is the
 // farthest away. Clusters after the first thousand take turns.
-function clusterColors(clusters, colors) {
+// known: gives a cluster's number if it is settled
+function clusterColors(clusters, colors, known = () => undefined) {
   const placed = [];
   return clusters.map((cluster, index) => {
+    const settled = known(cluster);
+    if (settled !== undefined) return settled;
     if (index >= 1000) return index % colors;
     const nearest = new Array(colors).fill(Infinity);
     const radius = Math.hypot(cluster.length, cluster.width) / 2;

@@ -88,7 +88,7 @@ class Scan {
         if (c === GROUND) ++ground;
         else if (c === NOISE) ++noise;
       }
-      return {...labelling, classes, ground, noise};
+      return {...labelling, listed: labelling.clusters.length, classes, ground, noise};
     });
     if (this.intensity) {
       this.levels = bytes.subarray(reader.at, reader.at + this.points);

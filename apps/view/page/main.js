@@ -44,6 +44,11 @@ async function load() {
     script.remove();
     say('');
   }
+  if (byId('live')) {
+    view.live = new Live(view, JSON.parse(byId('live').textContent));
+    say('Waiting for columns…');
+    return view;
+  }
   if (view.scans.some(scan => scan.labellings.length > 1)) view.setLabellings(0, 1);
   if (!view.scans.length) say('This page holds no scan.');
   return view;

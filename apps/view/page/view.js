@@ -61,6 +61,29 @@ class View {
     showCounts(scan, this.labelling);
   }
 
+  // The next frame of a stream: what the user has chosen stays.
+  replace(scan, fills_list) {
+    const had_points = this.scan?.points > 0;
+    this.scans = [scan];
+    this.point = -1;
+    this.ends = [];
+    if (!had_points) this.origin = scan.origin;
+    this.matrix = displayMatrix(scan, this.origin);
+    this.renderer.setPositions(scan.positions);
+    byId('name').textContent = scan.name;
+    if (!had_points && scan.points) {
+      say('');
+      this.reset();
+    }
+    if (this.selected) showSelection(scan, this.labelling, this.selected, -1);
+    else if (!this.measure) byId('info').hidden = true;
+    this.recolor();
+    if (!fills_list) return;
+    const top = byId('list').scrollTop;
+    this.list.fill();
+    byId('list').scrollTop = top;
+  }
+
   // Offers the labellings of a scan that has several, and marks where the two that are shown differ.
   compare() {
     const {labellings} = this.scan;
@@ -154,7 +177,7 @@ class View {
     for (let pane = 0; pane < panes; ++pane) {
       if (panes > 1) this.overlay.title(this.labellingOf(pane).name, (pane + 0.5) * width / panes, color, halo);
       if (this.ids) {
-        const places = this.labellingOf(pane).clusters.map(({id, center, height: tall}) => {
+        const places = this.labellingOf(pane).clusters.filter(({open, swept}) => !open && !swept).map(({id, center, height: tall}) => {
           const above = [center[0], center[1], center[2] + (this.scan.camera ? 0 : tall / 2)];
           const place = this.screenOf(above.map((v, axis) => (v - this.scan.origin[axis]) / this.scan.step), pane);
           return place && {text: String(id), x: place[0], y: place[1] - 8};
@@ -285,6 +308,7 @@ class View {
     document.querySelector(`[data-toggle=${name}]`).setAttribute('aria-pressed', owner[name]);
     if (name === 'turning') this.turned_at = undefined;
     if (name === 'measure') {
+      this.live?.schedule();
       this.ends = [];
       this.overlay.canvas.classList.toggle('measuring', this.measure);
       if (this.measure) showMeasure(this.scan, this.labelling, []);
@@ -310,6 +334,10 @@ class View {
   }
 
   play(plays) {
+    if (this.live) {
+      this.live.pause();
+      return;
+    }
     clearInterval(this.playing);
     this.playing = plays && this.scans.length > 1 ? setInterval(() => this.show(this.frame + 1), 100) : false;
     byId('play').textContent = this.playing ? '❚❚' : '▶';
