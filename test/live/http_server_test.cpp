@@ -161,7 +161,7 @@ TEST(HttpServer, ClosesAViewerThatSpeaks) {
   Server server;
   std::vector<std::unique_ptr<Socket>> viewers;
   for (const std::string& message : {std::string("\x81\x80\1\2\3\4"), std::string("\x82\xfe\xff\xff\1\2\3\4"),
-                                     std::string("\x81\x02hi"), std::string(10, '\xff')}) {
+                                     std::string("\x81\x02hi"), std::string(14, '\xff')}) {
     viewers.push_back(std::make_unique<Socket>(server.port()));
     ASSERT_EQ(statusOf(viewers.back()->openLive(server.port(), "")), 101);
     viewers.back()->send(message);
