@@ -32,6 +32,9 @@
 #include "recordings/result_bag.h"
 #include "recordings/scan_source.h"
 #include "recordings/work_progress.h"
+#include "view/clustered_view.h"
+#include "view/scan_encoder.h"
+#include "view/timeline.h"
 
 namespace {
 
@@ -80,7 +83,7 @@ bool parse(int argc, char** argv, Options& options) {
      "cluster N files at the same time (default 1; 0: one per processor)")
     ("output,o", pathOption("DIR", "--output", options.output),
      "folder for the results; with several inputs, a folder in it for each; of a recording, a folder in it for each "
-     "message or rotation, of its number and time")
+     "message or rotation, of its number and time; then DIR/view.html shows them all as a timeline (up to 64 MB)")
     ("bag", pathOption("FILE.mcap", "--bag", options.bag),
      "write the labelled clouds (sensor_msgs/PointCloud2) and boxes (visualization_msgs/MarkerArray) as a recording of "
      "ROS 2; scans without a time are 0.1 s apart")
@@ -212,6 +215,9 @@ class Workers {
         folders_(options.output, source.files()),
         progress_(source.hasRecording() || source.files().size() > 1) {
     if (!options.bag.empty()) bag_.emplace(options.bag, "lisco_cluster");
+    if (source.hasRecording() || source.files().size() > 1) {
+      if (options.kinds.view && !options.output.empty()) timeline_.emplace(options.output / "view.html");
+    }
     source_.onNote([this](const std::string& note) { say(note); });
   }
 
@@ -226,6 +232,8 @@ class Workers {
       bag_->finish();
       std::printf("written     %s\n", options_.bag.c_str());
     }
+    const std::string page = timeline_ ? timeline_->write() : "";
+    if (!page.empty() && !options_.json) std::printf("written     %s\n", page.c_str());
     if (Interruption::happened() && !is_over_) {
       say(formatted("interrupted after %zu scans, whose results are complete", done_));
       all_well_ = false;
@@ -306,10 +314,13 @@ class Workers {
     if (!folder.empty()) writeResults(scan, folder, options_.kinds);
     std::optional<LabelledScan> labelled;
     if (bag_) labelled = labelledScanOf(scan, item.time_ns, number);
+    std::string viewed;
+    if (timeline_) viewed = encodeViewScan(viewScanOf(scan, scan.returns.clustered));
     const auto written = Clock::now();
 
     const std::lock_guard<std::mutex> lock(terminal_);
     if (labelled) bag_->write(*labelled);
+    if (timeline_) timeline_->add(number, std::move(viewed));
     progress_.clear();
     const StepTimes times{milliseconds(read - start), milliseconds(ground - read), milliseconds(clustered - ground),
                           milliseconds(written - clustered)};
@@ -328,6 +339,7 @@ class Workers {
   std::mutex terminal_;  ///< guards the terminal and the members after it
   WorkProgress progress_;
   std::optional<ResultBag> bag_;
+  std::optional<ViewTimeline> timeline_;
   std::size_t done_ = 0;
   bool all_well_ = true;
 };

@@ -58,9 +58,9 @@ class MemoryStream {
   std::string_view received_;
 };
 
-/// Called by Beast when a WebSocket is closed.
-void teardown(beast::role_type /*role*/, MemoryStream& /*stream*/, Error& /*error*/) {}
-void beast_close_socket(MemoryStream& /*stream*/) {}
+/// Called by Beast, some versions of it, when a WebSocket is closed.
+[[maybe_unused]] void teardown(beast::role_type /*role*/, MemoryStream& /*stream*/, Error& /*error*/) {}
+[[maybe_unused]] void beast_close_socket(MemoryStream& /*stream*/) {}
 
 constexpr std::string_view kPage = "<!doctype html>";
 

@@ -455,6 +455,28 @@ TEST_F(LiscoCluster, WritesEachInputToItsOwnFolder) {
     EXPECT_TRUE(fs::exists(folder_ / "results" / made / "labels.pcd")) << made;
 }
 
+TEST_F(LiscoCluster, ShowsSeveralInputsOnOnePage) {
+  for (const char* name : {"a.pcd", "b.pcd", "c.pcd"}) write(name, twoWalls());
+  const auto scansOf = [this](const std::string& page) {
+    const std::string text = textOf(folder_ / page);
+    std::size_t scans = 0;
+    for (std::size_t at = 0; (at = text.find("class=\"scan\">", at)) != std::string::npos; ++at) ++scans;
+    return scans;
+  };
+  const Outcome outcome = run(". --tolerance 0.3 --threads 2 -o results");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("results/view.html shows 3 scans\n"), std::string::npos) << outcome.out;
+  EXPECT_EQ(scansOf("results/view.html"), 3U);
+  EXPECT_EQ(scansOf("results/a/view.html"), 1U);
+  EXPECT_EQ(run("a.pcd b.pcd --tolerance 0.3 -o results").status, 0);
+  EXPECT_EQ(scansOf("results/view.html"), 2U);
+  EXPECT_EQ(run("a.pcd b.pcd --tolerance 0.3 --write table -o tables").status, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "tables/view.html"));
+  write("results/view.html", "my own page");
+  expectRefusal("a.pcd b.pcd --tolerance 0.3 -o results", {"view.html"});
+  EXPECT_EQ(textOf(folder_ / "results/view.html"), "my own page");
+}
+
 TEST_F(LiscoCluster, WritesBesideItsInput) {
   write("x.pcd", twoWalls());
   for (int time = 0; time < 2; ++time) {

@@ -102,6 +102,10 @@ TEST_F(LivePageTest, ShowsACapturesRotationsAndEnds) {
   browser_->open(url_);
   ASSERT_TRUE(waitForState("Live"));
   ASSERT_TRUE(browser_->waitFor("lisco.view.scan?.points > 1000"));
+  if (const char* const folder = std::getenv("LISCO_SCREENSHOTS")) {
+    browser_->waitFor("lisco.view.live.status.rotations >= 6");
+    browser_->saveScreenshot(std::filesystem::path(folder) / "live.png");
+  }
   ASSERT_TRUE(waitForState("Ended"));
   std::size_t frames = 0;
   for (auto message = reading.receiveMessage(); message.first == 2; message = reading.receiveMessage()) ++frames;
@@ -141,8 +145,6 @@ TEST_F(LivePageTest, ShowsACapturesRotationsAndEnds) {
   EXPECT_EQ(Json(std::vector<std::string>(browser_->requests().begin() + static_cast<std::ptrdiff_t>(requests),
                                           browser_->requests().end())),
             Json({"ws://127.0.0.1:" + std::to_string(port_) + "/live"}));
-  if (const char* const folder = std::getenv("LISCO_SCREENSHOTS"))
-    browser_->saveScreenshot(std::filesystem::path(folder) / "live.png");
 
   // Viewers change nothing, not even those that do not read.
   const Child without(LISCO_STREAM, {"drive/capture.pcap", "--sensor", "vlp16", "--tolerance", "0.4"}, folder_);
