@@ -133,8 +133,8 @@ bool parse(int argc, char** argv, Options& options) {
      "(visualization_msgs/MarkerArray)")
     ("json", po::bool_switch(&options.json), "print JSON lines instead of text")
     ("http", textOption("[ADDRESS:]PORT", [&](const std::string& text) { options.http = httpAddressOf(text); }),
-     "serve a page that shows the stream to any number of browsers, at http://ADDRESS:PORT/ (default ADDRESS 127.0.0.1: "
-     "this machine only; PORT 0: any that is free). Slow viewers lose frames and delay nothing")
+     "serve a page that shows the stream to any number of browsers, at http://ADDRESS:PORT/ (default ADDRESS "
+     "127.0.0.1: this machine only; PORT 0: any that is free). Slow viewers lose frames and delay nothing")
     ("viewers", countOption("--viewers", options.viewers, 1),
      "with --http, begin a capture or recording when N viewers have opened the page (default: at once)")
     ("stats", po::bool_switch(&options.statistics),

@@ -4,7 +4,8 @@
 # nothing, and needs no network, if all are installed.
 set -euo pipefail
 
-packages=(g++ cmake ninja-build pkg-config libpcl-dev libhwy-dev libboost-dev libboost-program-options-dev nlohmann-json3-dev
+packages=(g++ cmake ninja-build pkg-config libpcl-dev libhwy-dev libboost-dev libboost-program-options-dev
+          nlohmann-json3-dev
           libcairo2-dev libpcap-dev libsqlite3-dev liblz4-dev libzstd-dev libbz2-dev zlib1g-dev fonts-dejavu-core
           gnuplot-nox libgtest-dev doxygen dpkg-dev file help2man binutils "$@"
           pybind11-dev python3-dev python3-numpy python3-scipy python3-sklearn python3-pytest python3-hypothesis

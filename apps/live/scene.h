@@ -18,8 +18,8 @@
 namespace lisco_apps {
 
 /// What viewers of a stream see, from the batches of its feed: the columns of the last turn of the sensor (or of the
-/// last window), each replaced by the new one as it comes. Returns of the last result have its clusters; later ones have
-/// the subclusters of the columns so far, which a clusterer of its own finds.
+/// last window), each replaced by the new one as it comes. Returns of the last result have its clusters; later ones
+/// have the subclusters of the columns so far, which a clusterer of its own finds.
 class LiveScene {
  public:
   /// \param title shown by the page

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Makes the pictures of doc/gallery.md in doc/images/gallery, from $LISCO_TEST_DATA (default: ../shared/data): clusters a
-# scan of each sensor, opens its view.html in Chromium, and saves what the page shows, without its panel, as a PNG of 48
+# Makes the pictures of doc/gallery.md in doc/images/gallery, from $LISCO_TEST_DATA (default: ../shared/data): clusters
+# a scan of each sensor, opens its view.html in Chromium, and saves what the page shows, without its panel, as a PNG of 48
 # colours. Takes some minutes.
 #
 #   doc/images/gallery.sh [NAME...]     only the pictures of these names
@@ -25,7 +25,7 @@ picture() {
   [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" $name "* ]] || return 0
   (cd "$data" && "$build/apps/lisco_cluster" "$@" --write view -o "$work/$name") >/dev/null
   pages=("$work/$name/view.html")
-  [ -f "${pages[0]}" ] && [ -z "$(find "$work/$name" -mindepth 2 -name view.html)" ] || pages=("$work/$name"/*/view.html)
+  [ -z "$(find "$work/$name" -mindepth 2 -name view.html)" ] || pages=("$work/$name"/*/view.html)
   page=${pages[1]:-${pages[0]}}
   chromium --headless --no-sandbox --hide-scrollbars --window-size=1020,440 --virtual-time-budget=4000 \
     --user-data-dir="$work/chromium" --screenshot="$work/$name.png" "file://$page" >/dev/null 2>&1

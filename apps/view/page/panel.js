@@ -48,7 +48,8 @@ class ClusterList {
 
   fill() {
     const sign = this.descends ? -1 : 1;
-    this.sorted = this.view.labelling.clusters.filter(({open}) => !open).sort((a, b) => sign * (a[this.key] - b[this.key]) || a.id - b.id);
+    const listed = this.view.labelling.clusters.filter(({open}) => !open);
+    this.sorted = listed.sort((a, b) => sign * (a[this.key] - b[this.key]) || a.id - b.id);
     for (const button of document.querySelectorAll('[data-sort]')) {
       const direction = this.descends ? 'descending' : 'ascending';
       button.parentNode.setAttribute('aria-sort', button.dataset.sort === this.key ? direction : 'none');

@@ -177,7 +177,8 @@ class View {
     for (let pane = 0; pane < panes; ++pane) {
       if (panes > 1) this.overlay.title(this.labellingOf(pane).name, (pane + 0.5) * width / panes, color, halo);
       if (this.ids) {
-        const places = this.labellingOf(pane).clusters.filter(({open, swept}) => !open && !swept).map(({id, center, height: tall}) => {
+        const named = this.labellingOf(pane).clusters.filter(({open, swept}) => !open && !swept);
+        const places = named.map(({id, center, height: tall}) => {
           const above = [center[0], center[1], center[2] + (this.scan.camera ? 0 : tall / 2)];
           const place = this.screenOf(above.map((v, axis) => (v - this.scan.origin[axis]) / this.scan.step), pane);
           return place && {text: String(id), x: place[0], y: place[1] - 8};
