@@ -59,4 +59,4 @@ picture os1_32 ouster/OS-1-32-G_v2.1.1_1024x10.pcap --sensor ouster --metadata o
   --tolerance 0.4
 picture rgbd_office scans/rgbd_office.pcd --tolerance 0.04 --ground none
 picture rgbd_table scans/rgbd_table_0.pcd --tolerance 0.005 --ground none
-picture airborne scans/airborne_utm_0.pcd --tolerance 2.5
+picture airborne scans/airborne_utm_0.pcd --tolerance 5
