@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Makes the pictures of doc/gallery.md in doc/images/gallery, from $LISCO_TEST_DATA (default: ../shared/data): clusters
-# a scan of each sensor, opens its view.html in Chromium, and saves what the page shows, without its panel, as a PNG of 48
-# colours. Takes some minutes.
+# a scan of each sensor, opens its view.html in Chromium, and saves what the page shows, without its panel, as a PNG of
+# 48 colours. Takes some minutes.
 #
 #   doc/images/gallery.sh [NAME...]     only the pictures of these names
 #
