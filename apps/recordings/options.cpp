@@ -18,6 +18,12 @@ ReturnChoice returnChoice(const std::string& text) {
   throw std::runtime_error("--return must be strongest, last or both, not '" + text + "'");
 }
 
+Turning turningOf(const std::string& text) {
+  if (text == "driver") return Turning::kDriver;
+  if (text == "manual") return Turning::kManual;
+  throw std::runtime_error("--turning must be driver or manual, not '" + text + "'");
+}
+
 }  // namespace
 
 void addSensorOptions(boost::program_options::options_description& shown, DecoderOptions& decoder) {
@@ -27,13 +33,16 @@ void addSensorOptions(boost::program_options::options_description& shown, Decode
     ("sensor", textOption("NAME", [&decoder](const std::string& text) { decoder.sensor = text; }), sensors.c_str())
     ("calibration", textOption("FILE", [&decoder](const std::string& text) { decoder.calibration = text; }),
      "of packets: the angles of the sensor's own lasers: of the hdl64e db.xml, or YAML as ROS has it; of the vlp32c "
-     "YAML; of Hesai's sensors (pandar...) the maker's CSV. Without it, those of the manual; the hdl64e and the "
-     "pandarqt128 need it")
+     "YAML; of Hesai's sensors (pandar...) the maker's CSV. Without it, those of the manual; the hdl64e "
+     "needs it")
     ("metadata", textOption("FILE", [&decoder](const std::string& text) { decoder.metadata = text; }),
      "of packets: the metadata (JSON) of the ouster (default: found in the recording, or beside it by its name)")
     ("return", textOption("WHICH", [&decoder](const std::string& text) { decoder.returns = returnChoice(text); }),
      "of packets: strongest, last or both: which returns of a laser and firing are clustered, if the sensor sends two "
-     "(default both: a cloud then has two rows for each laser)");
+     "(default both: a cloud then has two rows for each laser)")
+    ("turning", textOption("HOW", [&decoder](const std::string& text) { decoder.turning = turningOf(text); }),
+     "of packets of the vlp32c, and of those of the vlp16 with two returns: how far the sensor turns until a laser "
+     "fires: driver, as Nebula, a driver for ROS 2, or manual, by the firing times of the manual (default driver)");
   // clang-format on
 }
 

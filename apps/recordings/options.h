@@ -25,7 +25,8 @@ struct RecordingOptions {
   bool areGiven() const { return !topic.empty() || every != 1 || span.from > 0 || span.to < 1e300; }
 };
 
-/// Adds the options that name a sensor: --sensor, --calibration, --metadata and --return.
+/// Adds the options that name a sensor: --sensor, --calibration, --metadata, --return and
+/// --turning.
 void addSensorOptions(boost::program_options::options_description& shown, DecoderOptions& decoder);
 
 }  // namespace lisco_apps

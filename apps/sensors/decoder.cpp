@@ -70,7 +70,8 @@ std::unique_ptr<Decoder> makeDecoder(const DecoderOptions& options) {
     throw std::runtime_error("a metadata file is for the ouster only, not for the " + options.sensor);
   if (isIn(hesaiModelNames(), options.sensor))
     return std::make_unique<HesaiDecoder>(makeHesaiModel(options.sensor, options.calibration), options.returns);
-  return std::make_unique<VelodyneDecoder>(makeVelodyneModel(options.sensor, options.calibration), options.returns);
+  return std::make_unique<VelodyneDecoder>(makeVelodyneModel(options.sensor, options.calibration), options.returns,
+                                           options.turning);
 }
 
 }  // namespace lisco_apps

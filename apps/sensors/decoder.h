@@ -39,6 +39,10 @@ struct Column {
 /// the farthest, or all of them.
 enum class ReturnChoice { kStrongest, kLast, kBoth };
 
+/// How the turning from the azimuth of a Velodyne's block to the firing of a laser is counted: as a common driver does
+/// from the azimuths of one packet, or by the manual's firing times. See doc/sensors.md.
+enum class Turning { kDriver, kManual };
+
 /// What a decoder must know of its sensor.
 struct DecoderOptions {
   std::string sensor;  ///< one of sensorNames ()
@@ -46,6 +50,7 @@ struct DecoderOptions {
   fs::path metadata;
   std::string metadata_json;  ///< instead of the file, for example of a recording's message; empty: none
   ReturnChoice returns = ReturnChoice::kBoth;
+  Turning turning = Turning::kDriver;  ///< of Velodyne's sensors
 };
 
 /// Decodes a sensor's packets to columns:

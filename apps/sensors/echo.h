@@ -16,6 +16,7 @@ struct Echo {
   std::uint32_t distance = 0;  ///< in the sensor's units, 0: none
   float intensity = 0;
   std::uint32_t strength = 0;  ///< decides which is the strongest
+  std::size_t number = 0;      ///< in the order in which the sensor sends them
 };
 
 inline constexpr std::size_t kMaxEchoes = 3;

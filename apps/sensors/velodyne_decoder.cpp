@@ -28,12 +28,19 @@ unsigned azimuthOf(const std::uint8_t* block) {
   return u16(block + 2);
 }
 
+/// \return radians by which the driver's azimuths may depart from the manual's: a block's period at 20 turns a second
+double driverMargin(const VelodyneModel& model) {
+  if (!model.driver.one_return && !model.driver.two_returns) return 0.;
+  return radians(360 * 20e-6 * static_cast<double>(model.firings) * model.firing_period_us);
+}
+
 }  // namespace
 
-VelodyneDecoder::VelodyneDecoder(VelodyneModel model, ReturnChoice returns)
-    : Decoder(model.name, elevationsOf(model.lasers), staggerOf(model.lasers)),
+VelodyneDecoder::VelodyneDecoder(VelodyneModel model, ReturnChoice returns, Turning turning)
+    : Decoder(model.name, elevationsOf(model.lasers), staggerOf(model.lasers) + driverMargin(model)),
       model_(std::move(model)),
       returns_(returns),
+      turning_(turning),
       cells_(model_.lasers.size()),
       packet_period_us_(static_cast<double>(kBlocks) * blockPeriodUs() / static_cast<double>(model_.flags.size())) {
   cells_.reserve(2 * model_.lasers.size());
@@ -103,15 +110,41 @@ void VelodyneDecoder::measureStep(const std::uint8_t* data, const Layout& layout
   for (std::uint32_t& count : steps_) step_count_ += count /= 2;
 }
 
-void VelodyneDecoder::decodeFiring(const std::uint8_t* group, const Layout& layout, std::size_t firing) {
+VelodyneDecoder::Bearing VelodyneDecoder::bearingOf(double degrees) {
+  return {std::cos(radians(degrees)), std::sin(radians(degrees))};
+}
+
+void VelodyneDecoder::turnByManual(const std::uint8_t* group, const Layout& layout, std::size_t firing) {
   const double delay_us = static_cast<double>(firing) * model_.firing_period_us;
   for (Direction& direction : directions_) {
     const double azimuth =
         azimuthOf(group + kBlockBytes * direction.block * layout.part) / 100. + direction.azimuth_offset;
-    const double angle = radians(azimuthLater(azimuth, delay_us + direction.delay_us));
-    direction.cosine = std::cos(angle);
-    direction.sine = std::sin(angle);
+    direction.bearings.fill(bearingOf(azimuthLater(azimuth, delay_us + direction.delay_us)));
   }
+}
+
+bool VelodyneDecoder::isTurnedByDriver(const Layout& layout) const {
+  return turning_ == Turning::kDriver && (layout.isDual() ? model_.driver.two_returns : model_.driver.one_return);
+}
+
+void VelodyneDecoder::turnByDriver(const std::uint8_t* data, const Layout& layout, std::size_t group,
+                                   std::size_t firing) {
+  const auto azimuth_of_group = [&](std::size_t g) { return azimuthOf(data + kBlockBytes * g * layout.group) % kTurn; };
+  const double azimuth = azimuth_of_group(group) / 100.;
+  double turned = 0;
+  if (group + 1 < layout.groups) {
+    const unsigned step = (azimuth_of_group(group + 1) + kTurn - azimuth_of_group(group)) % kTurn;
+    turned = step < kStepLimit ? step / 100. : step_;
+  }
+  const double delay_us = static_cast<double>(firing) * model_.firing_period_us;
+  for (Direction& direction : directions_) {
+    const double part = (delay_us + model_.driver.delay_factor * direction.delay_us) / blockPeriodUs();
+    direction.bearings = {bearingOf(azimuth + direction.azimuth_offset + turned * part),
+                          bearingOf(azimuth + direction.azimuth_offset + turned)};
+  }
+}
+
+void VelodyneDecoder::decodeFiring(const std::uint8_t* group, const Layout& layout, std::size_t firing) {
   const std::size_t firing_bytes = kMeasurementBytes * (kLasersPerBlock / model_.firings) * firing;
   const std::size_t cells_per_laser = cells_.size() / rows_.size();
   Echoes echoes;
@@ -122,7 +155,7 @@ void VelodyneDecoder::decodeFiring(const std::uint8_t* group, const Layout& layo
     echoes.clear();
     for (std::size_t j = 0; j < (layout.isDual() ? 2U : 1U); ++j) {
       const std::uint8_t* const echo = measured + j * kBlockBytes * layout.second;
-      echoes.add({u16(echo), static_cast<float>(echo[2]), echo[2]});
+      echoes.add({u16(echo), static_cast<float>(echo[2]), echo[2], j});
     }
     echoes.choose(returns_);
     for (std::size_t j = 0; j < cells_per_laser; ++j) cells_[i * cells_per_laser + j] = cellOf(echoes[j], i);
@@ -131,12 +164,12 @@ void VelodyneDecoder::decodeFiring(const std::uint8_t* group, const Layout& layo
 
 Cell VelodyneDecoder::cellOf(const Echo& echo, std::size_t row) const {
   const Laser& laser = model_.lasers[row];
-  const Direction& direction = directions_[rows_[row].direction];
+  const Bearing& bearing = directions_[rows_[row].direction].bearings[echo.number];
   const double distance = echo.distance * model_.distance_unit + laser.distance_offset;
   if (echo.distance == 0 || distance <= 0) return kNoCell;
   const double across = distance * rows_[row].cosine;
-  return {static_cast<float>(across * direction.cosine + laser.side * direction.sine),
-          static_cast<float>(laser.side * direction.cosine - across * direction.sine),
+  return {static_cast<float>(across * bearing.cosine + laser.side * bearing.sine),
+          static_cast<float>(laser.side * bearing.cosine - across * bearing.sine),
           static_cast<float>(distance * rows_[row].sine + laser.height), echo.intensity};
 }
 
@@ -174,6 +207,10 @@ Decoder::Kind VelodyneDecoder::decode(const Packet& packet, const Visitor& visit
   for (std::size_t g = 0; g < layout->groups; ++g)
     for (std::size_t firing = 0; firing < model_.firings; ++firing) {
       const std::uint8_t* const group = packet.data + kBlockBytes * g * layout->group;
+      if (isTurnedByDriver(*layout))
+        turnByDriver(packet.data, *layout, g, firing);
+      else
+        turnByManual(group, *layout, firing);
       decodeFiring(group, *layout, firing);
       const double since_block_us = static_cast<double>(firing) * model_.firing_period_us;
       const double azimuth = azimuthLater(azimuthOf(group) / 100., since_block_us);

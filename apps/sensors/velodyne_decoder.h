@@ -23,11 +23,16 @@ namespace lisco_apps {
 /// from one block to the next: the median of the latest steps, as a single azimuth is rounded. The strongest of two
 /// returns is that of the greater intensity. Late packets are dropped, see PacketOrder.
 ///
+/// With Turning::kDriver, packets named by VelodyneModel::driver are turned as Nebula, Autoware's driver, does: by the
+/// difference to the packet's next block of another azimuth, those of the last azimuth by none. Second returns take the
+/// azimuth of that next block.
+///
 /// PCL's HDLGrabber and VLPGrabber ignore the delays of the lasers (up to 0.23 m in the tests' captures), drop cells
 /// without a return, report no end of a capture, and do not support the VLS-128.
 class VelodyneDecoder : public Decoder {
  public:
-  explicit VelodyneDecoder(VelodyneModel model, ReturnChoice returns = ReturnChoice::kBoth);
+  explicit VelodyneDecoder(VelodyneModel model, ReturnChoice returns = ReturnChoice::kBoth,
+                           Turning turning = Turning::kDriver);
 
   Kind decode(const Packet& packet, const Visitor& visit) override;
   /// Sets the step to that of the whole capture.
@@ -58,11 +63,15 @@ class VelodyneDecoder : public Decoder {
     std::size_t groups, group, part, second;
     bool isDual() const { return second != 0; }
   };
+  struct Bearing {
+    double cosine = 0, sine = 0;
+  };
+  static Bearing bearingOf(double degrees);
   /// Lasers of one azimuth.
   struct Direction {
     std::size_t block;  ///< of a firing's blocks
     double azimuth_offset, delay_us;
-    double cosine = 0, sine = 0;  ///< of the azimuth of the current firing
+    std::array<Bearing, 2> bearings = {};  ///< of each return of the current firing
   };
   struct Row {
     std::size_t direction;
@@ -75,6 +84,9 @@ class VelodyneDecoder : public Decoder {
   void measureStep(const std::uint8_t* data, const Layout& layout);
   double blockPeriodUs() const { return static_cast<double>(model_.firings) * model_.firing_period_us; }
   double azimuthLater(double azimuth, double delay_us) const { return azimuth + step_ * delay_us / blockPeriodUs(); }
+  bool isTurnedByDriver(const Layout& layout) const;
+  void turnByDriver(const std::uint8_t* data, const Layout& layout, std::size_t group, std::size_t firing);
+  void turnByManual(const std::uint8_t* group, const Layout& layout, std::size_t firing);
   Cell cellOf(const Echo& echo, std::size_t row) const;
   void decodeFiring(const std::uint8_t* group, const Layout& layout, std::size_t firing);
 
@@ -82,6 +94,7 @@ class VelodyneDecoder : public Decoder {
   std::vector<Direction> directions_;
   std::vector<Row> rows_;  ///< as the model's lasers
   ReturnChoice returns_;
+  Turning turning_;
   std::vector<Cell> cells_;  ///< two of each laser if both returns of a dual packet are given
   PacketOrder order_;
   double packet_period_us_;

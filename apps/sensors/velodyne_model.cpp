@@ -84,8 +84,9 @@ std::vector<std::string> velodyneModelNames() {
 }
 
 VelodyneModel velodynePackets(const std::string& name) {
-  if (name == "vlp16") return {name, {}, {kUpperBlock}, 2, 55.296, 0.002, {0x22}};
-  if (name == "vlp32c") return {name, {}, {kUpperBlock}, 1, 55.296, 0.004, {0x28}};
+  if (name == "vlp16") return {name, {}, {kUpperBlock}, 2, 55.296, 0.002, {0x22}, {false, true, 1}};
+  // The driver counts the time of each laser of a pair.
+  if (name == "vlp32c") return {name, {}, {kUpperBlock}, 1, 55.296, 0.004, {0x28}, {true, true, 2}};
   if (name == "hdl32e") return {name, {}, {kUpperBlock}, 1, 46.08, 0.002, {0x21}};
   // The last two bytes of the packets carry a status.
   if (name == "hdl64e") return {name, {}, {kUpperBlock, kLowerBlock}, 1, 48., 0.002, {}};

@@ -23,6 +23,13 @@ struct VelodyneModel {
   double firing_period_us = 0;              ///< from one firing of all lasers to the next
   double distance_unit = 0.002;             ///< metres
   std::vector<std::uint8_t> factory_bytes;  ///< values of the last byte; empty if it does not name the model
+
+  /// Where Turning::kDriver departs from the manual.
+  struct Driver {
+    bool one_return = false, two_returns = false;  ///< in which packets
+    double delay_factor = 1;                       ///< of the lasers' delays
+  };
+  Driver driver = {};
 };
 
 /// The names that makeVelodyneModel () accepts.

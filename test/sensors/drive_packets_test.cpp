@@ -56,6 +56,7 @@ TEST_P(DrivePackets, DecodeToTheReturnsTheyWereMadeOf) {
 
     DecoderOptions options;
     options.sensor = GetParam();
+    options.turning = lisco_apps::Turning::kManual;  // as the sensor is simulated
     const auto decoder = makeDecoder(options);
     CaptureFile whole(file);
     decoder->prepare(whole);

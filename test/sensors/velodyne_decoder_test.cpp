@@ -17,6 +17,7 @@ namespace {
 
 using lisco_apps::Cell;
 using lisco_apps::Column;
+using lisco_apps::Laser;
 using lisco_apps::makeVelodyneModel;
 using lisco_apps::ReturnChoice;
 using lisco_apps::VelodyneDecoder;
@@ -313,6 +314,63 @@ TEST_F(DecoderTest, AppliesTheDelaysOfLasers) {
     for (std::size_t row = 0; row < column.cells.size(); ++row)
       EXPECT_NEAR(azimuthOf(column.cells[row]), 0.4 * c.share * static_cast<double>(decoder.model().lasers[row].number),
                   1e-4);
+  }
+}
+
+// The last firings of a packet are turned by none, second returns to the next azimuth of the packet.
+TEST_F(DecoderTest, TurnsAsTheDriverDoes) {
+  const struct {
+    const char* name;
+    bool is_dual;
+    std::size_t columns, firings;  ///< of a packet; of a block
+    double share;                  ///< of a step from one laser to the next, every other one of the VLP-32C
+  } cases[] = {{"vlp16", true, 12, 2, 2.304 / 110.592},
+               {"vlp32c", false, 12, 1, 2.304 / 55.296},
+               {"vlp32c", true, 6, 1, 2.304 / 55.296}};
+  for (const auto& c : cases) {
+    const std::size_t returns = c.is_dual ? 2 : 1;
+    VelodyneDecoder decoder(makeVelodyneModel(c.name));
+    PacketEncoder encoder(c.name, c.is_dual);
+    encoder.azimuth = 35990;
+    encoder.step = 40;
+    const std::vector<SavedColumn> columns = columnsOf(decoder, encoder.next([](std::size_t, std::size_t, bool second) {
+      return second ? Measured{4000, 1} : Measured{5000, 1};
+    }));
+    ASSERT_EQ(columns.size(), c.columns) << c.name;
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      for (std::size_t row = 0; row < decoder.lasers(); ++row) {
+        const Laser& laser = decoder.model().lasers[row];
+        const double order = static_cast<double>(c.firings == 2 ? laser.number : laser.number / 2 * 2);
+        const bool is_last = i / c.firings + 1 == columns.size() / c.firings;
+        const double block = 359.9 + 0.4 * static_cast<double>(i / c.firings) + laser.azimuth_offset;
+        const double firing = static_cast<double>(i % c.firings) / 2;
+        const auto departure = [&](std::size_t which, double azimuth) {
+          return std::remainder(azimuthOf(columns[i].cells[returns * row + which]) - azimuth, 360.);
+        };
+        EXPECT_NEAR(departure(0, block + (is_last ? 0 : 0.4 * (firing + c.share * order))), 0, 1e-4) << c.name << i;
+        if (c.is_dual) {
+          EXPECT_NEAR(departure(1, block + (is_last ? 0 : 0.4)), 0, 1e-4) << c.name << i;
+        }
+      }
+  }
+}
+
+TEST_F(DecoderTest, TurnsByTheManual) {
+  for (const bool is_dual : {false, true}) {
+    VelodyneDecoder decoder(makeVelodyneModel("vlp32c"), ReturnChoice::kBoth, lisco_apps::Turning::kManual);
+    PacketEncoder encoder("vlp32c", is_dual);
+    encoder.step = 40;
+    const std::vector<SavedColumn> columns = columnsOf(decoder, encoder.next([](std::size_t, std::size_t, bool second) {
+      return second ? Measured{4000, 1} : Measured{5000, 1};
+    }));
+    const std::size_t returns = is_dual ? 2 : 1;
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      for (std::size_t cell = 0; cell < columns[i].cells.size(); ++cell) {
+        const Laser& laser = decoder.model().lasers[cell / returns];
+        const double order = static_cast<double>(laser.number / 2);
+        const double azimuth = 0.4 * (static_cast<double>(i) + order * 2.304 / 55.296) + laser.azimuth_offset;
+        EXPECT_NEAR(std::remainder(azimuthOf(columns[i].cells[cell]) - azimuth, 360.), 0, 1e-4);
+      }
   }
 }
 
