@@ -44,6 +44,25 @@ constexpr std::array<double, 64> kQt64Offsets{
     5.584,  5.611, 5.642,  5.676,  5.716,  5.759,  5.808,  5.862,  5.921,  -5.33,  -5.396, -5.469, -5.55,
     -5.64,  -5.74, -5.85,  -5.974, -6.113, -6.269, -6.447, -6.651, -6.887, -7.163, -7.493, -7.892};
 
+/// Of lasers 1 to 96; each of the other 32 is the mirror image of one of the first 32.
+constexpr std::array<double, 96> kQt128Elevations{
+    -52.627, -51.028, -49.515, -48.074, -46.695, -45.369, -44.09,  -42.852, -41.651, -40.482, -39.343, -38.231,
+    -37.143, -36.076, -35.03,  -34.002, -32.992, -31.996, -31.015, -30.048, -29.093, -28.149, -27.216, -26.292,
+    -25.378, -24.473, -23.575, -22.685, -21.802, -20.926, -20.056, -19.191, -18.331, -17.477, -16.627, -15.781,
+    -14.94,  -14.102, -13.268, -12.436, -11.608, -10.783, -9.96,   -9.139,  -8.32,   -7.503,  -6.688,  -5.874,
+    -5.061,  -4.25,   -3.439,  -2.63,   -1.82,   -1.012,  -0.203,  0.606,   1.414,   2.223,   3.033,   3.843,
+    4.654,   5.466,   6.279,   7.094,   7.91,    8.728,   9.547,   10.369,  11.194,  12.02,   12.85,   13.683,
+    14.519,  15.359,  16.202,  17.05,   17.902,  18.759,  19.621,  20.488,  21.362,  22.241,  23.128,  24.022,
+    24.923,  25.833,  26.751,  27.679,  28.618,  29.567,  30.528,  31.502,  32.49,   33.493,  34.512,  35.549};
+constexpr std::array<double, 96> kQt128Offsets{
+    10.108, 9.72,   9.384,  9.091,  8.833,  8.603,  8.396,  8.209,  8.04,   7.885,  7.743,  7.612,  7.492,  7.38,
+    7.277,  7.18,   7.09,   7.006,  6.928,  6.854,  6.785,  6.721,  6.66,   6.602,  6.549,  6.498,  6.45,   6.405,
+    6.363,  6.323,  6.285,  6.25,   -6.217, -6.186, -6.157, -6.129, -6.104, -6.08,  -6.057, -6.037, -6.018, -6,
+    -5.984, -5.969, -5.955, -5.943, -5.927, -5.923, -5.915, -5.908, -5.902, -5.897, -5.894, -5.892, -5.891, -5.891,
+    -5.893, -5.896, -5.899, -5.905, -5.911, -5.919, -5.927, -5.938, 5.949,  5.962,  5.976,  5.992,  6.008,  6.027,
+    6.047,  6.068,  6.091,  6.116,  6.143,  6.171,  6.201,  6.233,  6.267,  6.304,  6.343,  6.384,  6.427,  6.474,
+    6.523,  6.575,  6.631,  6.69,   6.752,  6.819,  6.89,   6.966,  7.047,  7.134,  7.227,  7.327};
+
 /// Where three lasers, or six, look in turns; the others look straight on.
 constexpr double kStraight = -1.042;
 constexpr std::array<double, 3> kPandar40Offsets{3.125, -5.208, kStraight};
@@ -71,12 +90,26 @@ std::vector<Laser> evenLasers(std::size_t count, double top, double step) {
   return lasers;
 }
 
-std::vector<Laser> qt64Lasers() {
-  std::vector<Laser> lasers(kQt64Elevations.size());
-  for (std::size_t i = 0; i < lasers.size(); ++i) {
+template <std::size_t kCount>
+std::vector<Laser> lasersAt(const std::array<double, kCount>& elevations, const std::array<double, kCount>& offsets) {
+  std::vector<Laser> lasers(kCount);
+  for (std::size_t i = 0; i < kCount; ++i) {
     lasers[i].number = i;
-    lasers[i].elevation = kQt64Elevations[i];
-    lasers[i].azimuth_offset = kQt64Offsets[i];
+    lasers[i].elevation = elevations[i];
+    lasers[i].azimuth_offset = offsets[i];
+  }
+  return lasers;
+}
+
+std::vector<Laser> qt128Lasers() {
+  constexpr std::size_t kLasers = 128;
+  std::vector<Laser> lasers = lasersAt(kQt128Elevations, kQt128Offsets);
+  for (std::size_t i = lasers.size(); i < kLasers; ++i) {
+    Laser laser = lasers[kLasers - 1 - i];
+    laser.number = i;
+    laser.elevation = -laser.elevation;
+    laser.azimuth_offset = -laser.azimuth_offset;
+    lasers.push_back(laser);
   }
   return lasers;
 }
@@ -97,14 +130,15 @@ HesaiModel hesaiLayout(const std::string& name) {
     return {
         name, lasersInTurns(kPandar64Elevations, kPandar64Offsets, 6, 48), Header::kShort, 6, 3, 0, kEarlyTail, 4, true,
         55.56};
-  if (name == "pandarqt64") return {name, qt64Lasers(), Header::kLong, 4, 4, 0, kQt64Tail, 4, true, 500. / 3};
+  if (name == "pandarqt64")
+    return {name, lasersAt(kQt64Elevations, kQt64Offsets), Header::kLong, 4, 4, 0, kQt64Tail, 4, true, 500. / 3};
   if (name == "pandarxt16") return {name, evenLasers(16, 15, 2), Header::kLong, 8, 4, 0, kXtTail, 4, true, 50};
   if (name == "pandarxt32") return {name, evenLasers(32, 15, 1), Header::kLong, 8, 4, 0, kXtTail, 4, true, 50};
   if (name == "pandarxt32m") return {name, evenLasers(32, 19.5, 1.3), Header::kLong, 6, 4, 0, kXtTail, 4, true, 50};
   if (name == "pandarqt128") {
     // After the blocks come a check sum and the functional safety; after the tail the number, a check sum and a
     // signature.
-    return {name, evenLasers(128, 0, 0), Header::kLong, 2, 4, 4 + 17, kQt128Tail, 4 + 4 + 32, true, 111.11};
+    return {name, qt128Lasers(), Header::kLong, 2, 4, 4 + 17, kQt128Tail, 4 + 4 + 32, true, 111.11};
   }
   throw std::runtime_error("there is no sensor '" + name + "'");
 }
@@ -115,11 +149,7 @@ std::vector<std::string> hesaiModelNames() {
 
 HesaiModel makeHesaiModel(const std::string& name, const fs::path& calibration_file) {
   HesaiModel model = hesaiLayout(name);
-  if (!calibration_file.empty())
-    model.lasers = readHesaiCalibration(calibration_file, model.lasers.size());
-  else if (name == "pandarqt128")
-    throw std::runtime_error(
-        "the pandarqt128 needs its calibration file: each of these sensors has its own; give it by --calibration");
+  if (!calibration_file.empty()) model.lasers = readHesaiCalibration(calibration_file, model.lasers.size());
   sortByElevation(model.lasers);
   return model;
 }

@@ -49,10 +49,8 @@ struct HesaiModel {
 std::vector<std::string> hesaiModelNames();
 
 /// A sensor by its manual: pandar40p, pandar64, pandarqt64, pandarxt16, pandarxt32, pandarxt32m, pandarqt128.
-/// \param calibration_file the angles of the sensor's own lasers, see readHesaiCalibration (); empty: the manual's,
-///        which the pandarqt128 lacks
-/// \throws std::runtime_error with one line if the name is unknown, if the calibration is missing where it is needed,
-///         or if readHesaiCalibration () throws
+/// \param calibration_file the angles of the sensor's own lasers, see readHesaiCalibration (); empty: the nominal ones
+/// \throws std::runtime_error with one line if the name is unknown, or if readHesaiCalibration () throws
 HesaiModel makeHesaiModel(const std::string& name, const fs::path& calibration_file = {});
 
 /// A sensor whose lasers lack the angles that its calibration has, which knows its packets.

@@ -227,8 +227,9 @@ TEST_F(HesaiModels, HaveNominalAngles) {
   const struct {
     const char* name;
     double top, bottom;
-  } cases[] = {{"pandar40p", 15, -25},  {"pandar64", 14.882, -24.897}, {"pandarqt64", 52.133, -52.121},
-               {"pandarxt16", 15, -15}, {"pandarxt32", 15, -16},       {"pandarxt32m", 19.5, -20.8}};
+  } cases[] = {{"pandar40p", 15, -25},          {"pandar64", 14.882, -24.897}, {"pandarqt64", 52.133, -52.121},
+               {"pandarxt16", 15, -15},         {"pandarxt32", 15, -16},       {"pandarxt32m", 19.5, -20.8},
+               {"pandarqt128", 52.627, -52.627}};
   for (const auto& c : cases) {
     const lisco_apps::HesaiModel model = makeHesaiModel(c.name);
     EXPECT_NEAR(model.lasers.front().elevation, c.top, 1e-9) << c.name;
@@ -236,8 +237,18 @@ TEST_F(HesaiModels, HaveNominalAngles) {
     for (std::size_t i = 1; i < model.lasers.size(); ++i)
       EXPECT_LT(model.lasers[i].elevation, model.lasers[i - 1].elevation) << c.name << ' ' << i;
   }
-  EXPECT_EQ(refusalOf([] { makeHesaiModel("pandarqt128"); }),
-            "the pandarqt128 needs its calibration file: each of these sensors has its own; give it by --calibration");
+  // Lasers of a QT128 by their numbers, from 0: the last 32 are the mirror image of the first 32.
+  const lisco_apps::HesaiModel layout = lisco_apps::hesaiLayout("pandarqt128");
+  const struct {
+    std::size_t number;
+    double elevation, offset;
+  } lasers[] = {
+      {0, -52.627, 10.108}, {32, -18.331, -6.217}, {95, 35.549, 7.327}, {96, 19.191, -6.25}, {127, 52.627, -10.108}};
+  for (const auto& laser : lasers) {
+    EXPECT_EQ(layout.lasers[laser.number].number, laser.number);
+    EXPECT_NEAR(layout.lasers[laser.number].elevation, laser.elevation, 1e-9);
+    EXPECT_NEAR(layout.lasers[laser.number].azimuth_offset, laser.offset, 1e-9);
+  }
 }
 
 TEST_F(HesaiModels, RefuseBadCalibrations) {
