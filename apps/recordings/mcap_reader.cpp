@@ -9,13 +9,12 @@
 #include <cstring>
 #include <limits>
 #include <map>
-#include <optional>
 
 #include "recordings/bytes.h"
+#include "recordings/chunked_recording.h"
 #include "recordings/compression.h"
 #include "recordings/mcap_format.h"
 #include "recordings/recording.h"
-#include "recordings/topic_table.h"
 
 namespace lisco_apps {
 namespace {
@@ -35,9 +34,9 @@ Record nextRecord(ByteCursor& records) {
   return {kind, records.part(static_cast<std::size_t>(length))};
 }
 
-class Mcap : public Recording {
+class Mcap : public ChunkedRecording {
  public:
-  explicit Mcap(const fs::path& file) : file_(file) {
+  explicit Mcap(const fs::path& file) : ChunkedRecording(file, mcap::kMagic.size()) {
     std::array<std::uint8_t, mcap::kMagic.size()> magic{};
     if (file_.size() < magic.size()) fail(file, "is no mcap file");
     file_.read(0, magic.size(), magic.data());
@@ -46,42 +45,16 @@ class Mcap : public Recording {
     rewind();
   }
 
-  void select(const std::vector<std::size_t>& topics) override { topics_table_.select(topics); }
-
-  bool next(Message& message) override {
-    while (error_.empty() && !ended_) {
-      try {
-        while (chunk_ && chunk_->left() > 0) {
-          const Record record = nextRecord(*chunk_);
-          if (take(record, message)) return true;
-        }
-        chunk_.reset();
-        if (takeFromFile(message)) return true;
-      } catch (const Broken& why) {
-        error_ = breakLine(file_.path(), record_at_, why.what());
-      }
-    }
-    return false;
-  }
-
-  double share() const override {
-    return file_.size() == 0 ? 1 : static_cast<double>(record_at_) / static_cast<double>(file_.size());
-  }
-
  private:
-  void rewind() {
-    record_at_ = next_at_ = mcap::kMagic.size();
-    chunk_.reset();
+  void forget() override {
     schemas_.clear();
     channels_.clear();
-    ended_ = false;
-    error_.clear();
   }
 
-  /// The next record of the file. \return whether it is a message to be given
-  bool takeFromFile(Message& message) {
+  bool takeFromChunk(Message& message) override { return take(nextRecord(*chunk_), message); }
+
+  bool takeFromFile(Message& message) override {
     constexpr std::size_t kHeader = 9;
-    record_at_ = next_at_;
     std::array<std::uint8_t, kHeader> header{};
     file_.read(record_at_, kHeader, header.data());
     ByteCursor cursor(header.data(), kHeader);
@@ -108,13 +81,15 @@ class Mcap : public Recording {
   void openChunk(ByteCursor content) {
     content.bytes(16);  // times of the first and last message
     const auto size = content.number<std::uint64_t>();
-    content.bytes(4);  // checksum
+    const auto sum = content.number<std::uint32_t>();
     const std::string method = content.text();
     const auto stored = content.number<std::uint64_t>();
     if (stored > content.left()) throw Broken("a chunk reaches beyond its record");
     if (size > kMaxChunkBytes) throw Broken("a chunk of more than " + std::to_string(kMaxChunkBytes) + " bytes");
     if (size == 0) return;
     decompress(method, content.data(), static_cast<std::size_t>(stored), static_cast<std::size_t>(size), decompressed_);
+    if (sum != 0 && sum != mcap::checkSum(decompressed_.data(), decompressed_.size()))
+      throw Broken("a chunk whose check sum is wrong");
     chunk_.emplace(decompressed_.data(), decompressed_.size());
   }
 
@@ -131,7 +106,7 @@ class Mcap : public Recording {
       content.bytes(8);  // time of publishing
       const auto found = channels_.find(channel);
       if (found == channels_.end()) throw Broken("a message of an unknown channel");
-      if (!topics_table_.isSelected(found->second)) return false;
+      if (!table_.isSelected(found->second)) return false;
       message = {found->second, static_cast<std::int64_t>(time), content.data(), content.left()};
       return true;
     }
@@ -150,7 +125,7 @@ class Mcap : public Recording {
     const std::string encoding = content.text();
     const auto found = schemas_.find(schema);
     const std::string type = found == schemas_.end() ? "" : plainType(found->second);
-    channels_[id] = topics_table_.indexOf({topic, type, serializationOf(encoding), 0});
+    channels_[id] = table_.indexOf({topic, type, serializationOf(encoding), 0});
   }
 
   /// The topics by the summary. \return false if the file has none
@@ -202,23 +177,9 @@ class Mcap : public Recording {
     }
   }
 
-  /// The topics by reading the file.
-  void scan() {
-    topics_.clear();
-    rewind();
-    start_ns_ = countMessages(*this, topics_);
-  }
-
-  BinaryFile file_;
-  std::uint64_t record_at_ = 0;  ///< of the current record of the file
-  std::uint64_t next_at_ = 0;
-  bool ended_ = false;
-  std::vector<std::uint8_t> buffer_, decompressed_;
-  std::optional<ByteCursor> chunk_;  ///< what is left of the current one
   std::map<std::uint16_t, std::string> schemas_;
   std::map<std::uint16_t, std::size_t> channels_;    ///< to topics
   std::map<std::uint16_t, std::uint64_t> messages_;  ///< of channels, by the summary
-  TopicTable topics_table_{topics_};
 };
 
 }  // namespace

@@ -136,7 +136,7 @@ void McapWriter::putChunk() {
   putNumber(content, unsignedOf(place.first_ns));
   putNumber(content, unsignedOf(place.last_ns));
   putNumber(content, place.content);
-  putNumber(content, std::uint32_t{0});  // no checksum
+  putNumber(content, mcap::checkSum(reinterpret_cast<const std::uint8_t*>(chunk_.data()), chunk_.size()));
   putText(content, kCompression);
   putNumber(content, place.stored);
   put(mcap::Kind::kChunk, content + stored);

@@ -8,13 +8,12 @@
 #include <array>
 #include <cstring>
 #include <map>
-#include <optional>
 #include <string_view>
 
 #include "recordings/bytes.h"
+#include "recordings/chunked_recording.h"
 #include "recordings/compression.h"
 #include "recordings/recording.h"
-#include "recordings/topic_table.h"
 
 namespace lisco_apps {
 namespace {
@@ -65,9 +64,9 @@ class Header {
   std::map<std::string, std::string> fields_;
 };
 
-class Ros1Bag : public Recording {
+class Ros1Bag : public ChunkedRecording {
  public:
-  explicit Ros1Bag(const fs::path& file) : file_(file) {
+  explicit Ros1Bag(const fs::path& file) : ChunkedRecording(file, kFirstLine.size()) {
     std::array<char, kFirstLine.size()> line{};
     const bool is_long_enough = file_.size() >= line.size();
     if (is_long_enough) file_.read(0, line.size(), reinterpret_cast<std::uint8_t*>(line.data()));
@@ -77,24 +76,6 @@ class Ros1Bag : public Recording {
     rewind();
   }
 
-  void select(const std::vector<std::size_t>& topics) override { table_.select(topics); }
-
-  bool next(Message& message) override {
-    while (error_.empty() && (chunk_ || next_at_ < file_.size())) {
-      try {
-        while (chunk_ && chunk_->left() > 0)
-          if (takeFromChunk(message)) return true;
-        chunk_.reset();
-        if (next_at_ < file_.size() && takeFromFile(message)) return true;
-      } catch (const Broken& why) {
-        error_ = breakLine(file_.path(), record_at_, why.what());
-      }
-    }
-    return false;
-  }
-
-  double share() const override { return static_cast<double>(record_at_) / static_cast<double>(file_.size()); }
-
  private:
   /// A record of the file: its header, and where its data are.
   struct Place {
@@ -103,12 +84,7 @@ class Ros1Bag : public Recording {
     std::uint32_t data_size;
   };
 
-  void rewind() {
-    record_at_ = next_at_ = kFirstLine.size();
-    chunk_.reset();
-    connections_.clear();
-    error_.clear();
-  }
+  void forget() override { connections_.clear(); }
 
   Place recordAt(std::uint64_t at) {
     std::array<std::uint8_t, 4> length{};
@@ -122,9 +98,9 @@ class Ros1Bag : public Recording {
     return {std::move(header), at + 8 + header_size, data_size};
   }
 
-  /// The next record of the file. \return whether it is a message to be given
-  bool takeFromFile(Message& message) {
-    record_at_ = next_at_;
+  bool takeFromFile(Message& message) override {
+    ended_ = record_at_ >= file_.size();
+    if (ended_) return false;
     const Place record = recordAt(record_at_);
     if (record.data_size > file_.size() - record.data_at) throw Broken("the file ends within a record");
     next_at_ = record.data_at + record.data_size;
@@ -139,7 +115,7 @@ class Ros1Bag : public Recording {
     return false;
   }
 
-  bool takeFromChunk(Message& message) {
+  bool takeFromChunk(Message& message) override {
     const Header header(chunk_->part(chunk_->number<std::uint32_t>()));
     return take(header, chunk_->part(chunk_->number<std::uint32_t>()), message);
   }
@@ -195,20 +171,7 @@ class Ros1Bag : public Recording {
     return false;
   }
 
-  /// The topics by reading the bag.
-  void scan() {
-    topics_.clear();
-    rewind();
-    start_ns_ = countMessages(*this, topics_);
-  }
-
-  BinaryFile file_;
-  std::uint64_t record_at_ = 0;  ///< of the current record of the file
-  std::uint64_t next_at_ = 0;
-  std::vector<std::uint8_t> buffer_, decompressed_;
-  std::optional<ByteCursor> chunk_;                   ///< what is left of the current one
   std::map<std::uint32_t, std::size_t> connections_;  ///< to topics
-  TopicTable table_{topics_};
 };
 
 }  // namespace
