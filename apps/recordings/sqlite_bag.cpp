@@ -2,16 +2,19 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 //
 // ROS 2 bags in SQLite: a table `topics` (id, name, type, serialization_format) and a table `messages` (topic_id,
-// timestamp in nanoseconds, data).
+// timestamp in nanoseconds, data). A truncated bag is read row by row, without the tables' indexes.
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "recordings/bytes.h"
 #include "recordings/compression.h"
 #include "recordings/recording.h"
+#include "recordings/sqlite_rows.h"
 #include "recordings/topic_table.h"
 
 namespace lisco_apps {
@@ -77,8 +80,7 @@ void refuseMissingPages(sqlite3* database) {
 
 class SqliteBag : public Recording {
  public:
-  explicit SqliteBag(const fs::path& file) : file_(file) {
-    BinaryFile readable(file);  // says why not
+  explicit SqliteBag(const fs::path& file) : file_(file), bytes_(file) {
     std::string name = "file:";
     for (const char c : fs::absolute(file).string())
       name += isPlain(c) ? std::string(1, c) : formatted("%%%02X", static_cast<unsigned char>(c));
@@ -102,6 +104,7 @@ class SqliteBag : public Recording {
 
   bool next(Message& message) override {
     if (ended_) return false;
+    if (rows_of_pages_) return nextOfPages(message);
     try {
       if (!query_) begin();
       while (query_->next()) {
@@ -109,11 +112,7 @@ class SqliteBag : public Recording {
         ++rows_;
         if (topic == topic_of_id_.end() || !table_.isSelected(topic->second)) continue;
         message = {topic->second, query_->number(1), query_->blob(2), query_->size(2)};
-        if (isZstd(message.data, message.size)) {
-          decompress("zstd", message.data, message.size, 0, decompressed_);
-          message.data = decompressed_.data();
-          message.size = decompressed_.size();
-        }
+        decompressIfNeeded(message);
         return true;
       }
     } catch (const Broken& why) {
@@ -126,10 +125,66 @@ class SqliteBag : public Recording {
   }
 
   double share() const override {
+    if (rows_of_pages_)
+      return std::min(1., static_cast<double>(rows_of_pages_->at()) / static_cast<double>(bytes_.size()));
     return selected_rows_ == 0 ? 1 : std::min(1., static_cast<double>(rows_) / static_cast<double>(selected_rows_));
   }
 
  private:
+  void decompressIfNeeded(Message& message) {
+    if (!isZstd(message.data, message.size)) return;
+    decompress("zstd", message.data, message.size, 0, decompressed_);
+    message.data = decompressed_.data();
+    message.size = decompressed_.size();
+  }
+
+  /// Of a truncated bag.
+  bool nextOfPages(Message& message) {
+    using Kind = SqliteValue::Kind;
+    while (rows_of_pages_->next(row_)) {
+      if (row_.size() <= *std::max_element(columns_.begin(), columns_.end())) continue;
+      const SqliteValue &topic = row_[columns_[0]], &time = row_[columns_[1]], &data = row_[columns_[2]];
+      const auto found = topic_of_id_.find(topic.number);
+      if (topic.kind != Kind::kInteger || time.kind != Kind::kInteger || data.kind != Kind::kBlob ||
+          found == topic_of_id_.end())
+        continue;
+      ++rows_;
+      if (!table_.isSelected(found->second)) continue;
+      message = {found->second, time.number, data.data, data.size};
+      try {
+        decompressIfNeeded(message);
+      } catch (const Broken&) {
+        continue;
+      }
+      return true;
+    }
+    error_ = file_.string() +
+             formatted(": breaks off after %llu messages: the file has %llu of %llu bytes",
+                       static_cast<unsigned long long>(rows_), static_cast<unsigned long long>(bytes_.size()),
+                       static_cast<unsigned long long>(rows_of_pages_->pages() * rows_of_pages_->pageBytes()));
+    ended_ = true;
+    return false;
+  }
+
+  bool isTruncated() const {
+    const SqliteRows rows(bytes_);
+    return bytes_.size() < rows.pages() * rows.pageBytes();
+  }
+
+  /// Where in a row of the table of messages are the topic, the time and the data.
+  void findColumns() {
+    constexpr std::array kNames{"topic_id", "timestamp", "data"};
+    Query columns(database_.get(), "SELECT cid, name FROM pragma_table_info('messages')");
+    std::size_t found = 0;
+    while (columns.next())
+      for (std::size_t i = 0; i < kNames.size(); ++i)
+        if (columns.text(1) == kNames[i]) {
+          columns_[i] = static_cast<std::size_t>(columns.number(0));
+          ++found;
+        }
+    if (found != kNames.size()) throw Broken("its messages have no topic_id, timestamp and data");
+  }
+
   static bool isPlain(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '/' || c == '.' ||
            c == '_' || c == '-';
@@ -154,7 +209,15 @@ class SqliteBag : public Recording {
     } catch (const Broken&) {
       has_time_index_ = false;
       for (Topic& topic : topics_) topic.messages = 0;
+      try {
+        const bool is_truncated = isTruncated();
+        if (is_truncated) findColumns();
+        if (is_truncated) rows_of_pages_.emplace(bytes_);
+      } catch (const Broken& why) {
+        fail(file_, std::string("is no ROS 2 bag: ") + why.what());
+      }
       start_ns_ = countMessages(*this, topics_);
+      if (rows_of_pages_) rows_of_pages_.emplace(bytes_);
       ended_ = false;
       rows_ = 0;
       error_.clear();
@@ -202,11 +265,15 @@ class SqliteBag : public Recording {
   }
 
   fs::path file_;
+  BinaryFile bytes_;  // says why it cannot be read
   std::unique_ptr<sqlite3, CloseDatabase> database_;
   std::map<std::int64_t, std::size_t> topic_of_id_;
   std::unique_ptr<Query> query_;
   bool has_time_index_ = false, ended_ = false;
   std::uint64_t rows_ = 0, selected_rows_ = 0;
+  std::optional<SqliteRows> rows_of_pages_;  ///< of a truncated bag
+  std::array<std::size_t, 3> columns_{};     ///< of the topic, the time and the data in a row
+  std::vector<SqliteValue> row_;
   std::vector<std::uint8_t> decompressed_;
   TopicTable table_{topics_};
 };

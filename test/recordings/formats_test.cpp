@@ -61,14 +61,8 @@ TEST_F(Formats, GiveTheMessagesOfSelectedTopics) {
 
 TEST_F(Formats, AreReadAsFarAsTheyGo) {
   const TestRecording recording = alternating(1000, 12000);
-  TestRecording small = recording;  // the root of a larger table may be lost with its end
-  small.messages.resize(250);
-  std::vector<std::filesystem::path> files = written(recording);
-  writeDb3(small, file("small.db3"));
-  files.front() = file("small.db3");
-  for (const auto& path : files) {
-    const TestRecording& whole = path.extension() == ".db3" ? small : recording;
-    const auto all = static_cast<double>(whole.messages.size());
+  const auto all = static_cast<double>(recording.messages.size());
+  for (const auto& path : written(recording)) {
     for (const double share : {0.4, 0.6, 0.97}) {
       const auto size = static_cast<double>(std::filesystem::file_size(path));
       const std::filesystem::path part = beginningOf(path, static_cast<std::uintmax_t>(share * size));
@@ -81,11 +75,57 @@ TEST_F(Formats, AreReadAsFarAsTheyGo) {
       // All but what shares a chunk with the break.
       EXPECT_GT(static_cast<double>(messages.size()), all * (share - 0.25));
       EXPECT_LT(static_cast<double>(messages.size()), all);
-      expectBeginning(whole, messages);
+      expectBeginning(recording, messages);
       EXPECT_EQ(reader->error().rfind(part.string() + ": breaks off ", 0), 0U) << reader->error();
       EXPECT_EQ(reader->error().find('\n'), std::string::npos);
     }
   }
+}
+
+// Of a table of three levels, the way from the root to the first rows leads through pages near the end.
+TEST_F(Formats, OfSqliteAreReadWithoutTheirEnd) {
+  const TestRecording recording = alternating(9000, 600);
+  writeDb3(recording, file("a.db3"));
+  const auto size = static_cast<double>(std::filesystem::file_size(file("a.db3")));
+  for (const double share : {0.02, 0.1, 0.5, 0.9}) {
+    SCOPED_TRACE(share);
+    const auto part = beginningOf(file("a.db3"), static_cast<std::uintmax_t>(share * size));
+    const std::unique_ptr<Recording> reader = openRecording(part);
+    const std::vector<ReadMessage> messages = messagesOf(*reader);
+    EXPECT_GT(static_cast<double>(messages.size()), 9000 * (share - 0.01));
+    expectBeginning(recording, messages);
+    EXPECT_EQ(reader->error(), part.string() + ": breaks off after " + std::to_string(messages.size()) +
+                                   " messages: the file has " + std::to_string(std::filesystem::file_size(part)) +
+                                   " of " + std::to_string(static_cast<std::uintmax_t>(size)) + " bytes");
+    reader->select({1});
+    EXPECT_TRUE(messagesOf(*reader).empty()) << "after the end";
+  }
+}
+
+TEST_F(Formats, OfMcapEndAtAWrongCheckSum) {
+  const TestRecording recording = alternating(3000, 6000);
+  writeMcap(recording, file("a.mcap"));
+  std::fstream stream(file("a.mcap"), std::ios::binary | std::ios::in | std::ios::out);
+  std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  std::vector<std::size_t> chunks;
+  for (std::size_t at = 8; at + 9 < bytes.size();) {
+    std::uint64_t length = 0;
+    for (std::size_t i = 8; i-- > 0;) length = length << 8U | static_cast<std::uint8_t>(bytes[at + 1 + i]);
+    if (bytes[at] == 6) chunks.push_back(at);
+    at += 9 + static_cast<std::size_t>(length);
+  }
+  ASSERT_GT(chunks.size(), 4U);
+  const std::size_t damaged = chunks[chunks.size() / 2], sum_at = damaged + 9 + 24;
+  stream.seekp(static_cast<std::streamoff>(sum_at));
+  stream.put(static_cast<char>(bytes[sum_at] ^ 1));
+  stream.close();
+  const std::unique_ptr<Recording> reader = openRecording(file("a.mcap"));
+  const std::vector<ReadMessage> messages = messagesOf(*reader);
+  EXPECT_GT(messages.size(), 1000U);
+  EXPECT_LT(messages.size(), 2000U);
+  expectBeginning(recording, messages);
+  EXPECT_EQ(reader->error(), file("a.mcap").string() + ": breaks off at byte " + std::to_string(damaged) +
+                                 ": a chunk whose check sum is wrong");
 }
 
 TEST_F(Formats, EndAtADamagedChunk) {
