@@ -19,15 +19,18 @@
 #include <boost/algorithm/string/join.hpp>
 #include <boost/program_options.hpp>
 
+#include "io/cloud_ending.h"
 #include "io/interruption.h"
 #include "io/options.h"
 #include "io/scan_options.h"
 #include "io/text.h"
 #include "live/live_view.h"
 #include "recordings/cloud_columns.h"
+#include "recordings/cloud_files.h"
 #include "recordings/options.h"
 #include "recordings/packet_input.h"
 #include "recordings/result_bag.h"
+#include "recordings/scan_source.h"
 #include "recordings/topic_choice.h"
 #include "sensors/decoder.h"
 #include "sensors/udp_receiver.h"
@@ -36,6 +39,7 @@
 #include "stream/other_sensors.h"
 #include "stream/packet_queue.h"
 #include "stream/report.h"
+#include "stream/rotation_choice.h"
 #include "stream/rotation_stream.h"
 #include "stream/window_stream.h"
 
@@ -73,12 +77,12 @@ Mode modeOf(const std::string& text) {
 bool parse(int argc, char** argv, Options& options) {
   po::options_description shown(
       "Usage: lisco_stream CAPTURE.pcap --sensor NAME --tolerance M [options]\n"
-      "       lisco_stream RECORDING --tolerance M [options]\n"
+      "       lisco_stream RECORDING | CLOUDS --tolerance M [options]\n"
       "       lisco_stream --port N --sensor NAME --tolerance M [options]\n\n"
       "Finds the Euclidean clusters in a rotating LiDAR's packets while the sensor turns. The packets are those of\n"
       "a capture (pcap or pcapng), of messages in a recording (.db3 or .mcap of ROS 2, the folder of such a bag, or\n"
-      ".bag of ROS 1), or come by UDP. A recording's clouds (sensor_msgs/PointCloud2 with rows or rings) are taken\n"
-      "column by column, too: each message is a rotation. There are three modes:\n"
+      ".bag of ROS 1), or come by UDP. A recording's clouds (sensor_msgs/PointCloud2 with rows or rings), and those\n"
+      "of a file or of a folder of files, are taken column by column, too: each is a rotation. There are three modes:\n"
       "  rotation  The clusters of each rotation, as soon as its last column is in: those of PCL's\n"
       "            EuclideanClusterExtraction on the rotation as an organized cloud, in the same order.\n"
       "            Rotations begin at the azimuth of the first column.\n"
@@ -222,6 +226,7 @@ struct Input {
   std::unique_ptr<Decoder> decoder;
   PacketQueue* queue = nullptr;  ///< the source, if live
   bool has_clouds = false;       ///< instead of packets
+  unsigned every = 1;            ///< of how many rotations of packets the first is taken
 };
 
 /// The clouds of a recording, if its topic holds clouds.
@@ -241,13 +246,31 @@ std::optional<Input> openClouds(const Options& options, Report& report) {
   return input;
 }
 
+/// The clouds of a file, or of the files in a folder.
+std::optional<Input> openCloudFiles(const Options& options, Report& report) {
+  std::error_code unknown;
+  if (isRecording(options.capture)) return std::nullopt;
+  if (!fs::is_directory(options.capture, unknown) && !isCloudFile(options.capture)) return std::nullopt;
+  ScanSource scans({options.capture.string()}, {});
+  if (scans.files().empty()) throw std::runtime_error(scans.takeFailures().front());
+  auto clouds = std::make_unique<CloudFiles>(scans.files(), options.recording.every,
+                                             [&report](const std::string& note) { report.warn(note); });
+  Input input;
+  input.decoder = std::make_unique<CloudColumns>([from = clouds.get()](const Packet&) { return from->take(); });
+  input.source = std::move(clouds);
+  input.has_clouds = true;
+  return input;
+}
+
 Input openFile(const Options& options, Report& report) {
+  if (std::optional<Input> files = openCloudFiles(options, report)) return std::move(*files);
   if (std::optional<Input> clouds = openClouds(options, report)) return std::move(*clouds);
-  if (options.recording.every != 1) throw std::runtime_error("--every is for recordings of clouds only");
+  if (options.recording.every != 1 && options.mode != Mode::kRotation)
+    throw std::runtime_error("--every is for --mode rotation and for clouds only");
   PacketInput packets =
       openPackets(options.capture, options.recording, options.decoder, options.port, Interruption::happened);
   for (const std::string& note : packets.notes) report.warn(options.capture.string() + ": " + note);
-  return {std::move(packets.source), std::move(packets.decoder)};
+  return {std::move(packets.source), std::move(packets.decoder), nullptr, false, options.recording.every};
 }
 
 Input open(const Options& options, Report& report) {
@@ -279,8 +302,9 @@ void takePackets(const Input& input, Decoder& decoder, OtherSensors& others, Str
   bool is_open = true;
   Packet packet;
   Origin origin;
+  RotationChoice choice(input.every, decoder.rotationStart());
   const std::function<void(const Column&)> take = [&](const Column& column) {
-    is_open = is_open && stream.add(column, origin);
+    if (const std::optional<Column> chosen = choice.choose(column)) is_open = is_open && stream.add(*chosen, origin);
   };
   while (is_open) {
     if (Interruption::happened() && input.queue == nullptr) return;

@@ -12,6 +12,7 @@
 
 #include <boost/algorithm/string/case_conv.hpp>
 
+#include "io/cloud_ending.h"
 #include "io/formats.h"
 #include "io/output_file.h"
 #include "io/point_geometry.h"
@@ -102,6 +103,10 @@ Scan readScan(const fs::path& file, const ReadOptions& options) {
   return scan;
 }
 
+bool isCloudFile(const fs::path& file) {
+  return formatOf(endingOf(file)) != nullptr;
+}
+
 std::vector<fs::path> cloudFilesIn(const fs::path& folder) {
   std::vector<fs::path> files;
   try {
@@ -109,7 +114,7 @@ std::vector<fs::path> cloudFilesIn(const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(folder)) {
       const std::string name = entry.path().filename().string();
       if (has_results && (name == "labels.pcd" || name == "clusters.csv")) continue;
-      if (entry.is_regular_file() && formatOf(endingOf(entry.path())) != nullptr) files.push_back(entry.path());
+      if (entry.is_regular_file() && isCloudFile(entry.path())) files.push_back(entry.path());
     }
   } catch (const fs::filesystem_error& error) {
     fail(folder, "cannot be read: " + error.code().message());

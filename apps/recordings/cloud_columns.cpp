@@ -22,13 +22,19 @@ PacketSource::Arrival RawMessages::next(Packet& packet) {
   return Arrival::kEnd;
 }
 
-CloudColumns::CloudColumns(Topic topic) : Decoder("cloud", {}, 180 * kPi / 180), topic_(std::move(topic)) {}
+CloudColumns::CloudColumns(std::function<Scan(const Packet&)> read)
+    : Decoder("cloud", {}, 180 * kPi / 180), read_(std::move(read)) {}
+
+CloudColumns::CloudColumns(const Topic& topic)
+    : CloudColumns([topic](const Packet& packet) {
+        return scanOf(pointCloud2In({0, 1000 * packet.time_us, packet.data, packet.size}, topic));
+      }) {}
 
 Decoder::Kind CloudColumns::decode(const Packet& packet, const Visitor& visit) {
   constexpr double kHourUs = 3600e6;
   Scan scan;
   try {
-    scan = scanOf(pointCloud2In({0, 1000 * packet.time_us, packet.data, packet.size}, topic_));
+    scan = read_(packet);
   } catch (const Broken&) {
     ++counts_.foreign;
     return Kind::kForeign;

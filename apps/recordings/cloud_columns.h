@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "io/scan_file.h"
 #include "recordings/topic_reader.h"
 #include "sensors/decoder.h"
 #include "sensors/packet_source.h"
@@ -28,12 +30,15 @@ class RawMessages : public PacketSource {
   std::uint64_t taken_ = 0;
 };
 
-/// Takes sensor_msgs/PointCloud2 messages for packets, and gives the columns of each: a rotation begins with each
-/// message. The frame is the message's; an azimuth is that of a column's returns in the mean. Messages that are
-/// malformed, or have no rows, neither by themselves nor by their rings, are foreign.
+/// Takes clouds for packets, and gives the columns of each: a rotation begins with each cloud. The frame is the cloud's;
+/// an azimuth is that of a column's returns in the mean. Clouds that are malformed, or have no rows, neither by
+/// themselves nor by their rings, are foreign.
 class CloudColumns : public Decoder {
  public:
-  explicit CloudColumns(Topic topic);
+  /// \param read gives the cloud of a packet; throws Broken if it is malformed
+  explicit CloudColumns(std::function<Scan(const Packet&)> read);
+  /// The clouds of sensor_msgs/PointCloud2 messages.
+  explicit CloudColumns(const Topic& topic);
 
   Kind decode(const Packet& packet, const Visitor& visit) override;
 
@@ -45,7 +50,7 @@ class CloudColumns : public Decoder {
   double usualGapUs() const override { return 0; }
 
  private:
-  Topic topic_;
+  std::function<Scan(const Packet&)> read_;
   std::vector<Cell> cells_;
   double azimuth_ = 0;  ///< of the last column
 };

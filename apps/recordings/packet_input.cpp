@@ -12,6 +12,7 @@
 #include "recordings/packet_messages.h"
 #include "recordings/topic_choice.h"
 #include "sensors/capture_file.h"
+#include "sensors/sensor_detection.h"
 
 namespace lisco_apps {
 namespace {
@@ -99,16 +100,69 @@ MetadataBeside metadataBeside(const fs::path& input) {
   return beside;
 }
 
+/// " (beside it are A, B)"; empty if there are none.
 std::string listOf(const std::vector<fs::path>& files) {
   std::vector<std::string> names;
   for (const fs::path& file : files) names.push_back(file.filename().string());
-  return boost::join(names, ", ");
+  return names.empty() ? "" : " (beside it are " + boost::join(names, ", ") + ")";
 }
 
 bool isPipe(const fs::path& input) {
   std::error_code unknown;
   const fs::file_type type = fs::status(input, unknown).type();
   return type == fs::file_type::fifo || type == fs::file_type::character;
+}
+
+/// Opens the packets from their beginning; empty if they can be read only once.
+using OpenPackets = std::function<std::unique_ptr<PacketSource>()>;
+
+/// Finds the metadata of an Ouster sensor beside the input: by its name or, if the sensor is known to be one, by the
+/// packets that it describes.
+void findMetadata(const fs::path& input, DecoderOptions& decoder, std::vector<std::string>& notes,
+                  const OpenPackets& open) {
+  MetadataBeside beside = metadataBeside(input);
+  if (beside.named.empty()) {
+    std::vector<fs::path> fitting;
+    for (const fs::path& file : beside.all)
+      if (open && describes(file, *open())) fitting.push_back(file);
+    if (fitting.size() == 1) beside.named = fitting.front();
+    if (!open && decoder.sensor == kOuster && beside.all.size() == 1) beside.named = beside.all.front();
+  }
+  if (beside.named.empty()) return;
+  decoder.sensor = kOuster;
+  decoder.metadata = beside.named;
+  notes.push_back("an Ouster sensor, by the metadata beside it: " + beside.named.filename().string());
+}
+
+/// Finds out which sensor sent the packets.
+void findSensor(const fs::path& input, DecoderOptions& decoder, std::vector<std::string>& notes,
+                const OpenPackets& open) {
+  const std::string all = boost::join(sensorNames(), ", ");
+  if (!open) fail(input, "is no file: name the sensor by --sensor (" + all + ")");
+  const std::vector<std::string> names = sensorsThatSent(*open());
+  if (names.empty()) fail(input, "holds no packets that look like those of a known sensor (" + all + ")");
+  if (names.size() > 1) fail(input, "holds packets of " + boost::join(names, " or ") + ": name it by --sensor");
+  decoder.sensor = names.front();
+  if (decoder.sensor != kOuster)
+    notes.push_back("sensor " + decoder.sensor + ", by its packets (--sensor names another)");
+}
+
+/// Finds the calibration beside the input, by its name.
+void findCalibration(const fs::path& input, DecoderOptions& decoder, std::vector<std::string>& notes) {
+  if (!decoder.calibration.empty()) return;
+  const bool is_hesai = boost::starts_with(decoder.sensor, "pandar");
+  std::vector<std::string> endings;
+  if (is_hesai) endings = {".csv"};
+  if (decoder.sensor == "vlp32c" || decoder.sensor == "hdl64e") endings = {".yaml", ".yml"};
+  if (decoder.sensor == "hdl64e") endings.emplace_back(".xml");
+  for (const std::string& ending : endings) {
+    std::error_code unknown;
+    const fs::path beside = fs::path(input).replace_extension(ending);
+    if (!fs::is_regular_file(beside, unknown)) continue;
+    decoder.calibration = beside;
+    notes.push_back("calibrated by the file beside it: " + beside.filename().string());
+    return;
+  }
 }
 
 }  // namespace
@@ -147,35 +201,18 @@ PacketInput openPackets(const fs::path& input, const RecordingOptions& options, 
   };
   if (!is_recording) packets.source = open();  // says why it is no capture, before anything is asked for
 
+  const bool is_pipe = isPipe(input);
+  if (decoder.sensor.empty() && !decoder.metadata.empty()) decoder.sensor = kOuster;
+  const OpenPackets open_again = is_pipe ? OpenPackets() : OpenPackets(open);
   const bool may_be_ouster = decoder.sensor.empty() && (maker.empty() || boost::contains(maker, "Ouster"));
-  if (decoder.metadata.empty() && decoder.metadata_json.empty() && (decoder.sensor == kOuster || may_be_ouster)) {
-    MetadataBeside beside = metadataBeside(input);
-    if (beside.named.empty() && decoder.sensor == kOuster && beside.all.size() == 1) beside.named = beside.all.front();
-    if (!beside.named.empty()) {
-      decoder.sensor = kOuster;
-      decoder.metadata = beside.named;
-      packets.notes.push_back("an Ouster sensor, by the metadata beside it: " + beside.named.filename().string());
-    } else if (decoder.sensor == kOuster || !maker.empty() || !beside.all.empty()) {
-      fail(input, "needs " +
-                      std::string(maker.empty() && decoder.sensor.empty() ? "--sensor NAME; an Ouster's also "
-                                                                          : "--sensor ouster ") +
-                      "--metadata FILE, the sensor's metadata" +
-                      (beside.all.empty() ? "" : " (beside it are " + listOf(beside.all) + ")"));
-    }
-  }
-  if (decoder.sensor.empty())
-    fail(input, "holds the packets of " + (maker.empty() ? "a sensor" : maker) + ": name it by --sensor (" +
-                    boost::join(sensorNames(), ", ") + ")");
-  if (decoder.calibration.empty() && boost::starts_with(decoder.sensor, "pandar")) {
-    std::error_code unknown;
-    const fs::path beside = fs::path(input).replace_extension(".csv");
-    if (fs::is_regular_file(beside, unknown)) {
-      decoder.calibration = beside;
-      packets.notes.push_back("calibrated by the file beside it: " + beside.filename().string());
-    }
-  }
+  if (decoder.metadata.empty() && decoder.metadata_json.empty() && (decoder.sensor == kOuster || may_be_ouster))
+    findMetadata(input, decoder, packets.notes, open_again);
+  if (decoder.sensor.empty()) findSensor(input, decoder, packets.notes, open_again);
+  if (decoder.sensor == kOuster && decoder.metadata.empty() && decoder.metadata_json.empty())
+    fail(input, "needs --metadata FILE, the JSON file of the Ouster sensor" + listOf(metadataBeside(input).all));
+  findCalibration(input, decoder, packets.notes);
   packets.decoder = makeDecoder(decoder);
-  if (!isPipe(input)) {
+  if (!is_pipe) {
     const std::unique_ptr<PacketSource> first = open();
     FirstPackets source(*first, is_interrupted);
     packets.decoder->prepare(source);

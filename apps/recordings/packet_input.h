@@ -26,10 +26,11 @@ struct PacketInput {
 };
 
 /// Opens a capture, or a topic of packets in a recording, for reading from its beginning.
-/// - Without a sensor, it is Ouster's if the sensor's metadata are found; otherwise the error tells what is needed.
-/// - Ouster's metadata are found in the recording, or beside the input: a `.json` of its name, of a beginning of it, or
-///   of its name and more; for a named sensor also the only one in the folder.
-/// - The calibration of a Hesai's is found beside the input: a `.csv` of its name.
+/// - Without a sensor, it is found out by the packets; those of a pipe must be named.
+/// - Ouster's metadata are found in the recording, or beside the input: a `.json` of its name, of a beginning of it, of
+///   its name and more, or the only one that describes the packets.
+/// - The calibration is found beside the input by its name: a `.csv` of a Hesai's, a `.yaml` of a vlp32c or hdl64e, or
+///   an `.xml` of the latter.
 /// The decoder is prepared on the packets at the beginning.
 /// \param input a pipe is read once: its decoder is not prepared
 /// \param port of a capture: takes only packets to it

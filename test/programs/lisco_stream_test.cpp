@@ -703,11 +703,11 @@ TEST_F(LiscoStream, RefusesBadInputInOneLine) {
   expectRefusal("missing.pcap" + options, {"missing.pcap", "No such file"});
   expectRefusal("garbage.pcap" + options, {"garbage.pcap", "is no capture"});
   expectRefusal("empty.pcap" + options, {"empty.pcap", "it is empty"});
-  expectRefusal("." + options, {"is no capture", "it is a folder"});
+  expectRefusal("." + options, {".: holds no scans, but recordings", "a.pcap"});
   expectRefusal("nothing.pcap" + options, {"nothing.pcap: no data packet of a vlp16"});
   expectRefusal("a.pcap a.pcap" + options, {"more than one capture"});
   expectRefusal(options, {"no capture and no --port"});
-  expectRefusal("a.pcap -t 0.5", {"holds the packets of a sensor", "--sensor (vlp16, "});
+  expectRefusal("nothing.pcap -t 0.5", {"no packets that look like those of a known sensor (vlp16, "});
   expectRefusal("a.pcap -t 0.5 --sensor os1",
                 {"no sensor 'os1'", "vlp16, vlp32c, hdl32e, hdl64e, vls128, pandar40p", "ouster"});
   expectRefusal("a.pcap --sensor vlp16", {"--tolerance is missing"});

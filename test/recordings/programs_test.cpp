@@ -3,8 +3,11 @@
 // The programs on recordings.
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <set>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "../programs/program_test.h"
 #include "bags.h"
@@ -89,6 +92,78 @@ TEST_F(Programs, StreamCloudsColumnByColumn) {
   outcome = runLine(stream + " --mode endless --json");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_GT(countOf("\"size\":", outcome.out), 1U);
+}
+
+TEST_F(Programs, StreamTheCloudsOfAFolder) {
+  fs::create_directories(folder_ / "clouds");
+  std::ostringstream pcd;
+  pcd << "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 60\nHEIGHT 4\nPOINTS 240\nDATA ascii\n";
+  for (int ring = 0; ring < 4; ++ring)
+    for (int column = 0; column < 60; ++column) {
+      const double azimuth = (column < 30 ? 0 : 3.1) - 0.02 * (column % 30);
+      pcd << 10 * std::cos(azimuth) << ' ' << 10 * std::sin(azimuth) << ' ' << 0.1 * ring << '\n';
+    }
+  for (const char* const name : {"a.pcd", "b.pcd", "c.pcd"}) std::ofstream(folder_ / "clouds" / name) << pcd.str();
+  const std::string stream = std::string(LISCO_STREAM) + " clouds -t 0.5 --ground none";
+  Outcome outcome = runLine(stream);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(countOf("60 columns, 240 returns, 2 clusters, largest 120", outcome.out), 3U) << outcome.out;
+  EXPECT_EQ(countOf("rotation ", runLine(stream + " --every 2").out), 2U);
+  EXPECT_EQ(countOf("rotation ", runLine(std::string(LISCO_STREAM) + " clouds/b.pcd -t 0.5 --ground none").out), 1U);
+
+  std::ofstream(folder_ / "clouds/b.pcd") << "no cloud";
+  outcome = runLine(stream);
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(countOf("2 clusters", outcome.out), 2U) << outcome.out;
+  EXPECT_EQ(countOf("b.pcd", outcome.err), 1U) << outcome.err;
+  EXPECT_EQ(countOf("1 of 3 files could not be read", outcome.err), 1U) << outcome.err;
+}
+
+TEST_F(Programs, TakeEveryNthRotationOfPackets) {
+  const fs::path capture = data() / "captures/hdl32e_outdoor.pcap";
+  if (!fs::exists(capture)) GTEST_SKIP() << "no " << capture;
+  const std::string stream = std::string(LISCO_STREAM) + " " + capture.string() + " -t 0.5 --ground none";
+  const auto lines = [](const std::string& text) {
+    std::vector<std::string> found;
+    std::istringstream rest(text);
+    for (std::string line; std::getline(rest, line);)
+      if (line.rfind("rotation ", 0) == 0)
+        found.push_back(line.substr(line.find(':'), line.find("returns") - line.find(':')));
+    return found;
+  };
+  const std::vector<std::string> all = lines(runLine(stream).out), some = lines(runLine(stream + " --every 5").out);
+  ASSERT_GT(all.size(), 10U);
+  ASSERT_EQ(some.size(), (all.size() + 4) / 5);
+  for (std::size_t i = 0; i < some.size(); ++i) EXPECT_EQ(some[i], all[5 * i]);
+  EXPECT_EQ(runLine(stream + " --every 5 --mode endless").status, 2);
+}
+
+TEST_F(Programs, FindTheSensorByItsPackets) {
+  if (!fs::is_directory(data() / "bags")) GTEST_SKIP() << "no recordings in " << data();
+  const struct {
+    const char *file, *sensor;
+  } cases[] = {{"captures/hdl32e_outdoor.pcap", "hdl32e"},
+               {"captures/vlp16_close.pcap", "vlp16"},
+               {"captures/vlp16_street.pcap", "vlp16"},
+               {"captures/vls128_street.pcap", "vls128"},
+               {"bags/vlp16.db3", "vlp16"},
+               {"bags/vlp32c.db3", "vlp32c"},
+               {"bags/pandar40p.db3", "pandar40p"},
+               {"bags/pandarqt64.db3", "pandarqt64"},
+               {"bags/pandarxt16.db3", "pandarxt16"},
+               {"bags/pandarxt32.db3", "pandarxt32"}};
+  for (const auto& c : cases) {
+    const Outcome outcome =
+        runLine(std::string(LISCO_STREAM) + " " + (data() / c.file).string() + " -t 0.5 --ground none --rotations 1");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(countOf(std::string("sensor ") + c.sensor + ", by its packets", outcome.err), 1U) << outcome.err;
+    EXPECT_EQ(countOf("rotation 1: ", outcome.out), 1U);
+  }
+  // Of several metadata beside it, the one that describes the packets.
+  const Outcome ouster = runLine(std::string(LISCO_STREAM) + " " +
+                                 (data() / "ouster/OS-1-64_1024x10_fw20.pcap").string() + " -t 0.5 --ground none");
+  EXPECT_EQ(ouster.status, 0) << ouster.err;
+  EXPECT_EQ(countOf("metadata beside it: OS-1-64_sensor_config_reduced.json", ouster.err), 1U) << ouster.err;
 }
 
 TEST_F(Programs, WriteRotationsAsARecording) {
