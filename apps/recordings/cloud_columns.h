@@ -30,9 +30,9 @@ class RawMessages : public PacketSource {
   std::uint64_t taken_ = 0;
 };
 
-/// Takes clouds for packets, and gives the columns of each: a rotation begins with each cloud. The frame is the cloud's;
-/// an azimuth is that of a column's returns in the mean. Clouds that are malformed, or have no rows, neither by
-/// themselves nor by their rings, are foreign.
+/// Takes clouds for packets, and gives the columns of each: a rotation begins with each cloud. The frame is the
+/// cloud's; an azimuth is that of a column's returns in the mean. Clouds that are malformed, or have no rows, neither
+/// by themselves nor by their rings, are foreign.
 class CloudColumns : public Decoder {
  public:
   /// \param read gives the cloud of a packet; throws Broken if it is malformed

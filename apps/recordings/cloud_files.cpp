@@ -21,7 +21,8 @@ PacketSource::Arrival CloudFiles::next(Packet& packet) {
       continue;
     }
     if (!scan_.note.empty()) note_(file.string() + ": " + scan_.note);
-    if (scan_.clustered()->height < 2 && files_.size() > 1) note_(file.string() + ": has neither rows nor a field 'ring'; left out");
+    if (scan_.clustered()->height < 2 && files_.size() > 1)
+      note_(file.string() + ": has neither rows nor a field 'ring'; left out");
     packet = {nullptr, 0, time_us};
     ++packets_;
     return Arrival::kPacket;

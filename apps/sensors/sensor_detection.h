@@ -10,8 +10,8 @@
 
 namespace lisco_apps {
 
-/// The sensors that may have sent the packets at the beginning of a source: by their layout, see sensorsThatSend (), and
-/// those of equal layouts (Velodyne's) by their pace, or by the model that the packets name if they are too few.
+/// The sensors that may have sent the packets at the beginning of a source: by their layout, see sensorsThatSend (),
+/// and those of equal layouts (Velodyne's) by their pace, or by the model that the packets name if they are too few.
 std::vector<std::string> sensorsThatSent(PacketSource& source);
 
 /// Whether the metadata of an Ouster sensor describes the packets at the beginning of a source, by their size and the

@@ -130,8 +130,8 @@ class RealRecordings : public testing::Test {
   }
 };
 
-/// The other decoder drops returns out of its range limits, and cuts the rotation at an azimuth of its own: of ours, the
-/// rotation is the run of columns with the fewest returns that it has not.
+/// The other decoder drops returns out of its range limits, and cuts the rotation at an azimuth of its own: of ours,
+/// the rotation is the run of columns with the fewest returns that it has not.
 /// \param name of a sensor: of the bag, its expected points and its calibration
 void expectItsPoints(const std::string& name) {
   constexpr double kDistance = 0.01;
