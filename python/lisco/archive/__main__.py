@@ -11,6 +11,7 @@ from .._checks import number_of, sizes_of, tolerance_of
 from .executors import Distributed, Serial
 from .pieces import Settings
 from .run import run
+from .work import prepare
 
 _NOTES = """
 Writes into the folder: pieces/NUMBER/labels.npz (an array of labels for each scan or rotation, numbered as in
@@ -93,7 +94,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
         if given.scheduler is None and given.workers == 0:
             executor = Serial()
         else:
-            executor = Distributed(given.scheduler, given.workers, given.patience)
+            executor = Distributed(given.scheduler, given.workers, given.patience, prepare)
         done = run(given.inputs, os.path.abspath(given.output), settings, executor, table=not given.no_table)
     except KeyboardInterrupt:
         print("lisco.archive: interrupted; the same command goes on", file=sys.stderr)

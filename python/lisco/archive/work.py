@@ -14,7 +14,7 @@ import numpy as np
 from .._checks import Array
 from ..clusterer import Clusterer
 from ..ground import remove_ground
-from ..reading import RecordedScan, read, recorded_scans
+from ..reading import RecordedScan, read, recorded_scans, sensors
 from .pieces import Piece, Settings, canonical
 
 LABELS, CLUSTERS, REPORT = "labels.npz", "clusters.npy", "piece.json"
@@ -39,6 +39,14 @@ def write_whole(path: str, content: str) -> None:
         if os.path.exists(temporary):
             os.remove(temporary)
         raise
+
+
+def prepare() -> None:
+    """Loads the readers, which takes some tenths of a second."""
+    try:
+        sensors()
+    except ImportError:
+        pass  # each input says so
 
 
 def report_of(out: str, piece: Piece) -> Optional[Dict[str, Any]]:
