@@ -136,7 +136,7 @@ def read(
         A cloud (see `lisco_cluster --help`), a capture of packets (pcap, pcapng), or a bag (db3, mcap, bag, or a bag's
         folder) of clouds or packets.
     sensor : str, optional
-        That sent the packets: one of `lisco.sensors()`.
+        That sent the packets: one of `lisco.sensors()`; by default, found by the packets.
     calibration, metadata : str or os.PathLike, optional
         Files that some sensors need.
     topic : str, optional

@@ -97,3 +97,9 @@ def test_arguments_of_streams_are_checked(data):
         lisco.stream([], 0.4)
     with pytest.raises(ValueError, match="port"):
         lisco.read(capture, sensor="vlp16", port=0)
+
+
+def test_the_sensor_is_found_by_its_packets(data):
+    capture = data / "captures" / "hdl32e_outdoor.pcap"
+    for found, named in zip(lisco.read(capture), lisco.read(capture, sensor="hdl32e")):
+        assert np.array_equal(found, named, equal_nan=True)
