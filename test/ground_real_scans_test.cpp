@@ -89,11 +89,11 @@ TEST_P(GroundOnRealScan, EqualsColumnByColumn) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scans, GroundOnRealScan,
-                         testing::Values(GroundScan{"hdl64e_kitti_0", 3, 100, 0.005},
-                                         GroundScan{"vls128_deskewed_0", 36, 352, 0.005},
-                                         GroundScan{"os1_128_outdoor_0", 2, 271, 0.005},
-                                         GroundScan{"hdl32e_outdoor_0", 96, 116, 0.005},
-                                         GroundScan{"vls128_street_0", 60, 514, 0.007}),
+                         testing::Values(GroundScan{"hdl64e_kitti_0", 3, 109, 0.002},
+                                         GroundScan{"vls128_deskewed_0", 35, 360, 0.003},
+                                         GroundScan{"os1_128_outdoor_0", 3, 268, 0.002},
+                                         GroundScan{"hdl32e_outdoor_0", 96, 118, 0.002},
+                                         GroundScan{"vls128_street_0", 55, 494, 0.012}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace

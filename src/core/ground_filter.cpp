@@ -11,20 +11,20 @@
 
 #include "core/bits.h"
 #include "core/ground/block.h"
-#include "core/ground/polar_grid.h"
-#include "core/ground/profile.h"
+#include "core/ground/follower.h"
+#include "core/ground/ground_map.h"
 #include "core/ground/plane_estimator.h"
+#include "core/ground/row_order.h"
 #include "core/pi.h"
 
 namespace lisco {
 
 using ground::Block;
-using ground::Cell;
 using ground::Columns;
-using ground::kSectors;
+using ground::Follower;
+using ground::GroundMap;
 using ground::PlaneEstimator;
-using ground::Profile;
-using ground::Sector;
+using ground::RowOrder;
 
 namespace {
 
@@ -46,9 +46,7 @@ class GroundFilter::State {
  private:
   void decideWaiting(const GroundVisitor& visit);
   void decide(std::size_t first, std::size_t count, std::uint8_t* ground, std::size_t stride);
-  void insert();
-  void findGround();
-  void classify(std::size_t count, std::uint8_t* ground, std::size_t stride) const;
+  void estimatePlane();
 
   GroundParameters parameters_;
   float max_slope_ = 0.0F;
@@ -61,8 +59,10 @@ class GroundFilter::State {
   std::vector<std::uint8_t> waiting_ground_, column_ground_;
   Block block_;
   std::uint64_t block_number_ = 0;
-  std::vector<Sector> sectors_;
-  std::array<std::uint64_t, kSectors / 64> touched_{};  // sectors with returns of the block
+  RowOrder order_;
+  GroundMap map_;
+  Follower follower_;
+  std::vector<std::uint8_t> decisions_;
   PlaneEstimator plane_estimator_;
 };
 
@@ -78,11 +78,10 @@ void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t 
   received_.resize(lasers, Block::kColumns);
   waiting_ground_.resize(std::max(waiting_ground_.size(), lasers * Block::kColumns));
   column_ground_.resize(std::max(column_ground_.size(), lasers));
-  sectors_.resize(kSectors + 1);  // one for cells without a return
-  for (Sector& sector : sectors_) {
-    sector.clear();
-    sector.block = 0;
-  }
+  order_.begin(lasers);
+  map_.begin(max_slope_);
+  follower_.begin(lasers, max_slope_);
+  decisions_.resize(lasers * Block::kColumns);
   waiting_ = decided_ = 0;
   block_number_ = 0;
   plane_estimator_.begin(parameters, max_slope_);
@@ -143,63 +142,22 @@ void GroundFilter::State::addAll(std::size_t columns, const CellSource& cells, s
 void GroundFilter::State::decide(std::size_t first, std::size_t count, std::uint8_t* ground, std::size_t stride) {
   ++block_number_;
   block_.measure(received_, first, parameters_.sensor);
-  insert();
-  findGround();
-  classify(count, ground, stride);
-}
-
-/// Adds the block's returns to the grid; cells without one go to a sector that is not followed.
-void GroundFilter::State::insert() {
-  constexpr std::uint64_t kFresh = 16;  // blocks after which a sector shows the rotation before
-  touched_ = {};
-  for (std::size_t i = 0; i < block_.size; ++i) {
-    const std::int32_t cell = block_.cell[i];
-    const std::size_t number = Block::sectorOf(cell);
-    Sector& sector = sectors_[number];
-    if (sector.block != block_number_) {
-      if (block_number_ - sector.block > kFresh) sector.clear();
-      sector.block = block_number_;
-      if (number < kSectors) touched_[number / 64] |= std::uint64_t{1} << (number % 64);
-    }
-    sector.add(Block::binOf(cell), block_.rho[i], block_.height[i], Block::levelOf(cell));
-  }
-}
-
-void GroundFilter::State::findGround() {
-  constexpr std::uint64_t kEstimatePeriod = 4;  // blocks
-  if (!plane_estimator_.isKnown() || block_number_ % kEstimatePeriod == 0) {
-    const std::size_t count = plane_estimator_.isKnown() ? 1 : Block::kColumns;
-    for (std::size_t column = 0; column < count; ++column) plane_estimator_.add(block_, column);
-    plane_estimator_.update();
-  }
-  if (!plane_estimator_.isKnown()) return;
-  const Profile profile(plane_estimator_.plane(), max_slope_);
-  constexpr std::uint64_t kBeside = 8;  // blocks within which a sector beside was seen
-  for (std::size_t word = 0; word < touched_.size(); ++word)
-    forEachBit(touched_[word], [&](std::size_t bit) {
-      const std::size_t number = word * 64 + bit;
-      const Sector* beside = nullptr;
-      for (const std::size_t other : {(number + 1) % kSectors, (number + kSectors - 1) % kSectors})
-        if (sectors_[other].block != 0 && block_number_ - sectors_[other].block < kBeside) beside = &sectors_[other];
-      profile.follow(sectors_[number], ground::directionOf(number), beside);
-    });
-}
-
-void GroundFilter::State::classify(std::size_t count, std::uint8_t* ground, std::size_t stride) const {
-  constexpr float kMostBelow = -0.5F;  // metres
-  if (!plane_estimator_.isKnown()) {
-    for (std::size_t laser = 0; laser < lasers_; ++laser) std::fill_n(ground + laser * stride, count, std::uint8_t{0});
-    return;
-  }
+  order_.update(block_);
+  estimatePlane();
+  std::fill(decisions_.begin(), decisions_.end(), std::uint8_t{0});
+  if (plane_estimator_.isKnown())
+    follower_.follow(block_, order_, plane_estimator_.plane(), map_, static_cast<std::uint32_t>(block_number_),
+                     decisions_.data());
   for (std::size_t laser = 0; laser < lasers_; ++laser)
-    for (std::size_t column = 0; column < count; ++column) {
-      const std::size_t i = laser * Block::kColumns + column;
-      const Cell& cell = sectors_[Block::sectorOf(block_.cell[i])].cells[Block::binOf(block_.cell[i])];
-      const float above = block_.height[i] - cell.slope * block_.rho[i] - cell.offset;
-      const bool is_return = block_.cell[i] != Block::kNoCell;
-      ground[laser * stride + column] =
-          static_cast<std::uint8_t>((above < cell.tolerance) & (above > kMostBelow) & is_return);
-    }
+    std::copy_n(&decisions_[laser * Block::kColumns], count, ground + laser * stride);
+}
+
+void GroundFilter::State::estimatePlane() {
+  constexpr std::uint64_t kEstimatePeriod = 4;  // blocks
+  if (plane_estimator_.isKnown() && block_number_ % kEstimatePeriod != 0) return;
+  const std::size_t count = plane_estimator_.isKnown() ? 1 : Block::kColumns;
+  for (std::size_t column = 0; column < count; ++column) plane_estimator_.add(block_, column);
+  plane_estimator_.update();
 }
 
 GroundParameters estimateGround(std::size_t columns, std::size_t lasers, const std::array<float, 3>& declared_origin,

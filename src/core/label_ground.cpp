@@ -26,7 +26,7 @@ void check(const void* points, std::size_t count, std::size_t stride, const Labe
     throw std::invalid_argument("lisco::labelGround: points and ground must not be null");
 }
 
-/// The returns among points, sorted into columns of the same azimuth and of limited length.
+/// The returns among points, sorted into columns of the same azimuth and rows of about the same elevation.
 class AzimuthColumns {
  public:
   template <typename PointAt>
@@ -54,28 +54,51 @@ class AzimuthColumns {
     std::vector<std::uint32_t> next(ends.begin(), ends.end() - 1);
     for (std::size_t i = 0; i < count; ++i)
       if (bin_of[i] < kBins) points_[next[bin_of[i]]++] = static_cast<std::uint32_t>(i);
-    for (std::size_t bin = 0; bin < kBins; ++bin)
-      for (std::size_t begin = ends[bin]; begin < ends[bin + 1]; begin += rows_)
-        columns_.push_back({begin, std::min<std::size_t>(begin + rows_, ends[bin + 1])});
+    std::vector<float> slopes(count);  // of the rays
+    std::vector<float> sorted;
+    for (const std::uint32_t i : points_) {
+      const Return point = point_at(i);
+      slopes[i] = (point.z - origin[2]) / std::max(std::hypot(point.x - origin[0], point.y - origin[1]), 1e-6F);
+      sorted.push_back(slopes[i]);
+    }
+    std::sort(sorted.begin(), sorted.end());
+    std::vector<float> lowest(rows_);  // slope of a row's rays
+    for (std::size_t row = 0; row < rows_ && returns > 0; ++row) lowest[row] = sorted[row * returns / rows_];
+    for (std::size_t bin = 0; bin < kBins; ++bin) {
+      const auto begin = points_.begin() + ends[bin], end = points_.begin() + ends[bin + 1];
+      std::sort(begin, end, [&](std::uint32_t a, std::uint32_t b) {
+        return slopes[a] != slopes[b] ? slopes[a] < slopes[b] : a < b;
+      });
+      const auto size = static_cast<std::size_t>(end - begin);
+      // A bin of many points makes several columns, each of them with rays of all elevations.
+      const std::size_t columns = (size + rows_ - 1) / rows_;
+      for (std::size_t column = 0; column < columns; ++column) {
+        cells_.resize(cells_.size() + rows_, kNone);
+        std::size_t* const cells = &cells_[cells_.size() - rows_];
+        std::size_t free = 0;
+        std::size_t left = (size - column + columns - 1) / columns;
+        for (std::size_t i = column; i < size; i += columns) {
+          const float slope = slopes[begin[static_cast<std::ptrdiff_t>(i)]];
+          const auto row =
+              static_cast<std::size_t>(std::upper_bound(lowest.begin() + 1, lowest.end(), slope) - lowest.begin() - 1);
+          free = std::min(std::max(free, row), rows_ - left--);
+          cells[free++] = begin[static_cast<std::ptrdiff_t>(i)];
+        }
+      }
+    }
   }
 
   std::size_t rows() const { return rows_; }
-  std::size_t columns() const { return columns_.size(); }
+  std::size_t columns() const { return cells_.size() / rows_; }
 
   static constexpr std::size_t kNone = ~std::size_t{0};
   /// The number of the point in a cell, or kNone.
-  std::size_t pointAt(std::size_t row, std::size_t column) const {
-    const std::size_t i = columns_[column].begin + row;
-    return i < columns_[column].end ? points_[i] : kNone;
-  }
+  std::size_t pointAt(std::size_t row, std::size_t column) const { return cells_[column * rows_ + row]; }
 
  private:
-  struct Range {
-    std::size_t begin, end;
-  };
   std::size_t rows_ = 0;
-  std::vector<std::uint32_t> points_;  // column by column
-  std::vector<Range> columns_;
+  std::vector<std::uint32_t> points_;  // bin by bin
+  std::vector<std::size_t> cells_;     // column by column, from the lowest ray up
 };
 
 }  // namespace

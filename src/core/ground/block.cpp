@@ -3,11 +3,7 @@
 #include "core/ground/block.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-
-#include "core/ground/polar_grid.h"
-#include "core/pi.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/ground/block.cpp"
@@ -22,17 +18,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// A laser's cells of a block, or a part of them.
 using RowFloats = hn::CappedTag<float, ground::Block::kColumns>;
-using RowInts = hn::RebindToSigned<RowFloats>;
 constexpr RowFloats kRow{};
-constexpr RowInts kRowInts{};
 
 void measureRows(ground::Block& block, const ground::Columns& columns, std::size_t first, const SensorHints& sensor) {
   constexpr float kMaxCoordinate = 1e6F;  // metres; beyond, coordinates are no measurements
-  constexpr float kSectorsPerOctant = static_cast<float>(ground::kSectors) / 8.0F;
-  constexpr std::int32_t kFirstBin = (127 - 2) << 3;  // 0.25 m2
-  constexpr auto kLastBin = static_cast<std::int32_t>(ground::kBins) - 1;
   const auto set = [](float value) { return hn::Set(kRow, value); };
-  const auto setInt = [](std::int32_t value) { return hn::Set(kRowInts, value); };
   const auto zero = hn::Zero(kRow);
   const auto most = set(kMaxCoordinate);
   const std::size_t rows = block.size / ground::Block::kColumns;
@@ -58,25 +48,8 @@ void measureRows(ground::Block& block, const ground::Columns& columns, std::size
       const auto horizon = hn::Add(hn::Mul(set(sensor.tilt[0]), x), hn::Mul(set(sensor.tilt[1]), y));
       const auto height = hn::Sub(z, horizon);
       hn::StoreU(height, kRow, block.height.data() + to);
-
-      // Eighths of an octave of the squared distance: the exponent and three bits of the mantissa.
-      auto bin = hn::Sub(hn::ShiftRight<20>(hn::BitCast(kRowInts, squared)), setInt(kFirstBin));
-      bin = hn::Min(hn::Max(bin, hn::Zero(kRowInts)), setInt(kLastBin));
-      // The azimuth in octants, within 0.005 of proportional to the angle.
-      const auto east = hn::Abs(x);
-      const auto north = hn::Abs(y);
-      const auto ratio = hn::Div(hn::Min(east, north), hn::Add(hn::Max(east, north), set(1e-30F)));
-      auto azimuth = hn::Mul(ratio, hn::Sub(set(1.2732F), hn::Mul(set(0.2732F), ratio)));
-      azimuth = hn::IfThenElse(hn::Gt(north, east), hn::Sub(set(2.0F), azimuth), azimuth);
-      azimuth = hn::IfThenElse(hn::Lt(x, zero), hn::Sub(set(4.0F), azimuth), azimuth);
-      azimuth = hn::IfThenElse(hn::Lt(y, zero), hn::Sub(set(8.0F), azimuth), azimuth);
-      auto sector = hn::ConvertTo(kRowInts, hn::Mul(azimuth, set(kSectorsPerOctant)));
-      sector = hn::And(sector, setInt(static_cast<std::int32_t>(ground::kSectors) - 1));
-      auto level = hn::ConvertTo(kRowInts, hn::Floor(hn::Mul(height, set(ground::kLevelsPerMetre))));
-      level = hn::And(level, setInt(63));
-      const auto cell = hn::Or(hn::ShiftLeft<17>(level), hn::Or(hn::ShiftLeft<8>(sector), bin));
-      const auto is_valid = hn::RebindMask(kRowInts, valid);
-      hn::StoreU(hn::IfThenElse(is_valid, cell, setInt(ground::Block::kNoCell)), kRowInts, block.cell.data() + to);
+      hn::StoreU(x, kRow, block.x.data() + to);
+      hn::StoreU(y, kRow, block.y.data() + to);
     }
 }
 
@@ -91,18 +64,6 @@ HWY_EXPORT(measureRows);
 
 namespace ground {
 
-Direction directionOf(std::size_t sector) {
-  static const auto directions = [] {
-    std::array<Direction, kSectors> all;
-    for (std::size_t i = 0; i < kSectors; ++i) {
-      const double azimuth = 2.0 * kPi * (static_cast<double>(i) + 0.5) / static_cast<double>(kSectors);
-      all[i] = {static_cast<float>(std::cos(azimuth)), static_cast<float>(std::sin(azimuth))};
-    }
-    return all;
-  }();
-  return directions[sector];
-}
-
 void Columns::resize(std::size_t lasers, std::size_t columns) {
   stride = columns;
   for (auto* values : {&x, &y, &z}) values->resize(std::max(values->size(), lasers * columns));
@@ -115,10 +76,11 @@ void Columns::clear(std::size_t column, std::size_t lasers) {
 
 void Block::resize(std::size_t lasers) {
   size = lasers * kColumns;
-  if (cell.size() >= size) return;
+  if (rho.size() >= size) return;
+  x.resize(size);
+  y.resize(size);
   rho.resize(size);
   height.resize(size);
-  cell.resize(size);
 }
 
 void Block::measure(const Columns& columns, std::size_t first, const SensorHints& sensor) {

@@ -25,16 +25,12 @@ struct Columns {
 /// laser * kColumns + column.
 struct Block {
   static constexpr std::size_t kColumns = 8;
-  static constexpr std::int32_t kNoCell = 256 << 8;  ///< in a sector of its own
+  static constexpr float kMinRho = 0.05F;  ///< metres; nearer returns are not looked at
 
-  std::vector<float> rho;          ///< horizontal distance from the sensor, metres
-  std::vector<float> height;       ///< above the sensor's horizon, metres
-  std::vector<std::int32_t> cell;  ///< where in the polar grid, see sectorOf and so on; kNoCell if there is no return
-  std::size_t size = 0;            ///< number of elements
-
-  static std::size_t sectorOf(std::int32_t cell) { return static_cast<std::size_t>(cell) >> 8 & 511; }
-  static std::size_t binOf(std::int32_t cell) { return static_cast<std::size_t>(cell) & 255; }
-  static unsigned levelOf(std::int32_t cell) { return static_cast<unsigned>(cell) >> 17; }
+  std::vector<float> x, y;    ///< from the sensor, metres
+  std::vector<float> rho;     ///< horizontal distance from the sensor, metres; 0: no return
+  std::vector<float> height;  ///< above the sensor's horizon, metres
+  std::size_t size = 0;       ///< number of elements
 
   /// Allocates only if there are more lasers than ever before.
   void resize(std::size_t lasers);

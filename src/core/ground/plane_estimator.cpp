@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/ground/polar_grid.h"
+
 namespace lisco::ground {
 namespace {
 
@@ -38,11 +40,10 @@ void PlaneEstimator::add(const Block& block, std::size_t column) {
   Sector sector;  // of all azimuths: lasers of a column may be staggered
   Direction sum{0.0F, 0.0F};
   for (std::size_t i = column; i < block.size; i += Block::kColumns)
-    if (block.cell[i] != Block::kNoCell && block.rho[i] < kNear) {
-      sector.add(Block::binOf(block.cell[i]), block.rho[i], block.height[i], Block::levelOf(block.cell[i]));
-      const Direction direction = directionOf(Block::sectorOf(block.cell[i]));
-      sum.x += direction.x;
-      sum.y += direction.y;
+    if (block.rho[i] > Block::kMinRho && block.rho[i] < kNear) {
+      sector.add(block.rho[i], block.height[i]);
+      sum.x += block.x[i] / block.rho[i];
+      sum.y += block.y[i] / block.rho[i];
     }
   const float length = std::max(std::sqrt(sum.x * sum.x + sum.y * sum.y), 1e-3F);
   const Direction direction{sum.x / length, sum.y / length};

@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "core/ground/block.h"
-#include "core/ground/polar_grid.h"
+#include "core/ground/direction.h"
 #include "lisco/ground_filter.h"
 
 namespace lisco::ground {

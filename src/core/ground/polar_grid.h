@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -12,7 +13,6 @@
 
 namespace lisco::ground {
 
-inline constexpr std::size_t kSectors = 256;  ///< of azimuth
 /// Of distance, eight for each octave of the squared distance: each is 4 % wider than the one before.
 inline constexpr std::size_t kBins = 192;
 
@@ -22,11 +22,6 @@ struct Cell {
   /// half, its horizontal distance from the sensor in the lower half.
   std::uint64_t lowest = ~std::uint64_t{0};
   std::uint64_t levels = 0;  ///< occupied heights: bit i for level i modulo 64
-  float offset = 0.0F;       ///< height of the ground, extended to beneath the sensor
-  float slope = 0.0F;        ///< of the ground, metres per metre outwards
-  float tolerance = 0.0F;    ///< returns up to this far above the ground are on it
-  /// 0: the lowest return is not on the ground; otherwise how many sectors may still follow this one's example
-  std::int32_t confidence = 0;
 
   float low() const;  ///< lowest height
   float lowRho() const {
@@ -59,45 +54,39 @@ inline unsigned levelOf(float height) {
   return static_cast<unsigned>(static_cast<std::int32_t>(std::floor(height * kLevelsPerMetre)) & 63);
 }
 
+/// Number of the bin of a distance.
+inline std::size_t binOf(float rho) {
+  constexpr std::int32_t kFirst = (127 - 2) << 3;  // 0.25 m2
+  const float squared = rho * rho;
+  std::int32_t bits;
+  std::memcpy(&bits, &squared, sizeof bits);
+  return static_cast<std::size_t>(std::clamp((bits >> 20) - kFirst, 0, static_cast<std::int32_t>(kBins) - 1));
+}
+
 /// The cells of one azimuth, from the sensor outwards.
 struct Sector {
   std::array<Cell, kBins> cells;
   std::array<std::uint64_t, kBins / 64> occupied{};  ///< the cells with returns; the others are as when made
-  std::uint64_t block = 0;                           ///< the last one that added returns, from 1 on; 0: none
 
   bool has(std::size_t bin) const { return (occupied[bin / 64] >> (bin % 64) & 1) != 0; }
 
-  void add(std::size_t bin, float rho, float height, unsigned level) {
+  void add(float rho, float height) {
+    const std::size_t bin = binOf(rho);
     Cell& cell = cells[bin];
     std::uint32_t rho_bits;
     std::memcpy(&rho_bits, &rho, sizeof rho_bits);
     const std::uint64_t number = std::uint64_t{orderedHeight(height)} << 32 | rho_bits;
     cell.lowest = number < cell.lowest ? number : cell.lowest;
-    cell.levels |= std::uint64_t{1} << level;
+    cell.levels |= std::uint64_t{1} << levelOf(height);
     occupied[bin / 64] |= std::uint64_t{1} << (bin % 64);
   }
-
-  void clear();
 };
-
-/// A unit vector.
-struct Direction {
-  float x, y;
-};
-
-/// The middle of a sector.
-Direction directionOf(std::size_t sector);
 
 /// Calls visit(bin) for each cell with returns, from the sensor outwards.
 template <typename Visit>
 void forEachBin(const Sector& sector, Visit&& visit) {
   for (std::size_t word = 0; word < sector.occupied.size(); ++word)
     forEachBit(sector.occupied[word], [&](std::size_t bit) { visit(word * 64 + bit); });
-}
-
-inline void Sector::clear() {
-  forEachBin(*this, [this](std::size_t bin) { cells[bin] = Cell(); });
-  occupied = {};
 }
 
 /// Whether none of the occupied levels is up to about 2 m above a height.
