@@ -104,7 +104,7 @@ bool parse(int argc, char** argv, Options& options) {
     ("unorganized", po::bool_switch(&settings.unorganized), "cluster the returns as an unorganized cloud")
     ("json", pathOption("FILE", "--json", options.json), "write everything, each run's time included")
     ("csv", pathOption("FILE", "--csv", options.csv), "write a row per input, tolerance and baseline")
-    ("plot", pathOption("DIR", "--plot", options.plot), "draw charts (PNG) into a folder; needs gnuplot")
+    ("plot", pathOption("DIR", "--plot", options.plot), "draw charts (PNG and SVG) into a folder; needs gnuplot")
     ("view", pathOption("FILE.html", "--view", options.view),
      "write a page for browsers that shows two methods' clusters, or those at two tolerances, side by side, and marks "
      "where they differ; of several scans, a timeline");

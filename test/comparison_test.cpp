@@ -1075,11 +1075,13 @@ TEST(Report, SumsUpSeveralCasesOnly) {
 TEST(Report, NamesItsCharts) {
   CompareSettings settings;
   settings.tolerances = {0.1, 1};
-  EXPECT_EQ(chartsOf({"a"}, settings), std::vector<std::string>({"time_over_tolerance_a.png"}));
-  EXPECT_EQ(
-      chartsOf({"a", "b"}, settings),
-      std::vector<std::string>({"time_over_tolerance_a.png", "time_over_tolerance_b.png", "time_over_tolerance.png",
-                                "time_over_points_0.1.png", "time_over_points_1.png"}));
+  EXPECT_EQ(chartsOf({"a"}, settings),
+            std::vector<std::string>({"time_over_tolerance_a.png", "time_over_tolerance_a.svg"}));
+  EXPECT_EQ(chartsOf({"a", "b"}, settings),
+            std::vector<std::string>({"time_over_tolerance_a.png", "time_over_tolerance_a.svg",
+                                      "time_over_tolerance_b.png", "time_over_tolerance_b.svg",
+                                      "time_over_tolerance.png", "time_over_tolerance.svg", "time_over_points_0.1.png",
+                                      "time_over_points_0.1.svg", "time_over_points_1.png", "time_over_points_1.svg"}));
 }
 
 }  // namespace

@@ -15,15 +15,16 @@ namespace {
 /// \param add_points (baseline, points) appends its points
 template <typename AddPoints>
 void drawLines(const CompareSettings& settings, const std::string& title, const char* x_label, bool log_x,
-               const fs::path& png, AddPoints&& add_points) {
-  Chart chart{title, x_label, "milliseconds, mean with 99% confidence", log_x};
+               const fs::path& stem, AddPoints&& add_points) {
+  // Scans of different scenes lie on no curve over the number of their returns.
+  Chart chart{title, x_label, "milliseconds, mean with 99% confidence", log_x, !log_x};
   for (const Baseline& baseline : settings.baselines) {
     Chart::Line line{baseline.title, baseline.color, {}};
     add_points(baseline, line.points);
     std::sort(line.points.begin(), line.points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
     if (!line.points.empty()) chart.lines.push_back(std::move(line));
   }
-  drawChart(chart, png);
+  drawChart(chart, stem.string());
 }
 
 /// Appends the times of a baseline, if it was timed.
@@ -35,21 +36,24 @@ void addPoint(const CaseResult& result, const Baseline& baseline, double x, std:
 constexpr const char* kOverTolerance = "tolerance, metres";
 
 std::string overPoints(double tolerance) {
-  return formatted("time_over_points_%g.png", tolerance);
+  return formatted("time_over_points_%g", tolerance);
 }
 std::string overTolerance(const std::string& input) {
-  return "time_over_tolerance_" + input + ".png";
+  return "time_over_tolerance_" + input;
 }
-constexpr const char* kMeanChart = "time_over_tolerance.png";
+constexpr const char* kMeanChart = "time_over_tolerance";
 
 }  // namespace
 
 std::vector<std::string> chartsOf(const std::vector<std::string>& input_names, const CompareSettings& settings) {
   std::vector<std::string> charts;
-  for (const std::string& name : input_names) charts.push_back(overTolerance(name));
+  const auto add = [&](const std::string& stem) {
+    for (const char* const suffix : kChartSuffixes) charts.push_back(stem + suffix);
+  };
+  for (const std::string& name : input_names) add(overTolerance(name));
   if (input_names.size() < 2) return charts;
-  charts.emplace_back(kMeanChart);
-  for (const double tolerance : settings.tolerances) charts.push_back(overPoints(tolerance));
+  add(kMeanChart);
+  for (const double tolerance : settings.tolerances) add(overPoints(tolerance));
   return charts;
 }
 
@@ -61,18 +65,21 @@ void drawCharts(const std::vector<InputResult>& inputs, const CompareSettings& s
               });
   if (inputs.size() < 2) return;
 
-  drawLines(settings, formatted("arithmetic mean of %zu scans", inputs.size()), kOverTolerance, false,
+  drawLines(settings, formatted("geometric mean of %zu scans", inputs.size()), kOverTolerance, false,
             folder / kMeanChart, [&](const Baseline& baseline, auto& points) {
               for (std::size_t at = 0; at < settings.tolerances.size(); ++at) {
                 std::vector<Chart::Point> all;
                 for (const InputResult& input : inputs) addPoint(input.cases[at], baseline, 0, all);
                 if (all.size() != inputs.size()) continue;
-                Chart::Point mean{settings.tolerances[at], 0, 0};
+                double log_mean = 0;
+                double relative_error = 0;
                 for (const Chart::Point& point : all) {
-                  mean.y += point.y / static_cast<double>(inputs.size());
-                  mean.error = std::hypot(mean.error, point.error / static_cast<double>(inputs.size()));
+                  log_mean += std::log(point.y) / static_cast<double>(inputs.size());
+                  relative_error =
+                      std::hypot(relative_error, point.error / point.y / static_cast<double>(inputs.size()));
                 }
-                points.push_back(mean);
+                const double mean = std::exp(log_mean);
+                points.push_back({settings.tolerances[at], mean, relative_error * mean});
               }
             });
 

@@ -26,7 +26,7 @@ std::string forGnuplot(const std::string& text) {
   return quoted(text, "''");
 }
 
-void writeScript(const Chart& chart, const fs::path& png, std::ostream& script) {
+void writeScript(const Chart& chart, const std::string& stem, std::ostream& script) {
   // Of the points alone: error bars may reach below 0, which a logarithmic axis cannot show.
   double lowest = std::numeric_limits<double>::infinity();
   double highest = 0;
@@ -35,9 +35,7 @@ void writeScript(const Chart& chart, const fs::path& png, std::ostream& script) 
       lowest = std::min(lowest, point.y);
       highest = std::max(highest, point.y);
     }
-  script << "set terminal pngcairo noenhanced font ',11' size 900,620 background '#ffffff'\n"
-         << "set output " << forGnuplot(png.string()) << '\n'
-         << "set title " << forGnuplot(chart.title) << '\n'
+  script << "set title " << forGnuplot(chart.title) << '\n'
          << "set xlabel " << forGnuplot(chart.x_label) << '\n'
          << "set ylabel " << forGnuplot(chart.y_label) << '\n'
          << "set logscale y\nset grid ytics xtics back linetype 1 linecolor rgb '#dcdcdc' linewidth 1\nset key outside "
@@ -52,10 +50,16 @@ void writeScript(const Chart& chart, const fs::path& png, std::ostream& script) 
       script << point.x << ' ' << point.y << ' ' << (std::isfinite(point.error) ? point.error : 0.0) << '\n';
     script << "END\n";
   }
-  for (std::size_t i = 0; i < chart.lines.size(); ++i)
-    script << (i == 0 ? "plot " : ", ") << "$line" << i << " using 1:2:3 with yerrorlines lw 2 pt " << 5 + i % 8
-           << " ps 0.8 lc rgb " << chart.lines[i].color << " title " << forGnuplot(chart.lines[i].title);
-  script << '\n';
+  for (const char* const suffix : kChartSuffixes) {
+    script << "set terminal " << (suffix == kChartSuffixes[0] ? "pngcairo" : "svg")
+           << " noenhanced font ',11' size 900,620 background '#ffffff'\nset output " << forGnuplot(stem + suffix)
+           << '\n';
+    for (std::size_t i = 0; i < chart.lines.size(); ++i)
+      script << (i == 0 ? "plot " : ", ") << "$line" << i << " using 1:2:3 with "
+             << (chart.is_connected ? "yerrorlines" : "yerrorbars") << " lw 2 pt " << 5 + i % 8 << " ps 0.8 lc rgb "
+             << chart.lines[i].color << " title " << forGnuplot(chart.lines[i].title);
+    script << '\n';
+  }
 }
 
 }  // namespace
@@ -66,19 +70,20 @@ void checkGnuplot() {
     throw std::runtime_error("charts need gnuplot (Debian's package gnuplot-nox)");
 }
 
-void drawChart(const Chart& chart, const fs::path& png) {
+void drawChart(const Chart& chart, const std::string& stem) {
   if (chart.lines.empty()) return;
-  const fs::path script = png.string() + ".gnuplot";
+  const fs::path script = stem + ".gnuplot";
   std::ofstream stream(script);
   stream.precision(10);
-  writeScript(chart, png, stream);
+  writeScript(chart, stem, stream);
   stream.close();
   // NOLINTNEXTLINE(concurrency-mt-unsafe)
   const bool drawn =
       stream && std::system(("gnuplot " + quoted(script.string(), "'\\''") + " >/dev/null 2>&1").c_str()) == 0;
   std::error_code ignored;
   fs::remove(script, ignored);
-  if (!drawn || !fs::exists(png)) fail(png, "cannot be drawn");
+  for (const char* const suffix : kChartSuffixes)
+    if (!drawn || !fs::exists(stem + suffix)) fail(stem + suffix, "cannot be drawn");
 }
 
 }  // namespace lisco_apps

@@ -9,7 +9,7 @@
 
 namespace lisco_apps {
 
-/// A chart of lines with error bars over a logarithmic y axis.
+/// A chart of lines, or of single points, with error bars over a logarithmic y axis.
 struct Chart {
   struct Point {
     double x, y, error;  ///< error: half the bar, 0 or NaN: none
@@ -21,14 +21,18 @@ struct Chart {
   };
   std::string title, x_label, y_label;
   bool log_x = false;
+  bool is_connected = true;  ///< the points of a line
   std::vector<Line> lines{};
 };
 
 /// \throws std::runtime_error with one line if gnuplot, which draws the charts, is missing
 void checkGnuplot();
 
-/// Draws a chart as a PNG, or nothing if it has no lines.
+/// The suffixes of a chart's files.
+inline constexpr const char* kChartSuffixes[] = {".png", ".svg"};
+
+/// Draws a chart as `stem`.png and `stem`.svg, or nothing if it has no lines.
 /// \throws std::runtime_error with one line on the error
-void drawChart(const Chart& chart, const fs::path& png);
+void drawChart(const Chart& chart, const std::string& stem);
 
 }  // namespace lisco_apps

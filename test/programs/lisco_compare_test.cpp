@@ -257,11 +257,18 @@ TEST_F(LiscoCompare, DrawsCharts) {
     std::vector<std::string> drawn;
     for (const auto& entry : fs::directory_iterator(folder)) drawn.push_back(entry.path().filename().string());
     std::sort(drawn.begin(), drawn.end());
-    EXPECT_EQ(drawn, std::vector<std::string>({".lisco_results", "time_over_points_0.3.png", "time_over_points_0.7.png",
-                                               "time_over_tolerance.png", "time_over_tolerance_a.png",
-                                               "time_over_tolerance_it's b.png"}));
+    EXPECT_EQ(drawn, std::vector<std::string>({".lisco_results", "time_over_points_0.3.png", "time_over_points_0.3.svg",
+                                               "time_over_points_0.7.png", "time_over_points_0.7.svg",
+                                               "time_over_tolerance.png", "time_over_tolerance.svg",
+                                               "time_over_tolerance_a.png", "time_over_tolerance_a.svg",
+                                               "time_over_tolerance_it's b.png", "time_over_tolerance_it's b.svg"}));
     for (const std::string& name : drawn) {
-      if (name != ".lisco_results") expectPng(folder / name);
+      const std::string suffix = fs::path(name).extension().string();
+      if (suffix == ".png") {
+        expectPng(folder / name);
+      } else if (suffix == ".svg") {
+        EXPECT_NE(textOf(folder / name).find("</svg>"), std::string::npos) << name;
+      }
     }
   }
 }
