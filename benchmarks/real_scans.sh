@@ -8,6 +8,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/benchmarks/tools.sh"
 build_benchmarks
 find_real_scans
+wait_for_quiet
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 

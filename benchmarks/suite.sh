@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Runs all benchmarks, or the given SECTIONs, and rewrites their tables in doc/benchmarks.md (those of real scans in
 # README.md too). A section that fails, as by clusters that are not PCL's, keeps its old table; the others continue, and
-# the suite exits with 1. Takes about 45 minutes on two cores.
+# the suite exits with 1. Takes about 45 minutes on two cores, and begins when the machine is quiet (wait_for_quiet in
+# tools.sh).
 #
 #   benchmarks/suite.sh [--runs N] [SECTION...]     --runs: timed runs of each baseline (default 5)
 #
@@ -35,6 +36,8 @@ done
 
 build_benchmarks
 find_real_scans
+wait_for_quiet
+echo "$noise"
 document=$root/doc/benchmarks.md
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
@@ -66,7 +69,7 @@ publish() {
 baselines=(--baselines "pcl,grid,lisco" --must-agree "grid,lisco")
 
 measure_real() {
-  "$root/benchmarks/real_scans.sh" --runs "$runs"
+  LISCO_WAIT=any "$root/benchmarks/real_scans.sh" --runs "$runs"
 }
 
 # Clouds as users have them; its table has the sets and what they are made of, not each of the 1538 cases.

@@ -11,6 +11,20 @@ build_benchmarks() {
   build_quietly "$root" "$build" -DCMAKE_BUILD_TYPE=Release -DLISCO_BUILD_BENCHMARKS=ON -DLISCO_BUILD_TESTS=OFF
 }
 
+# wait_for_quiet: waits until the machine is quiet, up to $LISCO_WAIT minutes (default 60), and sets `noise` to a line
+# that says how quiet it is. Exits if it is not; LISCO_WAIT=any measures on any machine.
+wait_for_quiet() {
+  local wait=${LISCO_WAIT:-60}
+  [ "$wait" != any ] || { noise=$("$build/benchmarks/machine_noise") || true; return 0; }
+  until noise=$("$build/benchmarks/machine_noise"); do
+    if [ "$SECONDS" -ge $((60 * wait)) ]; then
+      echo "the machine is busy, nothing is measured (LISCO_WAIT: minutes to wait, or any); $noise" >&2
+      exit 3
+    fi
+    echo "waiting; $noise"
+  done
+}
+
 # Sets `rotating` to the rotating scans, and `ground` to the options with the height of the ground in each, which are
 # also those of recording_sets.cpp.
 find_real_scans() {
