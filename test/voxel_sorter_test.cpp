@@ -83,11 +83,13 @@ std::vector<lisco::NearReturns> partsOf(const Cloud& cloud) {
   std::size_t begin = 0;
   for (const std::size_t end : cloud.part_ends) {
     lisco::NearReturns& part = parts.emplace_back();
-    for (std::size_t i = begin; i < end; ++i)
-      part.returns.push_back({cloud.points[i].x, cloud.points[i].y, cloud.points[i].z, cloud.elements[i]});
-    part.count = part.returns.size();
-    const std::size_t behind = (begin + end) % 3 == 0 ? 0 : 70;
-    for (std::size_t i = 0; i < behind && begin < end; ++i) part.returns.push_back(part.returns[i % part.count]);
+    part.count = end - begin;
+    const std::size_t behind = (begin + end) % 3 == 0 || begin == end ? 0 : 70;
+    part.returns.grow(part.count + behind);
+    for (std::size_t i = 0; i < part.returns.size(); ++i) {
+      const std::size_t point = begin + i % part.count;
+      part.returns[i] = {cloud.points[point].x, cloud.points[point].y, cloud.points[point].z, cloud.elements[point]};
+    }
     begin = end;
   }
   return parts;
@@ -501,18 +503,16 @@ TEST(VoxelSorter, LosesNoJoinOfAnotherThread) {
     const std::size_t count = 2 + seed % 3;
     std::vector<lisco::NearReturns> parts(count);
     for (std::size_t pair = 0; pair < kSets; ++pair) {
-      std::vector<lisco::NearReturn>& returns = parts[pair % count].returns;
+      lisco::NearReturns& part = parts[pair % count];
+      part.returns.grow(part.count + 2);
       const auto a = static_cast<std::uint32_t>(random.below(kSets));
       const auto b = static_cast<std::uint32_t>(random.below(kSets));
-      returns.push_back({0, 3 * static_cast<float>(pair), 0, a});
-      returns.push_back({0.9F, 3 * static_cast<float>(pair), 0, b});
+      part.returns[part.count++] = {0, 3 * static_cast<float>(pair), 0, a};
+      part.returns[part.count++] = {0.9F, 3 * static_cast<float>(pair), 0, b};
       right.merge(a, b);
     }
     std::vector<const lisco::NearReturns*> pointers;
-    for (lisco::NearReturns& part : parts) {
-      part.count = part.returns.size();
-      pointers.push_back(&part);
-    }
+    for (const lisco::NearReturns& part : parts) pointers.push_back(&part);
     ASSERT_TRUE(sorter.link(pointers, lisco::Tolerance(1), subclusters));
     for (std::uint32_t i = 0; i < kSets; ++i) ASSERT_EQ(subclusters.find(i), right.find(i)) << "element " << i;
   }

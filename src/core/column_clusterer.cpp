@@ -180,7 +180,10 @@ std::size_t ColumnClusterer::Rotation::tryFar(std::size_t lasers, const CellSour
   const std::size_t tried = std::min(kTriedColumns, parts_[0].end);
   if (!partitions_[0].hasFar()) return 0;
   readPart(0, 0, tried, lasers, cells);
-  if (partitions_[0].isFarWorthwhile()) return tried;
+  if (partitions_[0].isFarWorthwhile()) {
+    partitions_[0].reserveNear(tried, parts_[0].end);
+    return tried;
+  }
   parameters_.sensor.steps_per_turn = 0;
   preparePart(0);
   return 0;

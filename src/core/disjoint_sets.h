@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/growing_array.h"
+
 namespace lisco {
 
 /// The paper's subclusters and their heads (section IV: createH, getH, merge) as a disjoint-set forest (Galler and
@@ -16,11 +18,11 @@ class DisjointSets {
  public:
   /// Provides memory for elements below a number. Other elements stay as they are.
   void reserve(std::size_t capacity) {
-    if (parents_.size() < capacity) parents_.resize(capacity);
+    parents_.grow(capacity);
   }
   /// The same, with some to spare: for a number that grows step by step.
   void grow(std::size_t capacity) {
-    if (parents_.size() < capacity) parents_.resize(capacity + capacity / 2);
+    if (parents_.size() < capacity) parents_.grow(capacity + capacity / 2);
   }
 
   /// createH: makes an element a set of its own, whatever it was before.
@@ -78,7 +80,7 @@ class DisjointSets {
  private:
   std::uint32_t parentOf(std::uint32_t element) const { return __atomic_load_n(&parents_[element], __ATOMIC_RELAXED); }
 
-  std::vector<std::uint32_t> parents_;
+  GrowingArray<std::uint32_t> parents_;
   bool is_shared_ = false;
   std::vector<Merge>* log_ = nullptr;
 };

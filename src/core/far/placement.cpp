@@ -160,14 +160,14 @@ class Placement {
     for (std::size_t k = 0; k < RingBlock::kColumns; k += kLanes) {
       const std::uint64_t here = bitsAt(which, k);
       if (here == 0) continue;
-      const std::uint64_t free = bitsOf(hn::IsNaN(hn::LoadU(kFloats, &image_.x[cell + k]))) & here;
+      const std::uint64_t free = bitsOf(hn::IsNaN(hn::LoadU(kFloats, &image_.cells.x[cell + k]))) & here;
       stored |= free << k;
       const FloatMask mask = lanesOf(free);
-      hn::BlendedStore(hn::LoadU(kFloats, block_.x + RingBlock::kMargin + k), mask, kFloats, &image_.x[cell + k]);
-      hn::BlendedStore(hn::LoadU(kFloats, block_.y + RingBlock::kMargin + k), mask, kFloats, &image_.y[cell + k]);
-      hn::BlendedStore(hn::LoadU(kFloats, block_.z + RingBlock::kMargin + k), mask, kFloats, &image_.z[cell + k]);
+      hn::BlendedStore(hn::LoadU(kFloats, block_.x + RingBlock::kMargin + k), mask, kFloats, &image_.cells.x[cell + k]);
+      hn::BlendedStore(hn::LoadU(kFloats, block_.y + RingBlock::kMargin + k), mask, kFloats, &image_.cells.y[cell + k]);
+      hn::BlendedStore(hn::LoadU(kFloats, block_.z + RingBlock::kMargin + k), mask, kFloats, &image_.cells.z[cell + k]);
       hn::BlendedStore(hn::LoadU(kWords, info_.run + k), hn::RebindMask(kWords, mask), kWords,
-                       &image_.element[cell + k]);
+                       &image_.cells.element[cell + k]);
     }
     return stored;
   }

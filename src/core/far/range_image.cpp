@@ -46,9 +46,10 @@ void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hint
     steps = new_steps;
     radians_per_bin = static_cast<float>(step);
     bins = new_bins;
-    stride = kMargin + bins + 2 * kMargin;
-    cosine.resize(stride + kMargin);
-    sine.resize(stride + kMargin);
+    stride = kMargin + bins + 3 * kMargin;
+    cells.setRowSize(stride);
+    cosine.resize(stride);
+    sine.resize(stride);
     for (std::size_t i = 0; i < cosine.size(); ++i) {
       const double angle = step * (static_cast<double>(i) - static_cast<double>(kMargin));
       cosine[i] = static_cast<float>(std::cos(angle));
@@ -69,19 +70,15 @@ void RangeImage::addLasers(std::size_t count) {
   if (count <= before) return;
   rows.resize(count * layers, {0, kInfinity, -kInfinity, kNoBin, 0});
   elevations_changed = true;
+  cells.reserveRows(open_rows + count - before);
   for (std::size_t laser = before; laser < count; ++laser) openRow(rows[firstRowOf(laser)]);
 }
 
 void RangeImage::openRow(Row& row) {
-  row.first_cell = open_rows * stride;
+  cells.reserveRows(open_rows + 1);
+  row.first_cell = cells.firstOf(open_rows);
   ++open_rows;
-  const std::size_t size = open_rows * stride + kMargin;
-  if (x.size() < size) {
-    for (auto* coordinate : {&x, &y, &z}) coordinate->resize(size);
-    element.resize(size);
-  }
-  std::fill(x.begin() + static_cast<std::ptrdiff_t>(row.first_cell), x.begin() + static_cast<std::ptrdiff_t>(size),
-            kNan);
+  std::fill_n(cells.x + row.first_cell, stride, kNan);
 }
 
 bool RangeImage::isLayerWorthwhile() const {

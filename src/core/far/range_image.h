@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/bits.h"
+#include "core/far/image_cells.h"
 #include "core/neighbour.h"
 #include "core/ring_block.h"
 #include "lisco/sensor_hints.h"
@@ -103,12 +104,12 @@ struct RangeImage {
   /// Gives a row its memory, all bins free.
   void openRow(Row& row);
 
-  /// Index of a bin of a row in x, y, z and element.
+  /// Index of a bin of a row among the cells.
   /// \param bin at least -kMargin
   std::size_t at(std::size_t row, std::int64_t bin) const {
     return rows[row].first_cell + static_cast<std::size_t>(bin + static_cast<std::int64_t>(kMargin));
   }
-  bool isFree(std::size_t cell) const { return x[cell] != x[cell]; }
+  bool isFree(std::size_t cell) const { return cells.x[cell] != cells.x[cell]; }
   FromStart fromStart(float east, float north) const {
     return {east * start_cosine + north * start_sine, direction * (north * start_cosine - east * start_sine)};
   }
@@ -128,7 +129,7 @@ struct RangeImage {
   float slope_reach = 0;   ///< the same where heights are measured from the tilted horizon
   std::size_t steps = 0;   ///< bins of a turn
   std::size_t bins = 0;    ///< of a row: some more than columns, or than a turn
-  std::size_t stride = 0;  ///< floats per row
+  std::size_t stride = 0;  ///< cells of a row, margins included
   float direction = 1;     ///< +1: azimuth grows with time
   float radians_per_bin = 0;
   double start_azimuth = 0;  ///< of bin 0
@@ -137,8 +138,7 @@ struct RangeImage {
   std::uint32_t first_column = 0;
   bool started = false;
   std::vector<float> cosine, sine;  ///< of each bin, from -kMargin on
-  std::vector<float> x, y, z;       ///< x is NaN where a bin is free
-  std::vector<std::uint32_t> element;
+  ImageCells cells;                 ///< x is NaN where a bin is free
 
   std::vector<Row> rows;  ///< by laser and layer
   std::size_t layers = 1;

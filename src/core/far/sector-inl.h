@@ -36,19 +36,20 @@ void cutSector(const RangeImage& image, std::int64_t number, float later, const 
     const std::size_t cell = image.at(row, first_bin);
     ColumnBits returns = 0;  // bit i: bin i of the sector
     for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
-      const FloatVector x = hn::LoadU(kFloats, &image.x[cell + k]);
+      const FloatVector x = hn::LoadU(kFloats, &image.cells.x[cell + k]);
       returns |= ColumnBits{bitsOf(hn::Eq(x, x))} << k;
     }
     if (returns == 0) continue;
     float rho[RangeImage::kSector];
     ColumnBits starts = 0;
     for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
-      const FloatVector x = hn::LoadU(kFloats, &image.x[cell + k]);
+      const FloatVector x = hn::LoadU(kFloats, &image.cells.x[cell + k]);
       const FloatVector east = hn::Sub(x, hn::Set(kFloats, image.range.origin[0]));
       const FloatVector north =
-          hn::Sub(hn::LoadU(kFloats, &image.y[cell + k]), hn::Set(kFloats, image.range.origin[1]));
+          hn::Sub(hn::LoadU(kFloats, &image.cells.y[cell + k]), hn::Set(kFloats, image.range.origin[1]));
       hn::StoreU(hn::Sqrt(hn::Add(hn::Mul(east, east), hn::Mul(north, north))), kFloats, rho + k);
-      const FloatMask changes = differ(&image.element[cell + k - 1], hn::LoadU(kWords, &image.element[cell + k]));
+      const FloatMask changes =
+          differ(&image.cells.element[cell + k - 1], hn::LoadU(kWords, &image.cells.element[cell + k]));
       starts |= ColumnBits{bitsOf(changes)} << k;
     }
     starts = returns & (starts | ~(returns << 1));
@@ -58,7 +59,7 @@ void cutSector(const RangeImage& image, std::int64_t number, float later, const 
       const auto end = static_cast<std::uint32_t>(endOfChain(ends, first));
       float nearest = rho[first];
       float farthest = rho[first];
-      float lowest = image.z[cell + first];
+      float lowest = image.cells.z[cell + first];
       float highest = lowest;
       if (end - first > kWorthVectors) {
         FloatVector low_rho = hn::Set(kFloats, nearest);
@@ -69,7 +70,7 @@ void cutSector(const RangeImage& image, std::int64_t number, float later, const 
         for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
           const FloatMask inside = lanesOf(lanes >> k);
           const FloatVector rho_here = hn::LoadU(kFloats, rho + k);
-          const FloatVector z_here = hn::LoadU(kFloats, &image.z[cell + k]);
+          const FloatVector z_here = hn::LoadU(kFloats, &image.cells.z[cell + k]);
           low_rho = hn::IfThenElse(inside, hn::Min(low_rho, rho_here), low_rho);
           high_rho = hn::IfThenElse(inside, hn::Max(high_rho, rho_here), high_rho);
           low_z = hn::IfThenElse(inside, hn::Min(low_z, z_here), low_z);
@@ -83,8 +84,8 @@ void cutSector(const RangeImage& image, std::int64_t number, float later, const 
         for (std::uint32_t i = first + 1; i < end; ++i) {
           nearest = std::min(nearest, rho[i]);
           farthest = std::max(farthest, rho[i]);
-          lowest = std::min(lowest, image.z[cell + i]);
-          highest = std::max(highest, image.z[cell + i]);
+          lowest = std::min(lowest, image.cells.z[cell + i]);
+          highest = std::max(highest, image.cells.z[cell + i]);
         }
       }
       sector.nearest[count] = nearest;
@@ -93,7 +94,7 @@ void cutSector(const RangeImage& image, std::int64_t number, float later, const 
       sector.highest[count] = highest;
       sector.first[count] = offset + static_cast<float>(first);
       sector.last[count] = offset + static_cast<float>(end - 1);
-      sector.root[count] = subclusters.find(image.element[cell + first]);
+      sector.root[count] = subclusters.find(image.cells.element[cell + first]);
       sector.cell[count] = static_cast<std::uint32_t>(cell) + first;
       sector.count[count] = static_cast<std::uint8_t>(end - first);
       ++count;

@@ -32,17 +32,17 @@ void linkSameBins(const RangeImage& image, std::size_t begin, std::size_t end, c
     std::uint32_t above = ~std::uint32_t{0};
     std::uint32_t below = ~std::uint32_t{0};
     for (std::size_t k = begin; k < end; k += kLanes) {
-      const auto apart = [&](const std::vector<float>& coordinate) {
+      const auto apart = [&](const float* coordinate) {
         return hn::Sub(hn::LoadU(kFloats, &coordinate[upper + k]), hn::LoadU(kFloats, &coordinate[lower + k]));
       };
-      std::uint32_t left = bitsOf(areNeighbours(apart(image.x), apart(image.y), apart(image.z), r2));
+      std::uint32_t left = bitsOf(areNeighbours(apart(image.cells.x), apart(image.cells.y), apart(image.cells.z), r2));
       while (left != 0) {
-        left &= bitsOf(hn::Or(differ(&image.element[upper + k], hn::Set(kWords, above)),
-                              differ(&image.element[lower + k], hn::Set(kWords, below))));
+        left &= bitsOf(hn::Or(differ(&image.cells.element[upper + k], hn::Set(kWords, above)),
+                              differ(&image.cells.element[lower + k], hn::Set(kWords, below))));
         if (left == 0) break;
         const auto i = static_cast<std::size_t>(__builtin_ctz(left));
-        above = image.element[upper + k + i];
-        below = image.element[lower + k + i];
+        above = image.cells.element[upper + k + i];
+        below = image.cells.element[lower + k + i];
         subclusters.merge(above, below);
       }
     }
@@ -114,11 +114,11 @@ void searchOne(const RangeImage& image, const RangeImage::Unplaced& point, Disjo
         continue;
       // Bins behind the last one are free.
       for (std::size_t cell = image.at(row, from); cell <= image.at(row, to); cell += kLanes) {
-        const FloatMask near = areNeighbours(hn::Sub(hn::LoadU(kFloats, &image.x[cell]), x),
-                                             hn::Sub(hn::LoadU(kFloats, &image.y[cell]), y),
-                                             hn::Sub(hn::LoadU(kFloats, &image.z[cell]), z), r2);
+        const FloatMask near = areNeighbours(hn::Sub(hn::LoadU(kFloats, &image.cells.x[cell]), x),
+                                             hn::Sub(hn::LoadU(kFloats, &image.cells.y[cell]), y),
+                                             hn::Sub(hn::LoadU(kFloats, &image.cells.z[cell]), z), r2);
         for (std::uint32_t left = bitsOf(near); left != 0; left &= left - 1)
-          subclusters.merge(point.element, image.element[cell + static_cast<std::size_t>(__builtin_ctz(left))]);
+          subclusters.merge(point.element, image.cells.element[cell + static_cast<std::size_t>(__builtin_ctz(left))]);
       }
     }
   }

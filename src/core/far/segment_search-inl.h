@@ -30,13 +30,13 @@ bool haveNeighbours(Returns a, Returns b) {
   if (a.count > b.count) std::swap(a, b);
   const FloatVector r2 = hn::Set(kFloats, a.image->tolerance.squared());
   for (std::size_t i = a.cell; i < a.cell + a.count; ++i) {
-    const FloatVector x = hn::Set(kFloats, a.image->x[i]);
-    const FloatVector y = hn::Set(kFloats, a.image->y[i]);
-    const FloatVector z = hn::Set(kFloats, a.image->z[i]);
+    const FloatVector x = hn::Set(kFloats, a.image->cells.x[i]);
+    const FloatVector y = hn::Set(kFloats, a.image->cells.y[i]);
+    const FloatVector z = hn::Set(kFloats, a.image->cells.z[i]);
     for (std::size_t k = 0; k < b.count; k += kLanes) {
-      const FloatMask near = areNeighbours(hn::Sub(x, hn::LoadU(kFloats, &b.image->x[b.cell + k])),
-                                           hn::Sub(y, hn::LoadU(kFloats, &b.image->y[b.cell + k])),
-                                           hn::Sub(z, hn::LoadU(kFloats, &b.image->z[b.cell + k])), r2);
+      const FloatMask near = areNeighbours(hn::Sub(x, hn::LoadU(kFloats, &b.image->cells.x[b.cell + k])),
+                                           hn::Sub(y, hn::LoadU(kFloats, &b.image->cells.y[b.cell + k])),
+                                           hn::Sub(z, hn::LoadU(kFloats, &b.image->cells.z[b.cell + k])), r2);
       if ((bitsOf(near) & lanesBelow(b.count - k)) != 0) return true;
     }
   }
@@ -169,15 +169,16 @@ class SegmentSearch {
   HWY_INLINE void compareBinsWith(std::size_t own, std::size_t other) {
     const FloatVector r2 = hn::Set(kFloats, image_.tolerance.squared());
     for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
-      const auto apart = [&](const std::vector<float>& coordinate) {
+      const auto apart = [&](const float* coordinate) {
         return hn::Sub(hn::LoadU(kFloats, &coordinate[own + k]), hn::LoadU(kFloats, &coordinate[other + k]));
       };
-      const FloatMask near = areNeighbours(apart(image_.x), apart(image_.y), apart(image_.z), r2);
-      const FloatMask unlike = differ(&image_.element[own + k], hn::LoadU(kWords, &image_.element[other + k]));
+      const FloatMask near = areNeighbours(apart(image_.cells.x), apart(image_.cells.y), apart(image_.cells.z), r2);
+      const FloatMask unlike =
+          differ(&image_.cells.element[own + k], hn::LoadU(kWords, &image_.cells.element[other + k]));
       for (std::uint32_t left = bitsOf(hn::And(near, unlike)); left != 0; left &= left - 1) {
         const auto i = k + static_cast<std::size_t>(__builtin_ctz(left));
-        const std::uint32_t a = image_.element[own + i];
-        const std::uint32_t b = image_.element[other + i];
+        const std::uint32_t a = image_.cells.element[own + i];
+        const std::uint32_t b = image_.cells.element[other + i];
         if (a == last_a_ && b == last_b_) continue;
         last_a_ = a;
         last_b_ = b;

@@ -4,9 +4,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "core/bits.h"
+#include "core/growing_array.h"
 #include "core/ring_block.h"
 
 namespace lisco {
@@ -19,7 +19,7 @@ struct NearReturn {
 
 /// Near returns in the order in which they are read, collected until VoxelSorter links them.
 struct NearReturns {
-  std::vector<NearReturn> returns;  ///< longer than count
+  GrowingArray<NearReturn> returns;  ///< longer than count
   std::size_t count = 0;
 
   /// Appends some returns of a ring block, after Runs::add.

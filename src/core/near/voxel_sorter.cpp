@@ -209,11 +209,9 @@ bool VoxelSorter::number(const Tolerance& tolerance) {
 void VoxelSorter::cutFragments() {
   const FragmentList::Part& last = fragments_.parts.back();
   const std::size_t size = (last.first / 64 + last.near->count / 64 + 1) * 64;
-  if (items_.size() < size + 1) {
-    items_.resize(size + 1);  // an item is written behind the last
-    scratch_.resize(size + 1);
-    fragments_.starts.resize(size / 64);
-  }
+  items_.grow(size + 1);  // an item is written behind the last
+  scratch_.grow(size + 1);
+  if (fragments_.starts.size() < size / 64) fragments_.starts.resize(size / 64);
   part_sizes_.resize(fragments_.parts.size());
   inParallel(fragments_.parts.size(), [&](std::size_t i) {
     const FragmentList::Part& part = fragments_.parts[i];
@@ -258,7 +256,7 @@ void VoxelSorter::divide() {
     for (std::size_t i = 0; i < part_sizes_[part]; ++i)
       scratch_[histogram_[part * kGroups + (items[i] >> shift)]++] = items[i];
   });
-  items_.swap(scratch_);
+  std::swap(items_, scratch_);
 }
 
 /// Sorts the fragments of a slab by key.
@@ -288,10 +286,8 @@ void VoxelSorter::sort(const Slab& slab) {
 std::size_t VoxelSorter::endOfPlane(std::size_t begin, std::size_t end) const {
   const std::uint64_t next = (planeOf(items_[begin]) + 1) << plane_shift_;
   if (next == 0) return end;
-  const auto first = items_.begin();
-  return static_cast<std::size_t>(
-      std::lower_bound(first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end), next) -
-      first);
+  const std::uint64_t* const items = items_.data();
+  return static_cast<std::size_t>(std::lower_bound(items + begin, items + end, next) - items);
 }
 
 /// Links the planes of a slab within and with the next ones, the first of the next slab included.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/disjoint_sets.h"
+#include "core/growing_array.h"
 #include "core/near/near_returns.h"
 #include "core/near/voxel_plane.h"
 #include "core/neighbour.h"
@@ -54,8 +55,8 @@ class VoxelSorter {
   unsigned number_bits_ = 0;  ///< of an item: the lowest
   unsigned plane_shift_ = 0;
   FragmentList fragments_;
-  std::vector<std::uint64_t> items_, scratch_;  ///< a fragment's key and number
-  std::vector<std::size_t> part_sizes_;         ///< in fragments
+  GrowingArray<std::uint64_t> items_, scratch_;  ///< a fragment's key and number
+  std::vector<std::size_t> part_sizes_;          ///< in fragments
   std::vector<std::uint32_t> histogram_;
   std::vector<Slab> slabs_;
   std::vector<VoxelPlane> planes_;  ///< two for each slab

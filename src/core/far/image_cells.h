@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/growing_array.h"
+
+namespace lisco {
+
+/// The bins of a range image. A row has four planes, one after the other: x, y, z and the element of each bin. A bin has
+/// one index in all of them. Opening rows one after the other touches memory from its beginning on.
+class ImageCells {
+ public:
+  ImageCells() = default;
+  ImageCells(const ImageCells& other) : floats_(other.floats_) { setRowSize(other.row_size_); }
+  ImageCells& operator=(const ImageCells& other) {
+    floats_ = other.floats_;
+    setRowSize(other.row_size_);
+    return *this;
+  }
+
+  /// Sets the bins of a row, which makes room for other rows than before.
+  void setRowSize(std::size_t bins) {
+    row_size_ = bins;
+    float* const first = floats_.data();
+    if (first == nullptr) return;
+    x = first;
+    y = first + bins;
+    z = first + 2 * bins;
+    element = reinterpret_cast<std::uint32_t*>(first + 3 * bins);
+  }
+
+  /// Index of the first bin of a row.
+  std::size_t firstOf(std::size_t row) const { return row * kPlanes * row_size_; }
+
+  /// Makes room for some rows, and for an eighth more than before if they come one by one. Their bins have no values
+  /// yet.
+  void reserveRows(std::size_t rows) {
+    if (firstOf(rows) <= floats_.size()) return;
+    floats_.grow(std::max(firstOf(rows), floats_.size() + floats_.size() / 8));
+    setRowSize(row_size_);
+  }
+
+  float *x = nullptr, *y = nullptr, *z = nullptr;
+  std::uint32_t* element = nullptr;
+
+ private:
+  static constexpr std::size_t kPlanes = 4;
+  static_assert(sizeof(float) == sizeof(std::uint32_t), "the planes are of one size");
+
+  GrowingArray<float> floats_;
+  std::size_t row_size_ = 0;
+};
+
+}  // namespace lisco

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+namespace lisco {
+
+/// A growing array whose elements have no value until they are written. Large ones grow without a copy where the system
+/// can move pages, and no page takes memory, nor time, before something is written to it: in a fresh process, these
+/// first writes are most of what a first scan costs more than later ones.
+template <typename T>
+class GrowingArray {
+  static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>, "elements are bytes");
+
+ public:
+  GrowingArray() = default;
+  ~GrowingArray() { std::free(data_); }
+  GrowingArray(const GrowingArray& other) {
+    grow(other.size_);
+    if (other.size_ > 0) std::memcpy(static_cast<void*>(data_), other.data_, other.size_ * sizeof(T));
+  }
+  GrowingArray(GrowingArray&& other) noexcept
+      : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+  GrowingArray& operator=(GrowingArray other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    return *this;
+  }
+
+  std::size_t size() const { return size_; }
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+  T& operator[](std::size_t i) { return data_[i]; }
+  const T& operator[](std::size_t i) const { return data_[i]; }
+
+  /// Grows to a size, if it is below. Elements that are there keep their values, perhaps at another address.
+  /// \throws std::bad_alloc, with nothing changed
+  void grow(std::size_t size) {
+    if (size <= size_) return;
+    if (size > (PTRDIFF_MAX - kHugePage) / sizeof(T)) throw std::bad_alloc();
+    const std::size_t bytes = size * sizeof(T);
+    void* data = nullptr;
+    if (bytes < kHugePage) {
+      data = std::realloc(static_cast<void*>(data_), bytes);
+    } else {
+      const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
+      data = std::aligned_alloc(kHugePage, rounded);
+#ifdef MADV_HUGEPAGE
+      if (data != nullptr) madvise(data, rounded, MADV_HUGEPAGE);  // without huge pages, all is the same but slower
+#endif
+      if (data != nullptr && size_ > 0) std::memcpy(data, static_cast<const void*>(data_), size_ * sizeof(T));
+      if (data != nullptr) std::free(data_);
+      size = rounded / sizeof(T);
+    }
+    if (data == nullptr) throw std::bad_alloc();
+    data_ = static_cast<T*>(data);
+    size_ = size;
+  }
+
+ private:
+  static constexpr std::size_t kHugePage = std::size_t{1} << 21;  ///< bytes
+
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+}  // namespace lisco
