@@ -203,8 +203,8 @@ function mask(   i, j, s, t, at) {
 # The rotations of recordings: returns and times over the whole ones, those of at least nine tenths of the most columns.
 # Their names end with a number and the time.
 function recording(scan) { sub(/_[0-9]+_[0-9.]+$/, "", scan); return scan }
-function rotations(   i, s, t, r, count, most, sum, squares, returns_sum, least_returns, most_returns, equal, key_, n, line,
-                      line_tolerance, names, b) {
+function rotations(   i, s, t, r, count, most, sum, squares, returns_sum, least_returns, most_returns, equal, key_,
+                      n, line, line_tolerance, names, b) {
   split("pcl grid lisco", names, " ")
   for (i = 1; i <= cases; ++i) {
     r = recording(case_scan[i])

@@ -6,12 +6,10 @@ from typing import Any, Optional
 import numpy as np
 
 from . import _core
-from ._checks import Array, Axes, axes_of, number_of
-
-_CELLS = 64  # of a column of an unorganized scan; from 16 to 256 the ground is the same within a percent
+from ._checks import Array, axes_of, number_of
 
 
-def ground(points: Any, sensor_height: Optional[float] = None, max_slope: float = 20.0) -> Array:
+def ground(points: Any, sensor_height: Optional[float] = None, max_slope: float = 17.0) -> Array:
     """Which points lie on the ground.
 
     Parameters
@@ -44,12 +42,10 @@ def ground(points: Any, sensor_height: Optional[float] = None, max_slope: float 
     if not 1 <= slope <= 60:
         raise ValueError(f"max_slope must be 1 to 60 degrees, not {max_slope}")
     axes = axes_of(points)
-    if len(axes.shape) == 2:
-        return _core.ground(axes.x, axes.y, axes.z, height, slope).astype(bool)
-    return _unorganized(axes, height, slope)
+    return _core.ground(axes.x, axes.y, axes.z, height, slope).astype(bool).reshape(axes.shape)
 
 
-def remove_ground(points: Any, sensor_height: Optional[float] = None, max_slope: float = 20.0) -> Array:
+def remove_ground(points: Any, sensor_height: Optional[float] = None, max_slope: float = 17.0) -> Array:
     """A copy of a scan whose ground points are no returns: their x, y and z are NaN.
 
     The shape stays, so that labels of the result are labels of the scan.
@@ -72,18 +68,3 @@ def remove_ground(points: Any, sensor_height: Optional[float] = None, max_slope:
         for field in "xyz":
             left[field][mask] = np.nan
     return left
-
-
-def _unorganized(axes: Axes, height: float, slope: float) -> Array:
-    """The ground of points in any order: sorted by azimuth and cut into columns, whose cells may have any order."""
-    with np.errstate(invalid="ignore"):
-        order = np.argsort(np.arctan2(axes.y[0], axes.x[0]), kind="stable")
-    missing = -len(order) % _CELLS
-    x, y, z = (
-        np.concatenate([axis[0, order], np.zeros(missing, axis.dtype)]).reshape(-1, _CELLS).T
-        for axis in (axes.x, axes.y, axes.z)
-    )
-    found = _core.ground(x, y, z, height, slope).T.ravel()[: len(order)]
-    mask = np.empty(len(order), dtype=bool)
-    mask[order] = found
-    return mask

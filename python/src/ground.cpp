@@ -2,9 +2,12 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include <pybind11/numpy.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
-#include "lisco/ground_filter.h"
+#include "lisco/label_ground.h"
 #include "module.h"
 #include "points.h"
 
@@ -16,19 +19,21 @@ namespace {
 py::array_t<std::uint8_t> ground(const py::array& x, const py::array& y, const py::array& z, float sensor_height,
                                  float max_slope) {
   const Points points(x, y, z);
-  lisco::GroundParameters parameters;
+  lisco::LabelGroundParameters parameters;
   parameters.sensor_height = sensor_height;
   parameters.max_slope = max_slope;
+  parameters.lasers = std::max<std::size_t>(1, points.lasers());
   py::array_t<std::uint8_t> found({x.shape(0), x.shape(1)});
   std::uint8_t* const to = found.mutable_data();
   const py::gil_scoped_release release;
-  const auto numbered_cells = [&](std::size_t laser, std::size_t first, std::size_t count,
-                                  const lisco::CellSource::Destination& destination) {
-    points(laser, first, count, destination);
-    for (std::size_t i = 0; i < count; ++i) destination.source_index[i] = 0;
-  };
-  parameters.sensor = lisco::estimateSensor(points.columns(), points.lasers(), {}, lisco::CellSource(numbered_cells));
-  lisco::GroundFilter().filter(parameters, points.columns(), points.lasers(), numbered_cells, to);
+  std::vector<float> xyz;
+  xyz.reserve(3 * points.lasers() * points.columns());
+  for (std::size_t laser = 0; laser < points.lasers(); ++laser)
+    for (std::size_t column = 0; column < points.columns(); ++column) {
+      const lisco::Return cell = points.at(laser, column);
+      xyz.insert(xyz.end(), {cell.x, cell.y, cell.z});
+    }
+  lisco::labelGround(xyz.data(), points.lasers() * points.columns(), 3 * sizeof(float), parameters, to);
   return found;
 }
 

@@ -31,9 +31,8 @@ class AzimuthColumns {
  public:
   template <typename PointAt>
   AzimuthColumns(std::size_t count, const std::array<float, 3>& origin, const PointAt& point_at) {
-    constexpr std::size_t kBins = 2048;  // of azimuth
     std::vector<std::uint16_t> bin_of(count);
-    std::vector<std::uint32_t> ends(kBins + 1, 0);
+    std::vector<std::uint32_t> sizes(kBins, 0);  // of the bins
     for (std::size_t i = 0; i < count; ++i) {
       const Return point = point_at(i);
       if (!isReturn(point.x, point.y, point.z)) {
@@ -44,16 +43,22 @@ class AzimuthColumns {
                                         static_cast<double>(point.x) - static_cast<double>(origin[0]));
       const double part = (azimuth + kPi) / (2.0 * kPi) * static_cast<double>(kBins);
       bin_of[i] = static_cast<std::uint16_t>(std::clamp(part, 0.0, static_cast<double>(kBins - 1)));
-      ++ends[bin_of[i] + 1U];
+      ++sizes[bin_of[i]];
     }
-    for (std::size_t bin = 0; bin < kBins; ++bin) ends[bin + 1] += ends[bin];
-    const std::size_t returns = ends[kBins];
+    const unsigned shift = widen(sizes);
+    std::vector<std::uint32_t> ends(1, 0);
+    std::size_t taken = 0;
+    for (const std::uint32_t size : sizes) {
+      ends.push_back(ends.back() + size);
+      taken += size > 0 ? 1 : 0;
+    }
+    const std::size_t returns = ends.back();
     // Columns are about as long as bins are on average, so that few cells stay empty.
-    rows_ = std::max<std::size_t>(16, 3 * returns / (2 * kBins) + 1);
+    rows_ = std::max<std::size_t>(16, 3 * returns / (2 * std::max<std::size_t>(taken, 1)) + 1);
     points_.resize(returns);
     std::vector<std::uint32_t> next(ends.begin(), ends.end() - 1);
     for (std::size_t i = 0; i < count; ++i)
-      if (bin_of[i] < kBins) points_[next[bin_of[i]]++] = static_cast<std::uint32_t>(i);
+      if (bin_of[i] < kBins) points_[next[bin_of[i] >> shift]++] = static_cast<std::uint32_t>(i);
     std::vector<float> slopes(count);  // of the rays
     std::vector<float> sorted;
     for (const std::uint32_t i : points_) {
@@ -64,7 +69,7 @@ class AzimuthColumns {
     std::sort(sorted.begin(), sorted.end());
     std::vector<float> lowest(rows_);  // slope of a row's rays
     for (std::size_t row = 0; row < rows_ && returns > 0; ++row) lowest[row] = sorted[row * returns / rows_];
-    for (std::size_t bin = 0; bin < kBins; ++bin) {
+    for (std::size_t bin = 0; bin < sizes.size(); ++bin) {
       const auto begin = points_.begin() + ends[bin], end = points_.begin() + ends[bin + 1];
       std::sort(begin, end, [&](std::uint32_t a, std::uint32_t b) {
         return slopes[a] != slopes[b] ? slopes[a] < slopes[b] : a < b;
@@ -96,6 +101,28 @@ class AzimuthColumns {
   std::size_t pointAt(std::size_t row, std::size_t column) const { return cells_[column * rows_ + row]; }
 
  private:
+  static constexpr std::size_t kBins = 2048;      ///< of azimuth, before widen ()
+  static constexpr std::size_t kWidestBins = 64;  ///< of a turn
+
+  /// Joins pairs of bins until most of those with returns are followed by one: a bin narrower than the sensor's step
+  /// would be empty beside a bin of a whole column. \return how often
+  static unsigned widen(std::vector<std::uint32_t>& sizes) {
+    unsigned shift = 0;
+    for (; sizes.size() > kWidestBins; ++shift) {
+      std::size_t taken = 0;
+      std::size_t followed = 0;
+      for (std::size_t bin = 0; bin < sizes.size(); ++bin) {
+        if (sizes[bin] == 0) continue;
+        ++taken;
+        followed += sizes[(bin + 1) % sizes.size()] > 0 ? 1 : 0;
+      }
+      if (4 * followed >= 3 * taken) break;
+      for (std::size_t bin = 0; bin < sizes.size() / 2; ++bin) sizes[bin] = sizes[2 * bin] + sizes[2 * bin + 1];
+      sizes.resize(sizes.size() / 2);
+    }
+    return shift;
+  }
+
   std::size_t rows_ = 0;
   std::vector<std::uint32_t> points_;  // bin by bin
   std::vector<std::size_t> cells_;     // column by column, from the lowest ray up

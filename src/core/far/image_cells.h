@@ -10,8 +10,8 @@
 
 namespace lisco {
 
-/// The bins of a range image. A row has four planes, one after the other: x, y, z and the element of each bin. A bin has
-/// one index in all of them. Opening rows one after the other touches memory from its beginning on.
+/// The bins of a range image. A row has four planes, one after the other: x, y, z and the element of each bin. A bin
+/// has one index in all of them. Rows that are opened one after the other touch memory from its beginning on.
 class ImageCells {
  public:
   ImageCells() = default;
