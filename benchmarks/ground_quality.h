@@ -23,8 +23,8 @@ struct GroundQuality {
 /// Height of the local ground at each point, metres; NaN if it is no return. Shares nothing with the filter: squares of
 /// 1 m hold the 5th percentile of their returns' heights. One that is more than 0.8 m below the median of the up to 288
 /// around it, or holds fewer than three returns while others are within 10 m, is left out (reflections). The
-/// local ground is the second least, over the squares within 6 m, of their height plus 0.36 m per metre between the
-/// squares' middles beyond the first (20 degrees).
+/// local ground is the second least, over the squares within 6 m, of their height plus 0.27 m per metre between the
+/// squares' middles beyond the first (15 degrees).
 std::vector<float> localGround(const lisco_apps::Cloud& cloud);
 
 /// \param ground a byte for each point, 1: ground

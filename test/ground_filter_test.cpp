@@ -227,6 +227,24 @@ TEST(GroundFilter, LeavesAWallWhoseFootIsHidden) {
   EXPECT_EQ(share(scan, ground, [](const lisco::Return& cell) { return cell.z > -1.3F; }), 0.0);
 }
 
+TEST(GroundFilter, LeavesAHedge) {
+  // From 9 m to 16 m away, up to 0.9 m high in front and 1.5 m behind; rays end anywhere in it.
+  std::mt19937 random(7);
+  std::exponential_distribution<double> depth(4.0);
+  const Scan scan = scanOf(128, 1800, [&](double azimuth, double slope) {
+    const double rho = meetsPlane(azimuth, slope, 1.8);
+    if (rho >= 0.0 && rho < 9.0) return rho;
+    // The ray is below the top, 0.09 m/m, from here on.
+    const double top = slope * 9.0 < -0.9 ? 9.0 : (0.09 * 9.0 + 0.9) / (0.09 - std::min(slope, 0.0));
+    const double leaf = top + depth(random);
+    if (slope < 0.0 && leaf < 16.0) return rho >= 0.0 ? std::min(rho, leaf) : leaf;
+    return rho;
+  });
+  const std::vector<std::uint8_t> ground = filterAll(scan);
+  EXPECT_LT(share(scan, ground, [](const lisco::Return& cell) { return cell.z > -1.3F; }), 0.01);
+  EXPECT_GT(share(scan, ground, [](const lisco::Return& cell) { return std::hypot(cell.x, cell.y) < 8.9F; }), 0.98);
+}
+
 TEST(GroundFilter, IsNotMisledByReflectionsBelowTheGround) {
   std::mt19937 random(5);
   std::uniform_int_distribution<int> one_of(0, 29);

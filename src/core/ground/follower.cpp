@@ -16,6 +16,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using ground::Block;
 using ground::Follower;
+using ground::Found;
 using ground::GroundMap;
 
 using LaneFloats = hn::CappedTag<float, Block::kColumns>;
@@ -40,9 +41,10 @@ constexpr float kKnown = 1.5F;        // most slack of what may contradict
 constexpr float kWellKnown = 0.15F;   // most slack of what decides
 constexpr float kNearlyKnown = 0.5F;  // most slack of what decides where the ground seems to go on
 constexpr float kAtMap = 0.08F, kMostSlack = 0.03F, kLevelAtMap = 0.05F;
-constexpr float kSure = 0.05F;      // slack and height, even where a surface rises
-constexpr float kFoot = 0.03F;      // height, even at the foot of a wall
-constexpr float kAboveMap = 0.25F;  // contradicts
+constexpr float kSure = 0.05F;         // slack and height, even where a surface rises
+constexpr float kFoot = 0.03F;         // height, even at the foot of a wall
+constexpr float kAboveMap = 0.25F;     // contradicts
+constexpr float kKnownHeight = 0.06F;  // even among returns of which most are higher
 
 // The ground of the same column.
 constexpr float kAtColumn = 0.07F, kAtColumnGrowth = 0.03F, kAtColumnMost = 0.15F;
@@ -53,6 +55,7 @@ constexpr float kBend = 0.1F, kBendGrowth = 0.1F, kLineBend = 0.2F, kLineKnown =
 constexpr float kStepDown = 0.15F, kStepUp = 0.15F;
 constexpr float kAgrees = 0.1F, kAgreesGrowth = 0.03F;
 constexpr float kObstacle = 0.3F;
+constexpr float kHigher = 0.1F;
 constexpr float kReflection = 0.5F;     // below the ground
 constexpr float kReflectedFrom = 1.0F;  // below the highest possible ground
 constexpr float kNearBelow = 0.1F;
@@ -184,7 +187,7 @@ inline unsigned bitsOf(Mask mask, std::size_t k) {
   return static_cast<unsigned>(bits[0]) << k;
 }
 
-Follower::Found followLanes(const Follower::Row& row, std::size_t k, Floats steepest) {
+Found followLanes(const Follower::Row& row, std::size_t k, Floats steepest) {
   const auto rho = hn::LoadU(kLanes, row.rho + k);
   const auto height = hn::LoadU(kLanes, row.height + k);
   const auto valid = hn::Gt(rho, set(Block::kMinRho));
@@ -288,19 +291,23 @@ Follower::Found followLanes(const Follower::Row& row, std::size_t k, Floats stee
   store(hides, now.obstacle);
   store(hn::Max(load(before.reach), rho), now.reach);
   advance(row, k, reached, rho, height, steepest);
-  return {static_cast<std::uint8_t>(bitsOf(hn::Or(found, below), k)), static_cast<std::uint8_t>(bitsOf(reached, k)),
-          static_cast<std::uint8_t>(bitsOf(confirmed, k))};
+  const auto known = hn::And(hn::Lt(slack, set(kWellKnown)), hn::Lt(off_map, set(kKnownHeight)));
+  const auto higher = hn::And(hn::AndNot(found, valid), hn::Gt(above_column, set(kHigher)));
+  const auto bits = [k](Mask mask) { return static_cast<std::uint8_t>(bitsOf(mask, k)); };
+  return {bits(hn::Or(found, below)), bits(reached), bits(confirmed), bits(known), bits(higher), false};
 }
 
-void followRows(const Follower::Row* rows, std::size_t count, float max_slope, Follower::Found* found) {
+void followRows(const Follower::Row* rows, std::size_t count, float max_slope, Found* found) {
   const auto steepest = set(max_slope);
   for (std::size_t i = 0; i < count; ++i) {
     found[i] = {};
     for (std::size_t k = 0; k < Block::kColumns; k += hn::Lanes(kLanes)) {
-      const Follower::Found part = followLanes(rows[i], k, steepest);
+      const Found part = followLanes(rows[i], k, steepest);
       found[i].ground = static_cast<std::uint8_t>(found[i].ground | part.ground);
       found[i].reached = static_cast<std::uint8_t>(found[i].reached | part.reached);
       found[i].confirmed = static_cast<std::uint8_t>(found[i].confirmed | part.confirmed);
+      found[i].known = static_cast<std::uint8_t>(found[i].known | part.known);
+      found[i].higher = static_cast<std::uint8_t>(found[i].higher | part.higher);
     }
   }
 }
@@ -373,6 +380,7 @@ void Follower::follow(const Block& block, const RowOrder& order, const Plane& pl
                 &map.sectorAt(order.azimuthOf(row.row), number, plane)};
   }
   HWY_DYNAMIC_DISPATCH(followRows)(rows_.data(), rows.size(), max_slope_, found_.data());
+  dropScattered(rows, found_);
   for (std::size_t i = 0; i < rows.size(); ++i)
     for (std::size_t k = 0; k < Block::kColumns; ++k)
       ground[static_cast<std::size_t>(rows[i].row) * Block::kColumns + k] = found_[i].ground >> k & 1;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/ground/block.h"
+#include "core/ground/found.h"
 #include "core/ground/ground_map.h"
 #include "core/ground/plane_estimator.h"
 #include "core/ground/row_order.h"
@@ -50,12 +51,6 @@ class Follower {
     const Followed* before;  ///< of the rows below
     Followed* followed;
     const GroundMap::Sector* sector;
-  };
-  /// Which columns of a row have ground, as bits.
-  struct Found {
-    std::uint8_t ground;     ///< the return is on the ground
-    std::uint8_t reached;    ///< and the ground goes on to there
-    std::uint8_t confirmed;  ///< it is about where the ground before lets expect it
   };
 
  private:
