@@ -48,7 +48,7 @@ constexpr const char* kMeanChart = "time_over_tolerance";
 std::vector<std::string> chartsOf(const std::vector<std::string>& input_names, const CompareSettings& settings) {
   std::vector<std::string> charts;
   const auto add = [&](const std::string& stem) {
-    for (const char* const suffix : kChartSuffixes) charts.push_back(stem + suffix);
+    for (const ChartFormat& format : kChartFormats) charts.push_back(stem + format.suffix);
   };
   for (const std::string& name : input_names) add(overTolerance(name));
   if (input_names.size() < 2) return charts;

@@ -50,10 +50,10 @@ void writeScript(const Chart& chart, const std::string& stem, std::ostream& scri
       script << point.x << ' ' << point.y << ' ' << (std::isfinite(point.error) ? point.error : 0.0) << '\n';
     script << "END\n";
   }
-  for (const char* const suffix : kChartSuffixes) {
-    script << "set terminal " << (suffix == kChartSuffixes[0] ? "pngcairo" : "svg")
-           << " noenhanced font ',11' size 900,620 background '#ffffff'\nset output " << forGnuplot(stem + suffix)
-           << '\n';
+  for (const ChartFormat& format : kChartFormats) {
+    script << "set terminal " << format.terminal
+           << " noenhanced font ',11' size 900,620 background '#ffffff'\nset output "
+           << forGnuplot(stem + format.suffix) << '\n';
     for (std::size_t i = 0; i < chart.lines.size(); ++i)
       script << (i == 0 ? "plot " : ", ") << "$line" << i << " using 1:2:3 with "
              << (chart.is_connected ? "yerrorlines" : "yerrorbars") << " lw 2 pt " << 5 + i % 8 << " ps 0.8 lc rgb "
@@ -82,8 +82,8 @@ void drawChart(const Chart& chart, const std::string& stem) {
       stream && std::system(("gnuplot " + quoted(script.string(), "'\\''") + " >/dev/null 2>&1").c_str()) == 0;
   std::error_code ignored;
   fs::remove(script, ignored);
-  for (const char* const suffix : kChartSuffixes)
-    if (!drawn || !fs::exists(stem + suffix)) fail(stem + suffix, "cannot be drawn");
+  for (const ChartFormat& format : kChartFormats)
+    if (!drawn || !fs::exists(stem + format.suffix)) fail(stem + format.suffix, "cannot be drawn");
 }
 
 }  // namespace lisco_apps

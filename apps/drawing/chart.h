@@ -28,8 +28,12 @@ struct Chart {
 /// \throws std::runtime_error with one line if gnuplot, which draws the charts, is missing
 void checkGnuplot();
 
-/// The suffixes of a chart's files.
-inline constexpr const char* kChartSuffixes[] = {".png", ".svg"};
+/// The suffixes of a chart's files, and the terminals of gnuplot that write them.
+struct ChartFormat {
+  const char* suffix;
+  const char* terminal;
+};
+inline constexpr ChartFormat kChartFormats[] = {{".png", "pngcairo"}, {".svg", "svg"}};
 
 /// Draws a chart as `stem`.png and `stem`.svg, or nothing if it has no lines.
 /// \throws std::runtime_error with one line on the error
