@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Repeats the paper's evaluation: simulates its five scenes, times PCL, Lisco as published, a voxel grid and this
-# library on them and on the real scans and recordings in $LISCO_TEST_DATA (default ../shared/data), and rewrites the
-# tables and charts of doc/evaluation.md. Takes about an hour. Options are passed on to lisco_compare.
+# library on them and on the real scans in $LISCO_TEST_DATA (default ../shared/data), and rewrites the
+# tables and charts of doc/evaluation.md. Takes about half an hour. Options are passed on to lisco_compare.
 #
 # Measures on a quiet machine only: see wait_for_quiet in tools.sh. What was measured is kept in
 # build/benchmarks/evaluation until the document is written, so that a run that was stopped goes on with the next scene;
@@ -87,27 +87,6 @@ measure real --baselines "$published" --tolerance 0.3,0.4,0.7 "${ground[@]}" "${
 [ -f "$out/mask.csv" ] || { "$build/benchmarks/literal_mask" "${ground[@]}" "${rotating[@]}" >"$out/mask.partial" &&
   mv "$out/mask.partial" "$out/mask.csv"; }
 
-# All rotations of all recordings. A rotation counts once: the confidence is that of their mean.
-rotations=()
-measure_rotations() {
-  local recording=$1 name
-  name=$(basename "${recording%.*}")
-  shift
-  [ -f "$recording" ] || return 0
-  measure "rotations_$name" --runs 1 --baselines pcl,grid,lisco --tolerance 0.3,0.4,0.7 --ground slope "$recording" "$@"
-  rotations+=("$out/rotations_$name.csv")
-}
-for capture in hdl32e_outdoor vlp16_close vlp16_street vls128_street; do
-  measure_rotations "$data/captures/$capture.pcap" --sensor "${capture%%_*}"
-done
-for bag in pandar40p pandarqt64 pandarxt16 pandarxt32; do
-  measure_rotations "$data/bags/$bag.db3" --sensor "$bag" --calibration "$data/bags/$bag.csv"
-done
-for bag in vlp16 vlp32c; do measure_rotations "$data/bags/$bag.db3" --sensor "$bag"; done
-for metadata in "$data"/ouster/OS-*.json; do
-  measure_rotations "${metadata%.json}.pcap" --sensor ouster --metadata "$metadata"
-done
-
 # The document changes only after all measurements have succeeded.
 for text in "$out"/{scene[1-5],growth,real}.txt; do refuse_fewer_runs "$(runs_stated "$text")"; done
 { head -n 3 "$out/scene1.txt" && echo "$noise"; } | code_block | replace_section "$document" "machine"
@@ -117,7 +96,6 @@ table scored "${scenes[@]}" | replace_section "$document" "objects"
 table times "$out/growth.csv" | replace_section "$document" "points"
 table times "$out/real.csv" | replace_section "$document" "real scans"
 table mask "$out/mask.csv" | replace_section "$document" "mask"
-table rotations "${rotations[@]}" | replace_section "$document" "rotations"
 for suffix in png svg; do
   for scene in 1 2 3 4 5; do
     cp "$out/scene$scene/time_over_tolerance_SCEN$scene.$suffix" "$images/evaluation_scen$scene.$suffix"

@@ -34,7 +34,7 @@ view() {
   exec 3<>"/dev/tcp/127.0.0.1/$port"
   printf 'GET /live HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n%s\r\n%s\r\n\r\n' \
     'Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==' 'Sec-WebSocket-Version: 13' >&3
-  "$@" <&3 >/dev/null
+  exec "$@" <&3 >/dev/null  # so that a signal to the job reaches it
 }
 
 # play FILE OPTION...: the closing table

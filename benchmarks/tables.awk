@@ -20,7 +20,7 @@ table != "mask" {
   mean[key(baseline)] = field("mean_ms"); error[key(baseline)] = field("confidence99_ms")
   median[key(baseline)] = field("median_ms"); cold[key(baseline)] = field("cold_median_ms")
   lower[key(baseline)] = field("lower_quartile_ms"); upper[key(baseline)] = field("upper_quartile_ms")
-  cells[scan] = field("rows") * field("columns"); columns_of[scan] = field("columns")
+  cells[scan] = field("rows") * field("columns")
   identical[key(baseline)] = field("identical")
   objects[scan, tolerance] = field("objects"); whole[scan, tolerance] = field("whole")
   split_[scan, tolerance] = field("split"); merged[scan, tolerance] = field("merged")
@@ -200,51 +200,7 @@ function mask(   i, j, s, t, at) {
   }
 }
 
-# The rotations of recordings: returns and times over the whole ones, those of at least nine tenths of the most columns.
-# Their names end with a number and the time.
-function recording(scan) { sub(/_[0-9]+_[0-9.]+$/, "", scan); return scan }
-function rotations(   i, s, t, r, count, most, sum, squares, returns_sum, least_returns, most_returns, equal, key_,
-                      n, line, line_tolerance, names, b) {
-  split("pcl grid lisco", names, " ")
-  for (i = 1; i <= cases; ++i) {
-    r = recording(case_scan[i])
-    if (columns_of[case_scan[i]] > most[r]) most[r] = columns_of[case_scan[i]]
-  }
-  for (i = 1; i <= cases; ++i) {
-    s = case_scan[i]; t = case_tolerance[i]; r = recording(s)
-    if (columns_of[s] < 0.9 * most[r]) continue
-    key_ = r SUBSEP t
-    if (!(key_ in count)) { line[++n] = r; line_tolerance[n] = t; least_returns[key_] = 1e30 }
-    ++count[key_]
-    returns_sum[key_] += returns[s]
-    if (returns[s] < least_returns[key_]) least_returns[key_] = returns[s]
-    if (returns[s] > most_returns[key_]) most_returns[key_] = returns[s]
-    for (b = 1; b <= 3; ++b) {
-      sum[key_, names[b]] += median[s, t, names[b]]; squares[key_, names[b]] += median[s, t, names[b]] ^ 2
-    }
-    if (identical[s, t, "lisco"] == "yes") ++equal[key_]
-  }
-  printf "| recording | rotations | returns: least, mean, most | ε | PCL | grid | Lisco | PCL / Lisco | grid / Lisco |"
-  print " identical |\n|---|---|---|---|---|---|---|---|---|---|"
-  for (i = 1; i <= n; ++i) {
-    key_ = line[i] SUBSEP line_tolerance[i]
-    printf "| %s | %d | %d, %d, %d | %g |", line[i], count[key_], least_returns[key_], returns_sum[key_] / count[key_],
-           most_returns[key_], line_tolerance[i]
-    for (b = 1; b <= 3; ++b) printf " %s |", interval(sum[key_, names[b]], squares[key_, names[b]], count[key_])
-    printf " %s | %s | %d of %d |\n", short(sum[key_, "pcl"] / sum[key_, "lisco"]),
-           short(sum[key_, "grid"] / sum[key_, "lisco"]), equal[key_], count[key_]
-  }
-}
-# Mean and its confidence of 99 %, by the normal distribution; of one value, itself.
-function interval(sum, squares, n,   mean_, variance) {
-  mean_ = sum / n
-  if (n < 2) return short(mean_)
-  variance = (squares - n * mean_ ^ 2) / (n - 1)
-  return short(mean_) " ± " short(2.576 * sqrt((variance > 0 ? variance : 0) / n))
-}
-
 END {
-  if (table == "rotations") rotations()
   if (table == "benchmarks") benchmarks()
   if (table == "growth") growth()
   if (table == "readme") readme()
