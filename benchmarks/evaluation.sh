@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Repeats the paper's evaluation: simulates its five scenes, times PCL, Lisco as published, a voxel grid and this
-# library on them and on the real scans in $LISCO_TEST_DATA (default ../shared/data), and rewrites the
-# tables and charts of doc/evaluation.md. Takes about half an hour. Options are passed on to lisco_compare.
+# library on them and on the real scans in $LISCO_TEST_DATA (default ../shared/data), and rewrites the tables and charts
+# of doc/evaluation.md. Takes about half an hour. Options are passed on to lisco_compare.
 #
 # Measures on a quiet machine only: see wait_for_quiet in tools.sh. What was measured is kept in
 # build/benchmarks/evaluation until the document is written, so that a run that was stopped goes on with the next scene;

@@ -12,8 +12,10 @@ build_benchmarks() {
 }
 
 # wait_for_quiet: waits until the machine is quiet, up to $LISCO_WAIT minutes (default 60), and sets `noise` to a line
-# that says how quiet it is. Exits if it is not; LISCO_WAIT=any measures on any machine.
+# that says how quiet it is. Exits if it is not; LISCO_WAIT=any measures on any machine. Does nothing if a calling script
+# has exported `noise`.
 wait_for_quiet() {
+  [ -z "${noise:-}" ] || return 0
   local wait=${LISCO_WAIT:-60}
   [ "$wait" != any ] || { noise=$("$build/benchmarks/machine_noise") || true; return 0; }
   until noise=$("$build/benchmarks/machine_noise"); do

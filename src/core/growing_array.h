@@ -17,9 +17,9 @@
 
 namespace lisco {
 
-/// A growing array whose elements have no value until they are written. Large ones grow without a copy where the system
-/// can move pages, and no page takes memory, nor time, before something is written to it: in a fresh process, these
-/// first writes are most of what a first scan costs more than later ones.
+/// A growing array whose elements have no value until they are written: growing touches no new memory. In a fresh
+/// process, first writes to pages are most of what a first scan costs more than later ones. From 2 MiB on, the array
+/// takes whole huge pages, where the system gives them.
 template <typename T>
 class GrowingArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>, "elements are bytes");
