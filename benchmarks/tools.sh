@@ -12,8 +12,8 @@ build_benchmarks() {
 }
 
 # wait_for_quiet: waits until the machine is quiet, up to $LISCO_WAIT minutes (default 60), and sets `noise` to a line
-# that says how quiet it is. Exits if it is not; LISCO_WAIT=any measures on any machine. Does nothing if a calling script
-# has exported `noise`.
+# that says how quiet it is. Exits if it is not; LISCO_WAIT=any measures on any machine. Does nothing if a calling
+# script has exported `noise`.
 wait_for_quiet() {
   [ -z "${noise:-}" ] || return 0
   local wait=${LISCO_WAIT:-60}
