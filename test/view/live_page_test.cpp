@@ -16,33 +16,24 @@
 
 #include "../live/socket.h"
 #include "../programs/child.h"
-#include "browser.h"
+#include "browser_test.h"
 
 namespace {
 
 using Json = nlohmann::json;
 using lisco_test::Socket;
 
-/// Simulated packets of a VLP-16, 12 rotations in 1.2 s, and a browser for all tests.
-class LivePageTest : public testing::Test {
+/// Simulated packets of a VLP-16, 12 rotations in 1.2 s.
+class LivePageTest : public BrowserTest {
  protected:
   static void SetUpTestSuite() {
-    if (Browser::installed().empty()) return;
-    std::string name = (std::filesystem::temp_directory_path() / "lisco_live_XXXXXX").string();
-    folder_ = mkdtemp(name.data());
+    BrowserTest::SetUpTestSuite();
+    if (!browser_) return;
     const std::string drive = (folder_ / "drive").string();
     ASSERT_EQ(std::system((LISCO_SIMULATE " --terrain road --sensor vlp16 --speed 8 --rotations 12 --pcap -o " + drive +
                            " >/dev/null")
                               .c_str()),
               0);
-    browser_ = std::make_unique<Browser>(folder_);
-  }
-  static void TearDownTestSuite() {
-    browser_.reset();
-    if (!folder_.empty()) std::filesystem::remove_all(folder_);
-  }
-  void SetUp() override {
-    if (!browser_) GTEST_SKIP() << "no Chromium: apt-get install --no-install-recommends chromium";
   }
 
   /// Starts lisco_stream on the capture, with a server on a free port.
@@ -82,14 +73,10 @@ class LivePageTest : public testing::Test {
     return found.empty() ? -1 : std::stoll(found[1]);
   }
 
-  static std::filesystem::path folder_;
-  static std::unique_ptr<Browser> browser_;
   std::optional<Child> stream_;
   std::string err_, url_;
   std::uint16_t port_ = 0;
 };
-std::filesystem::path LivePageTest::folder_;
-std::unique_ptr<Browser> LivePageTest::browser_;
 
 TEST_F(LivePageTest, ShowsACapturesRotationsAndEnds) {
   const std::size_t complaints = browser_->complaints().size();

@@ -13,7 +13,7 @@
 #include <memory>
 #include <sstream>
 
-#include "browser.h"
+#include "browser_test.h"
 #include "scenes.h"
 #include "view/page.h"
 #include "view/scan_encoder.h"
@@ -24,23 +24,8 @@ using lisco_apps::encodeViewScan;
 using lisco_apps::ViewScan;
 using Json = nlohmann::json;
 
-/// One browser for all tests.
-class PageTest : public testing::Test {
+class PageTest : public BrowserTest {
  protected:
-  static void SetUpTestSuite() {
-    if (Browser::installed().empty()) return;
-    std::string name = (std::filesystem::temp_directory_path() / "lisco_view_XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-    browser_ = std::make_unique<Browser>(folder_);
-  }
-  static void TearDownTestSuite() {
-    browser_.reset();
-    if (!folder_.empty()) std::filesystem::remove_all(folder_);
-  }
-  void SetUp() override {
-    if (!browser_) GTEST_SKIP() << "no Chromium: apt-get install --no-install-recommends chromium";
-  }
-
   /// Opens a page of scans and waits until it shows the first.
   static void open(const std::vector<ViewScan>& scans, const std::string& address_end = "") {
     std::vector<std::string> encoded;
@@ -94,12 +79,7 @@ class PageTest : public testing::Test {
     action();
     return browser_->screenshot().differencesTo(before);
   }
-
-  static std::filesystem::path folder_;
-  static std::unique_ptr<Browser> browser_;
 };
-std::filesystem::path PageTest::folder_;
-std::unique_ptr<Browser> PageTest::browser_;
 
 TEST_F(PageTest, ShowsTheCounts) {
   open({scanOfPosts(12)});
