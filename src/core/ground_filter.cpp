@@ -62,7 +62,6 @@ class GroundFilter::State {
   RowOrder order_;
   GroundMap map_;
   Follower follower_;
-  std::vector<std::uint8_t> decisions_;
   PlaneEstimator plane_estimator_;
 };
 
@@ -79,9 +78,8 @@ void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t 
   waiting_ground_.resize(std::max(waiting_ground_.size(), lasers * Block::kColumns));
   column_ground_.resize(std::max(column_ground_.size(), lasers));
   order_.begin(lasers);
-  map_.begin(max_slope_);
+  map_.begin();
   follower_.begin(lasers, max_slope_);
-  decisions_.resize(lasers * Block::kColumns);
   waiting_ = decided_ = 0;
   block_number_ = 0;
   plane_estimator_.begin(parameters, max_slope_);
@@ -144,12 +142,10 @@ void GroundFilter::State::decide(std::size_t first, std::size_t count, std::uint
   block_.measure(received_, first, parameters_.sensor);
   order_.update(block_);
   estimatePlane();
-  std::fill(decisions_.begin(), decisions_.end(), std::uint8_t{0});
+  for (std::size_t laser = 0; laser < lasers_; ++laser) std::fill_n(ground + laser * stride, count, std::uint8_t{0});
   if (plane_estimator_.isKnown())
-    follower_.follow(block_, order_, plane_estimator_.plane(), map_, static_cast<std::uint32_t>(block_number_),
-                     decisions_.data());
-  for (std::size_t laser = 0; laser < lasers_; ++laser)
-    std::copy_n(&decisions_[laser * Block::kColumns], count, ground + laser * stride);
+    follower_.follow(block_, order_, plane_estimator_.plane(), map_, static_cast<std::uint32_t>(block_number_), ground,
+                     count, stride);
 }
 
 void GroundFilter::State::estimatePlane() {

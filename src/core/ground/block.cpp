@@ -26,7 +26,9 @@ void measureRows(ground::Block& block, const ground::Columns& columns, std::size
   const auto zero = hn::Zero(kRow);
   const auto most = set(kMaxCoordinate);
   const std::size_t rows = block.size / ground::Block::kColumns;
-  for (std::size_t row = 0; row < rows; ++row)
+  const auto least = set(ground::Block::kMinRho);
+  for (std::size_t row = 0; row < rows; ++row) {
+    unsigned returns = 0;
     for (std::size_t k = 0; k < ground::Block::kColumns; k += hn::Lanes(kRow)) {
       const std::size_t from = row * columns.stride + first + k;
       const std::size_t to = row * ground::Block::kColumns + k;
@@ -44,13 +46,19 @@ void measureRows(ground::Block& block, const ground::Columns& columns, std::size
       y = hn::IfThenElseZero(valid, y);
       z = hn::IfThenElseZero(valid, z);
       const auto squared = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
-      hn::StoreU(hn::Sqrt(squared), kRow, block.rho.data() + to);
+      const auto rho = hn::Sqrt(squared);
+      hn::StoreU(rho, kRow, block.rho.data() + to);
+      std::uint8_t bits[8] = {};
+      hn::StoreMaskBits(kRow, hn::Gt(rho, least), bits);
+      returns |= static_cast<unsigned>(bits[0]) << k;
       const auto horizon = hn::Add(hn::Mul(set(sensor.tilt[0]), x), hn::Mul(set(sensor.tilt[1]), y));
       const auto height = hn::Sub(z, horizon);
       hn::StoreU(height, kRow, block.height.data() + to);
       hn::StoreU(x, kRow, block.x.data() + to);
       hn::StoreU(y, kRow, block.y.data() + to);
     }
+    block.returns[row] = static_cast<std::uint8_t>(returns);
+  }
 }
 
 }  // namespace HWY_NAMESPACE
@@ -81,6 +89,7 @@ void Block::resize(std::size_t lasers) {
   y.resize(size);
   rho.resize(size);
   height.resize(size);
+  returns.resize(lasers);
 }
 
 void Block::measure(const Columns& columns, std::size_t first, const SensorHints& sensor) {

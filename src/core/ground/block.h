@@ -30,6 +30,7 @@ struct Block {
   std::vector<float> x, y;    ///< from the sensor, metres
   std::vector<float> rho;     ///< horizontal distance from the sensor, metres; 0: no return
   std::vector<float> height;  ///< above the sensor's horizon, metres
+  std::vector<std::uint8_t> returns;  ///< of each laser, the columns with rho > kMinRho, as bits
   std::size_t size = 0;       ///< number of elements
 
   /// Allocates only if there are more lasers than ever before.

@@ -22,29 +22,23 @@ class GroundMap {
   static constexpr int kBinShift = 20;
   static constexpr float kUnknown = 1e9F;
 
+  /// A value for each bin.
+  using Values = std::array<float, kBins>;
+
   /// The cells of a sector of azimuth: the ground is at offset + slope * distance.
   struct Sector {
-    std::array<float, kBins> offset{};  ///< metres
-    std::array<float, kBins> slope{};   ///< metres per metre
-    std::array<float, kBins> slack;     ///< metres by which the ground may differ; kUnknown: nothing is known
-    std::array<float, kBins> trend{};   ///< rise of the ground from one sector to the next, metres
-    std::array<float, kBins> age{};     ///< sectors since the ground was seen
-    std::uint32_t block = 0;            ///< the latest one that looked at it, from 1 on; 0: none
+    Values offset{};          ///< metres
+    Values slope{};           ///< metres per metre
+    Values slack;             ///< metres by which the ground may differ; kUnknown: nothing is known
+    Values trend{};           ///< rise of the ground from one sector to the next, metres
+    Values age{};             ///< sectors since the ground was seen
+    std::uint32_t block = 0;  ///< the latest one that looked at it, from 1 on; 0: none
 
     Sector() { slack.fill(kUnknown); }
-    void forget(std::size_t bin) { slack[bin] = kUnknown; }
-    bool knows(std::size_t bin) const { return slack[bin] < kUnknown; }
     float heightAt(std::size_t bin, float rho) const { return offset[bin] + slope[bin] * rho; }
   };
 
-  /// Ground found from `from_rho` to `rho`.
-  struct Stretch {
-    float from_rho, from_height, rho, height;
-    float slope;      ///< of the ground up to rho, over a longer way
-    bool is_doubted;  ///< it is not where the ground before lets expect it
-  };
-
-  void begin(float max_slope);
+  void begin();
 
   static std::size_t binOf(float rho) {
     const float squared = rho * rho;
@@ -53,23 +47,17 @@ class GroundMap {
     const std::int32_t bin = (bits >> kBinShift) - kFirstBin;
     return static_cast<std::size_t>(std::clamp(bin, 0, static_cast<std::int32_t>(kBins) - 1));
   }
+  /// Distances in the middle of the bins, metres.
+  static const Values& middles();
 
   /// The sector of an azimuth (radians, 0 to 2 pi). If it was last seen in another rotation, it starts with what is
   /// known beside it.
   Sector& sectorAt(float azimuth, std::uint32_t block, const Plane& plane);
 
-  /// A ray of this slope has passed above the ground from one distance to another.
-  static void seeThrough(Sector& sector, float from_rho, float rho, float ray);
-  /// Enters ground that was found. \param turns_left sense of rotation
-  void add(Sector& sector, const Stretch& stretch, bool turns_left) const;
-  /// Expects the ground to go on beyond a distance.
-  static void extend(Sector& sector, const Stretch& stretch);
-
  private:
   void renew(std::size_t number, std::uint32_t block, const Plane& plane);
 
   std::vector<Sector> sectors_;
-  float max_slope_ = 0.0F;
 };
 
 }  // namespace lisco::ground

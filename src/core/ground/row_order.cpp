@@ -16,7 +16,9 @@ constexpr float kClearly = 0.013F;      // of the slopes of rays
 
 /// Brings a difference of azimuths to -pi to pi.
 float wrapped(float angle) {
-  return angle - kTurn * std::floor(angle / kTurn + 0.5F);
+  if (std::fabs(angle) > kTurn) angle -= kTurn * std::floor(angle / kTurn);
+  if (angle >= 0.5F * kTurn) return angle - kTurn;
+  return angle < -0.5F * kTurn ? angle + kTurn : angle;
 }
 
 /// Azimuth of a direction, radians, 0 to 2 pi, within 0.004.
@@ -48,10 +50,9 @@ void RowOrder::update(const Block& block) {
   float turned = 0.0F;
   int count = 0;
   for (std::size_t row = 0; row < seen_.size(); ++row) {
-    std::size_t at = (row + 1) * Block::kColumns - 1;
-    while (at > row * Block::kColumns && block.rho[at] <= Block::kMinRho) --at;
+    if (block.returns[row] == 0) continue;
+    const std::size_t at = row * Block::kColumns + 31 - static_cast<std::size_t>(__builtin_clz(block.returns[row]));
     const float rho = block.rho[at];
-    if (rho <= Block::kMinRho) continue;
     Seen& seen = seen_[row];
     const float azimuth = azimuthOfDirection(block.x[at], block.y[at]);
     if (seen.block == 0) is_new = true;
