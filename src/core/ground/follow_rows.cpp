@@ -227,14 +227,35 @@ HWY_INLINE Column columnOf(const FollowedRow& row, std::size_t k, Floats steepes
   column.from_ground = hn::Sub(column.height, load(before.height));
   column.above = hn::Sub(column.from_ground, hn::Mul(column.slope, straight_on));
   column.climb = hn::Mul(steepest, column.rho);
-  column.limit = hn::Add(load(before.limit), column.climb);
+  column.limit = hn::Add(load(row.before->limit), column.climb);
   return column;
 }
 
-/// Whether returns may be on the ground, or below it.
-HWY_INLINE Mask mayBeGround(const Column& column) {
-  const auto low = hn::Le(column.height, hn::Add(column.limit, set(kStepUp)));
-  return hn::And(column.valid, hn::Or(low, hn::Lt(column.above, set(-kNearBelow))));
+/// Returns that are too high for ground, whatever the rows above show: it cannot rise so steeply from lower and nearer
+/// returns.
+HWY_INLINE Mask areTooHigh(const Column& column) {
+  return hn::AndNot(hn::Lt(column.above, set(-kNearBelow)), hn::Gt(column.height, hn::Add(column.limit, set(kStepUp))));
+}
+
+/// Likewise: the map has the ground clearly lower.
+HWY_INLINE Mask areAboveMap(const Mapped& map) {
+  return hn::And(hn::Le(map.slack, set(kLineKnown)), hn::Ge(map.above, hn::Add(set(kAboveMap), map.slack)));
+}
+
+/// Returns on the ground, whatever the rows above show: both the map and the column have it there.
+HWY_INLINE Mask areWhereExpected(const Column& column, const Mapped& map) {
+  const auto on_map = hn::And(hn::Lt(map.slack, set(kSure)), hn::Lt(hn::Abs(map.above), set(kFoot)));
+  return hn::And(on_map, hn::Lt(hn::Abs(column.above), set(kSure)));
+}
+
+/// Lowers the highest possible ground to that of the steepest slope from these returns on, but for reflections.
+HWY_INLINE void lowerLimit(const FollowedRow& row, std::size_t k, const Column& column, Mask found) {
+  const auto is_reflection = hn::And(hn::Lt(column.height, hn::Sub(column.limit, set(kReflectedFrom))),
+                                     hn::Lt(column.above, set(-kReflection)));
+  const auto limits = hn::And(column.valid, hn::Or(found, hn::Not(is_reflection)));
+  const auto limit = hn::LoadU(kLanes, row.before->limit.data() + k);
+  const auto lower = hn::Min(limit, hn::Sub(column.height, column.climb));
+  hn::StoreU(select(limits, lower, limit), kLanes, row.passed->limit.data() + k);
 }
 
 /// Whether the rows above show an object, or the ground further inwards does.
@@ -280,23 +301,34 @@ HWY_INLINE Mask lanesOf(std::uint8_t bits, std::size_t k) {
   return hn::LoadMaskBits(kLanes, bytes);
 }
 
-/// What is found of a part of a row, none of whose returns may be ground.
-HWY_INLINE Found passHigh(const FollowedRow& row, std::size_t k, const Column& column, Floats steepest) {
+/// What is found of a part of a row without ground.
+HWY_INLINE Found passObjects(const FollowedRow& row, std::size_t k, const Column& column, Floats steepest) {
   const auto over = hn::AndNot(column.first, hn::Gt(column.above, set(kObstacle)));
   auto object = over;
   if (!hn::AllTrue(kLanes, hn::Or(over, hn::Not(column.valid))))
     object = rises(column, lookUp(row, k, column.rho, column.height, steepest));
   row.passed->obstacles |= bitsOf(hn::And(object, column.valid), k);
+  lowerLimit(row, k, column, hn::Lt(column.rho, hn::Zero(kLanes)));
   const auto higher = hn::And(column.valid, hn::Gt(column.above, set(kHigher)));
   return {0, 0, 0, 0, bitsOf(higher, k), false};
 }
 
-HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const Column& column, Floats steepest) {
+/// What is found of a part of a row, all of whose returns are on the ground.
+HWY_INLINE Found passGround(const FollowedRow& row, std::size_t k, const Column& column, Floats steepest) {
+  const auto reached = hn::And(column.valid, hn::Ge(column.way, set(kAdvance)));
+  lowerLimit(row, k, column, column.valid);
+  advance(row, k, reached, column.rho, column.height, steepest);
+  const std::uint8_t ground = bitsOf(column.valid, k), reached_bits = bitsOf(reached, k);
+  row.passed->obstacles = static_cast<std::uint8_t>(row.passed->obstacles & ~reached_bits);
+  return {ground, reached_bits, ground, ground, 0, false};
+}
+
+HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const Column& column, const Mapped& map,
+                            Floats steepest) {
   const auto zero = hn::Zero(kLanes);
   const auto rho = column.rho, height = column.height, slope = column.slope, distance = column.distance;
   const auto valid = column.valid, first = column.first;
   const Above above = lookUp(row, k, rho, height, steepest);
-  const Mapped map = lookDown(*row.sector, rho, height, valid);
   const auto off_map = hn::Abs(map.above), slack = map.slack;
   const auto fits_map = hn::Lt(map.above, hn::Add(set(kAboveMap), slack));
   const auto allowed = hn::Or(hn::Ge(slack, set(kKnown)), fits_map);
@@ -347,13 +379,7 @@ HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const Column&
 
   // No ground is above what is lower and nearer by more than the steepest slope allows.
   found = hn::And(found, hn::And(valid, hn::Le(height, hn::Add(column.limit, set(kStepUp)))));
-  const auto is_reflection = hn::And(hn::Lt(height, hn::Sub(column.limit, set(kReflectedFrom))),
-                                     hn::Lt(column.above, set(-kReflection)));
-  const auto limits = hn::And(valid, hn::Or(found, hn::Not(is_reflection)));
-  const auto limit = hn::LoadU(kLanes, row.before->followed->limit.data() + k);
-  hn::StoreU(select(limits, hn::Min(limit, hn::Sub(height, column.climb)), limit), kLanes,
-             row.followed->limit.data() + k);
-
+  lowerLimit(row, k, column, found);
   found = hn::AndNot(hn::And(first, hn::Gt(column.above, grown(kFirstHighest, kFirstHighestGrowth, distance))), found);
   const auto foot =
       hn::And(hn::And(hn::Lt(slack, set(kSure)), hn::Lt(off_map, set(kFoot))), hn::Lt(off_column, set(kSure)));
@@ -384,7 +410,7 @@ HWY_INLINE void add(const Found& part, Found& found) {
 }
 
 HWY_INLINE Found followRow(const FollowedRow& row, Floats steepest) {
-  constexpr std::size_t kStep = hn::MaxLanes(kLanes);
+  constexpr std::size_t kStep = hn::MaxLanes(kLanes), kParts = Block::kColumns / kStep;
   Found found{};
   const Passed& before = *row.before;
   Passed& passed = *row.passed;
@@ -392,20 +418,38 @@ HWY_INLINE Found followRow(const FollowedRow& row, Floats steepest) {
   passed.obstacles = before.obstacles;
   if (row.returns == 0) {
     passed.reach = before.reach;
+    passed.limit = before.limit;
     return found;
   }
-  Column columns[Block::kColumns / kStep];
-  bool is_high = true;
-  for (std::size_t k = 0; k < Block::kColumns; k += kStep) {
-    Column& column = columns[k / kStep];
-    column = columnOf(row, k, steepest);
-    hn::StoreU(hn::Max(hn::LoadU(kLanes, before.reach.data() + k), column.rho), kLanes, passed.reach.data() + k);
-    is_high = is_high && hn::AllFalse(kLanes, mayBeGround(column));
+  Column columns[kParts];
+  Mapped maps[kParts];
+  bool are_objects = true;
+  for (std::size_t i = 0; i < kParts; ++i) {
+    const Column column = columns[i] = columnOf(row, i * kStep, steepest);
+    hn::StoreU(hn::Max(hn::LoadU(kLanes, before.reach.data() + i * kStep), column.rho), kLanes,
+               passed.reach.data() + i * kStep);
+    are_objects = are_objects && hn::AllFalse(kLanes, hn::AndNot(areTooHigh(column), column.valid));
   }
-  if (!is_high) passed.followed = row.followed;
-  for (std::size_t k = 0; k < Block::kColumns; k += kStep)
-    add(is_high ? passHigh(row, k, columns[k / kStep], steepest) : followPart(row, k, columns[k / kStep], steepest),
+  bool are_ground = false;
+  if (!are_objects) {
+    are_objects = are_ground = true;
+    for (std::size_t i = 0; i < kParts; ++i) {
+      const Column& column = columns[i];
+      const Mapped map = maps[i] = lookDown(*row.sector, column.rho, column.height, column.valid);
+      const auto too_high = areTooHigh(column);
+      are_objects = are_objects && hn::AllFalse(kLanes, hn::AndNot(hn::Or(too_high, areAboveMap(map)), column.valid));
+      are_ground = are_ground &&
+                   hn::AllFalse(kLanes, hn::AndNot(hn::AndNot(too_high, areWhereExpected(column, map)), column.valid));
+    }
+  }
+  if (!are_objects) passed.followed = row.followed;
+  for (std::size_t i = 0; i < kParts; ++i) {
+    const std::size_t k = i * kStep;
+    add(are_objects  ? passObjects(row, k, columns[i], steepest)
+        : are_ground ? passGround(row, k, columns[i], steepest)
+                     : followPart(row, k, columns[i], maps[i], steepest),
         found);
+  }
   return found;
 }
 

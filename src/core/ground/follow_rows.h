@@ -21,13 +21,13 @@ struct Followed {
   Lanes slope;                  ///< of the ground up to there
   Lanes back_rho, back_height;  ///< ground further inwards, from which the slope is measured
   Lanes next_rho, next_height;  ///< becomes that
-  Lanes limit;                  ///< no ground is higher than this, beneath the sensor, but for the steepest slope
 };
 
 /// What the rows up to one of them have shown.
 struct Passed {
   const Followed* followed;
   Lanes reach;             ///< distance of the farthest return
+  Lanes limit;             ///< no ground is higher than this, beneath the sensor, but for the steepest slope
   std::uint8_t obstacles;  ///< columns in which objects hide the ground beyond the ground reached, as bits
 };
 

@@ -25,11 +25,12 @@ std::array<std::uint8_t, 8> bytesOf(std::uint8_t bits) {
 }
 
 /// Ground as far as it is known before the first row of a chain.
-void setStart(const Plane& plane, float slope, Followed& start) {
+void setStart(const Plane& plane, float slope, Followed& start, Passed& passed) {
   for (Lanes* lanes : {&start.rho, &start.back_rho, &start.next_rho}) lanes->fill(0.0F);
   for (Lanes* lanes : {&start.height, &start.back_height, &start.next_height}) lanes->fill(plane.height);
   start.slope.fill(slope);
-  start.limit.fill(plane.height + kStartLimit);
+  passed = {&start, {}, {}, 0};
+  passed.limit.fill(plane.height + kStartLimit);
 }
 
 }  // namespace
@@ -81,8 +82,7 @@ void Follower::prepare(const Block& block, const RowOrder& order, const Plane& p
     const Passed* before = nullptr;
     if (row.down == RowOrder::kNone) {
       Start& start = starts_[i];
-      setStart(plane, plane.slopeTowards(order.directionOf(row.row)), start.followed);
-      start.passed = {&start.followed, {}, 0};
+      setStart(plane, plane.slopeTowards(order.directionOf(row.row)), start.followed, start.passed);
       before = &start.passed;
     } else {
       before = &passed_[static_cast<std::size_t>(row.down)];
