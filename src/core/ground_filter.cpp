@@ -109,6 +109,7 @@ void GroundFilter::State::finish(const GroundVisitor& visit) {
 void GroundFilter::State::decideWaiting(const GroundVisitor& visit) {
   const std::size_t count = waiting_;
   waiting_ = 0;
+  std::fill(waiting_ground_.begin(), waiting_ground_.end(), std::uint8_t{0});
   decide(0, count, waiting_ground_.data(), Block::kColumns);
   for (std::size_t column = 0; column < count; ++column) {
     for (std::size_t laser = 0; laser < cell_counts_[column]; ++laser)
@@ -122,6 +123,7 @@ void GroundFilter::State::addAll(std::size_t columns, const CellSource& cells, s
   constexpr std::size_t kRead = 64;
   std::array<std::uint32_t, kRead> source_indices;
   received_.resize(lasers_, kRead);
+  std::fill_n(ground, columns * lasers_, std::uint8_t{0});
   for (std::size_t first = 0; first < columns; first += kRead) {
     const std::size_t count = std::min(kRead, columns - first);
     for (std::size_t laser = 0; laser < lasers_; ++laser) {
@@ -136,13 +138,12 @@ void GroundFilter::State::addAll(std::size_t columns, const CellSource& cells, s
 }
 
 /// Decides on `count` of the columns received.
-/// \param ground receives a byte for each cell, a row of `stride` for each laser
+/// \param ground receives 1 for each cell on the ground, 0 for some of the others, in rows of `stride`
 void GroundFilter::State::decide(std::size_t first, std::size_t count, std::uint8_t* ground, std::size_t stride) {
   ++block_number_;
   block_.measure(received_, first, parameters_.sensor);
   order_.update(block_);
   estimatePlane();
-  for (std::size_t laser = 0; laser < lasers_; ++laser) std::fill_n(ground + laser * stride, count, std::uint8_t{0});
   if (plane_estimator_.isKnown())
     follower_.follow(block_, order_, plane_estimator_.plane(), map_, static_cast<std::uint32_t>(block_number_), ground,
                      count, stride);

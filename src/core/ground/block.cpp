@@ -84,12 +84,11 @@ void Columns::clear(std::size_t column, std::size_t lasers) {
 
 void Block::resize(std::size_t lasers) {
   size = lasers * kColumns;
-  if (rho.size() >= size) return;
-  x.resize(size);
-  y.resize(size);
-  rho.resize(size);
-  height.resize(size);
-  returns.resize(lasers);
+  returns.resize(std::max(returns.size(), lasers));
+  for (auto* values : {&x, &y, &rho, &height}) {
+    values->resize(std::max(values->size(), size + kColumns));
+    std::fill_n(values->begin() + static_cast<std::ptrdiff_t>(size), kColumns, 0.0F);
+  }
 }
 
 void Block::measure(const Columns& columns, std::size_t first, const SensorHints& sensor) {

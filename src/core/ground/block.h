@@ -31,7 +31,10 @@ struct Block {
   std::vector<float> rho;     ///< horizontal distance from the sensor, metres; 0: no return
   std::vector<float> height;  ///< above the sensor's horizon, metres
   std::vector<std::uint8_t> returns;  ///< of each laser, the columns with rho > kMinRho, as bits
-  std::size_t size = 0;       ///< number of elements
+  std::size_t size = 0;       ///< number of elements, without those of noRow ()
+
+  /// A row without returns, beyond the lasers.
+  std::size_t noRow() const { return size / kColumns; }
 
   /// Allocates only if there are more lasers than ever before.
   void resize(std::size_t lasers);

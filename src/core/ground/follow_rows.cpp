@@ -15,10 +15,12 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using ground::Block;
-using ground::FollowedRow;
+using ground::FollowResult;
+using ground::FollowSetting;
 using ground::Found;
 using ground::GroundMap;
 using ground::Passed;
+using ground::RowOrder;
 
 using LaneFloats = hn::CappedTag<float, Block::kColumns>;
 using LaneInts = hn::RebindToSigned<LaneFloats>;
@@ -72,6 +74,20 @@ HWY_INLINE Floats set(float value) {
 HWY_INLINE Floats select(Mask mask, Floats yes, Floats no) {
   return hn::IfThenElse(mask, yes, no);
 }
+
+/// A row, and those around it.
+struct FollowedRow {
+  const float* rho;
+  const float* height;
+  const float* up_rho;  ///< of the row above; zeros if there is none
+  const float* up_height;
+  const float* above_rho;  ///< of a row clearly above
+  const float* above_height;
+  const GroundMap::Sector* sector;
+  const Passed* before;  ///< of the rows below
+  Passed* passed;
+  ground::Followed* followed;
+};
 
 /// base + growth * distance
 HWY_INLINE Floats grown(float base, float growth, Floats distance) {
@@ -416,11 +432,6 @@ HWY_INLINE Found followRow(const FollowedRow& row, Floats steepest) {
   Passed& passed = *row.passed;
   passed.followed = before.followed;
   passed.obstacles = before.obstacles;
-  if (row.returns == 0) {
-    passed.reach = before.reach;
-    passed.limit = before.limit;
-    return found;
-  }
   Column columns[kParts];
   Mapped maps[kParts];
   bool are_objects = true;
@@ -453,9 +464,29 @@ HWY_INLINE Found followRow(const FollowedRow& row, Floats steepest) {
   return found;
 }
 
-void followRows(const FollowedRow* rows, std::size_t count, float max_slope, Found* found) {
-  const auto steepest = set(max_slope);
-  for (std::size_t i = 0; i < count; ++i) found[i] = followRow(rows[i], steepest);
+void followRows(const FollowSetting& setting, const FollowResult& result) {
+  const auto steepest = set(setting.max_slope);
+  const Block& block = *setting.block;
+  const auto cellsOf = [&](const std::vector<float>& values, std::int32_t at) {
+    const std::size_t row = at == RowOrder::kNone ? block.noRow() : static_cast<std::size_t>(setting.rows[at].row);
+    return values.data() + row * Block::kColumns;
+  };
+  for (std::size_t i = 0; i < setting.size; ++i) {
+    const RowOrder::Row& row = setting.rows[i];
+    const auto at = static_cast<std::int32_t>(i);
+    const Passed& before = row.down == RowOrder::kNone ? setting.starts[i] : result.passed[row.down];
+    if (block.returns[static_cast<std::size_t>(row.row)] == 0) {
+      result.passed[i] = before;
+      result.found[i] = {};
+      continue;
+    }
+    const FollowedRow followed{cellsOf(block.rho, at),        cellsOf(block.height, at),
+                               cellsOf(block.rho, row.up),    cellsOf(block.height, row.up),
+                               cellsOf(block.rho, row.above), cellsOf(block.height, row.above),
+                               setting.map[i],                &before,
+                               &result.passed[i],             &result.followed[i]};
+    result.found[i] = followRow(followed, steepest);
+  }
 }
 
 }  // namespace HWY_NAMESPACE
@@ -467,8 +498,8 @@ namespace lisco {
 
 HWY_EXPORT(followRows);
 
-void ground::followRows(const FollowedRow* rows, std::size_t count, float max_slope, Found* found) {
-  HWY_DYNAMIC_DISPATCH(followRows)(rows, count, max_slope, found);
+void ground::followRows(const FollowSetting& setting, const FollowResult& result) {
+  HWY_DYNAMIC_DISPATCH(followRows)(setting, result);
 }
 
 }  // namespace lisco

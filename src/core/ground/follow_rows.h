@@ -9,6 +9,7 @@
 #include "core/ground/block.h"
 #include "core/ground/found.h"
 #include "core/ground/ground_map.h"
+#include "core/ground/row_order.h"
 
 namespace lisco::ground {
 
@@ -31,24 +32,24 @@ struct Passed {
   std::uint8_t obstacles;  ///< columns in which objects hide the ground beyond the ground reached, as bits
 };
 
-/// A row of a block, for the kernel.
-struct FollowedRow {
-  const float* rho;
-  const float* height;
-  const float* up_rho;  ///< of the row above; zeros if there is none
-  const float* up_height;
-  const float* above_rho;  ///< of a row clearly above
-  const float* above_height;
-  const Passed* before;  ///< of the rows below
-  Passed* passed;
-  Followed* followed;  ///< used where this row changes what the rows below have shown
-  const GroundMap::Sector* sector;
-  std::uint8_t returns;  ///< columns with returns, as bits
+/// What the rows are followed with. Rows are numbered by their position in the order.
+struct FollowSetting {
+  const Block* block;
+  const RowOrder::Row* rows;
+  std::size_t size;
+  float max_slope;                      ///< of ground, metres per metre
+  const GroundMap::Sector* const* map;  ///< for each row
+  const Passed* starts;                 ///< for each row with none below: what is known before it
 };
 
-/// Follows the ground of a block's columns outwards, row by row in the order given.
-/// \param max_slope of ground, metres per metre
-/// \param found receives what is found, for each row
-void followRows(const FollowedRow* rows, std::size_t count, float max_slope, Found* found);
+/// What they show, for each row.
+struct FollowResult {
+  Passed* passed;
+  Followed* followed;  ///< used by the rows that change what the rows below have shown
+  Found* found;
+};
+
+/// Follows the ground of a block's columns outwards, row by row in their order.
+void followRows(const FollowSetting& setting, const FollowResult& result);
 
 }  // namespace lisco::ground

@@ -36,8 +36,8 @@ void setStart(const Plane& plane, float slope, Followed& start, Passed& passed) 
 }  // namespace
 
 void Follower::begin(std::size_t lasers, float max_slope) {
-  if (rows_.size() < lasers) {
-    rows_.resize(lasers);
+  if (sectors_.size() < lasers) {
+    started_.resize(lasers);
     starts_.resize(lasers);
     followed_.resize(lasers);
     passed_.resize(lasers);
@@ -52,8 +52,9 @@ void Follower::begin(std::size_t lasers, float max_slope) {
 void Follower::follow(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map,
                       std::uint32_t number, std::uint8_t* ground, std::size_t columns, std::size_t stride) {
   const auto& rows = order.rows();
-  prepare(block, order, plane, map, number);
-  followRows(rows_.data(), rows.size(), max_slope_, found_.data());
+  prepare(order, plane, map, number);
+  followRows({&block, rows.data(), rows.size(), max_slope_, sectors_.data(), starts_.data()},
+             {passed_.data(), followed_.data(), found_.data()});
   dropScattered(rows, found_);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::array<std::uint8_t, 8> decisions = bytesOf(found_[i].ground);
@@ -63,66 +64,39 @@ void Follower::follow(const Block& block, const RowOrder& order, const Plane& pl
     else
       std::copy_n(decisions.data(), columns, to);
   }
-  report(order, plane);
+  report(block, order, plane);
   enterReports(reports_, max_slope_, order.turnsLeft());
 }
 
-void Follower::prepare(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map,
-                       std::uint32_t number) {
-  static constexpr Lanes kNothing{};
+void Follower::prepare(const RowOrder& order, const Plane& plane, GroundMap& map, std::uint32_t number) {
   const auto& rows = order.rows();
-  const auto at = [&](const std::vector<float>& values, std::int32_t position) {
-    return position == RowOrder::kNone
-               ? kNothing.data()
-               : values.data() +
-                     static_cast<std::size_t>(rows[static_cast<std::size_t>(position)].row) * Block::kColumns;
-  };
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const RowOrder::Row& row = rows[i];
-    const Passed* before = nullptr;
-    if (row.down == RowOrder::kNone) {
-      Start& start = starts_[i];
-      setStart(plane, plane.slopeTowards(order.directionOf(row.row)), start.followed, start.passed);
-      before = &start.passed;
-    } else {
-      before = &passed_[static_cast<std::size_t>(row.down)];
-    }
-    sectors_[i] = &map.sectorAt(order.azimuthOf(row.row), number, plane);
-    const auto position = static_cast<std::int32_t>(i);
-    rows_[i] = {at(block.rho, position),
-                at(block.height, position),
-                at(block.rho, row.up),
-                at(block.height, row.up),
-                at(block.rho, row.above),
-                at(block.height, row.above),
-                before,
-                &passed_[i],
-                &followed_[i],
-                sectors_[i],
-                block.returns[static_cast<std::size_t>(row.row)]};
+    if (rows[i].down == RowOrder::kNone)
+      setStart(plane, plane.slopeTowards(order.directionOf(rows[i].row)), started_[i], starts_[i]);
+    sectors_[i] = &map.sectorAt(order.azimuthOf(rows[i].row), number, plane);
   }
 }
 
 /// Reports what the latest column of each row has shown.
-void Follower::report(const RowOrder& order, const Plane& plane) {
+void Follower::report(const Block& block, const RowOrder& order, const Plane& plane) {
   const auto& rows = order.rows();
   reports_.clear();
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::int32_t down = rows[i].down;
-    last_ground_[i] = down == RowOrder::kNone ? RowOrder::kNone : last_ground_[static_cast<std::size_t>(down)];
-    const std::uint8_t returns = rows_[i].returns, reached = found_[i].reached;
+    const RowOrder::Row& row = rows[i];
+    const bool is_first = row.down == RowOrder::kNone;
+    last_ground_[i] = is_first ? RowOrder::kNone : last_ground_[static_cast<std::size_t>(row.down)];
+    const std::uint8_t returns = block.returns[static_cast<std::size_t>(row.row)], reached = found_[i].reached;
     if (returns == 0) continue;
-    const std::size_t k = lastOf(returns);
-    const float rho = rows_[i].rho[k], reach = rows_[i].before->reach[k];
+    const std::size_t k = lastOf(returns), cell = static_cast<std::size_t>(row.row) * Block::kColumns + k;
+    const float rho = block.rho[cell], reach = before(row, i).reach[k];
     if (rho <= reach && reached == 0) continue;
-    Report report{sectors_[i], reach, rho, rows_[i].height[k] / rho, reached != 0, true, {}};
+    Report report{sectors_[i], reach, rho, block.height[cell] / rho, reached != 0, true, {}};
     if (reached != 0) {
       const std::size_t last = lastOf(reached);
-      const bool is_first = down == RowOrder::kNone;
       const Followed& now = *passed_[i].followed;
-      const Followed& before = *rows_[i].before->followed;
-      report.stretch = {is_first ? 0.0F : before.rho[last],
-                        is_first ? plane.height : before.height[last],
+      const Followed& inwards = *before(row, i).followed;
+      report.stretch = {is_first ? 0.0F : inwards.rho[last],
+                        is_first ? plane.height : inwards.height[last],
                         now.rho[last],
                         now.height[last],
                         now.slope[last],

@@ -23,25 +23,25 @@ class Follower {
   void begin(std::size_t lasers, float max_slope);
   /// \param number of the block, from 1 on
   /// \param map tells of the blocks before, and is told of this one
-  /// \param ground receives a byte for each of the first `columns` cells of a laser, 1 on the ground, else 0, in rows
-  ///        of `stride`
+  /// \param ground receives a byte for each of the first `columns` cells of the lasers in the order, 1 on the ground,
+  ///        else 0, in rows of `stride`
   void follow(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map, std::uint32_t number,
               std::uint8_t* ground, std::size_t columns, std::size_t stride);
 
  private:
-  void prepare(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map, std::uint32_t number);
-  void report(const RowOrder& order, const Plane& plane);
+  void prepare(const RowOrder& order, const Plane& plane, GroundMap& map, std::uint32_t number);
+  void report(const Block& block, const RowOrder& order, const Plane& plane);
+  /// What is known before a row.
+  const Passed& before(const RowOrder::Row& row, std::size_t position) const {
+    return row.down == RowOrder::kNone ? starts_[position] : passed_[static_cast<std::size_t>(row.down)];
+  }
 
-  struct Start {
-    Followed followed;
-    Passed passed;
-  };
   // By position in the order.
-  std::vector<FollowedRow> rows_;
-  std::vector<Start> starts_;  // of rows with none below
+  std::vector<GroundMap::Sector*> sectors_;
+  std::vector<Followed> started_;  // of rows with none below
+  std::vector<Passed> starts_;     // likewise
   std::vector<Followed> followed_;
   std::vector<Passed> passed_;
-  std::vector<GroundMap::Sector*> sectors_;
   std::vector<Found> found_;
   std::vector<std::int32_t> last_ground_;  // of the reports: latest one with ground, or RowOrder::kNone
 

@@ -18,6 +18,10 @@ void dropScattered(const std::vector<RowOrder::Row>& rows, std::vector<Found>& f
   for (std::size_t i = 0; i < rows.size(); ++i) {
     found[i].is_scattered = false;
     if (found[i].ground == 0) continue;
+    const auto higherAt = [&](std::int32_t position) {
+      return position == RowOrder::kNone ? 0 : found[static_cast<std::size_t>(position)].higher;
+    };
+    if ((found[i].higher | higherAt(rows[i].down) | higherAt(rows[i].up)) == 0) continue;
     std::uint32_t ground = 0, returns = 0;
     for (const std::int32_t position : {static_cast<std::int32_t>(i), rows[i].down, rows[i].up}) {
       if (position == RowOrder::kNone) continue;

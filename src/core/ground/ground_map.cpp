@@ -33,21 +33,20 @@ const GroundMap::Values& GroundMap::middles() {
 
 void GroundMap::begin() {
   sectors_.resize(kSectors);
-  for (Sector& sector : sectors_) sector.block = 0;
+  latest_.fill(0);
 }
 
 GroundMap::Sector& GroundMap::sectorAt(float azimuth, std::uint32_t block, const Plane& plane) {
   const std::size_t number = static_cast<std::size_t>(azimuth / kSectorWidth) % kSectors;
-  Sector& sector = sectors_[number];
-  if (sector.block == 0 || block - sector.block > kFresh) renew(number, block, plane);
-  sector.block = block;
-  return sector;
+  if (latest_[number] == 0 || block - latest_[number] > kFresh) renew(number, block, plane);
+  latest_[number] = block;
+  return sectors_[number];
 }
 
 void GroundMap::renew(std::size_t number, std::uint32_t block, const Plane& plane) {
   Sector& sector = sectors_[number];
   const auto isRecent = [&](std::size_t other) {
-    return sectors_[other].block != 0 && block - sectors_[other].block <= kRecent;
+    return latest_[other] != 0 && block - latest_[other] <= kRecent;
   };
   for (std::size_t step = 1; step <= kReach; ++step) {
     const std::size_t left = (number + step) % kSectors;

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <vector>
 
+#include "core/ground/direction.h"
 #include "core/ground/plane_estimator.h"
 
 namespace lisco::ground {
@@ -27,12 +28,11 @@ class GroundMap {
 
   /// The cells of a sector of azimuth: the ground is at offset + slope * distance.
   struct Sector {
-    Values offset{};          ///< metres
-    Values slope{};           ///< metres per metre
-    Values slack;             ///< metres by which the ground may differ; kUnknown: nothing is known
-    Values trend{};           ///< rise of the ground from one sector to the next, metres
-    Values age{};             ///< sectors since the ground was seen
-    std::uint32_t block = 0;  ///< the latest one that looked at it, from 1 on; 0: none
+    Values offset{};  ///< metres
+    Values slope{};   ///< metres per metre
+    Values slack;     ///< metres by which the ground may differ; kUnknown: nothing is known
+    Values trend{};   ///< rise of the ground from one sector to the next, metres
+    Values age{};     ///< sectors since the ground was seen
 
     Sector() { slack.fill(kUnknown); }
     float heightAt(std::size_t bin, float rho) const { return offset[bin] + slope[bin] * rho; }
@@ -58,6 +58,7 @@ class GroundMap {
   void renew(std::size_t number, std::uint32_t block, const Plane& plane);
 
   std::vector<Sector> sectors_;
+  std::array<std::uint32_t, kSectors> latest_{};  // block that looked at a sector, from 1 on; 0: none
 };
 
 }  // namespace lisco::ground
