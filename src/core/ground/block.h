@@ -27,11 +27,11 @@ struct Block {
   static constexpr std::size_t kColumns = 8;
   static constexpr float kMinRho = 0.05F;  ///< metres; nearer returns are not looked at
 
-  std::vector<float> x, y;    ///< from the sensor, metres
-  std::vector<float> rho;     ///< horizontal distance from the sensor, metres; 0: no return
-  std::vector<float> height;  ///< above the sensor's horizon, metres
+  std::vector<float> x, y;            ///< from the sensor, metres
+  std::vector<float> rho;             ///< horizontal distance from the sensor, metres; 0: no return
+  std::vector<float> height;          ///< above the sensor's horizon, metres
   std::vector<std::uint8_t> returns;  ///< of each laser, the columns with rho > kMinRho, as bits
-  std::size_t size = 0;       ///< number of elements, without those of noRow ()
+  std::size_t size = 0;               ///< number of elements, without those of noRow ()
 
   /// A row without returns, beyond the lasers.
   std::size_t noRow() const { return size / kColumns; }

@@ -9,35 +9,13 @@
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
+#include "core/ground/above-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace lisco {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using ground::Block;
-using ground::FollowResult;
-using ground::FollowSetting;
-using ground::Found;
-using ground::GroundMap;
-using ground::Passed;
-using ground::RowOrder;
-
-using LaneFloats = hn::CappedTag<float, Block::kColumns>;
-using LaneInts = hn::RebindToSigned<LaneFloats>;
-using Floats = hn::Vec<LaneFloats>;
-using Mask = hn::Mask<LaneFloats>;
-constexpr LaneFloats kLanes{};
-constexpr LaneInts kLaneInts{};
-
 // Distances and heights are metres, slopes metres per metre.
-
-// What is above a return.
-constexpr float kWallWidth = 0.05F, kWallGrowth = 0.003F;  // by which returns of an upright surface differ in distance
-constexpr float kMostAbove = 3.0F;                         // what is higher hangs over
-constexpr float kSteep = 0.6F;                             // slope of a surface that is no ground
-constexpr float kSurfaceStep = 0.2F, kSurfaceGrowth = 0.04F;  // returns of one surface are nearer to each other
-constexpr float kLineStep = 0.3F, kLineSpan = 2.0F;           // least lengths of a line of three returns
-constexpr float kStraight = 0.04F;                            // by which the slopes along a line differ
 
 // The ground known from the blocks before.
 constexpr float kKnown = 1.5F;        // most slack of what may contradict
@@ -62,129 +40,8 @@ constexpr float kHigher = 0.1F;
 constexpr float kReflection = 0.5F;     // below the ground
 constexpr float kReflectedFrom = 1.0F;  // below the highest possible ground
 constexpr float kNearBelow = 0.1F;
-constexpr float kRough = 0.15F, kRoughGrowth = 0.04F;  // of the distances of columns beside each other
-constexpr float kSameRay = 0.003F;                     // difference of the slopes of rays
 constexpr float kAdvance = 0.02F;
 constexpr float kBaseline = 1.5F, kBaselineGrowth = 0.1F, kLeastBaseline = 0.3F;
-
-HWY_INLINE Floats set(float value) {
-  return hn::Set(kLanes, value);
-}
-
-HWY_INLINE Floats select(Mask mask, Floats yes, Floats no) {
-  return hn::IfThenElse(mask, yes, no);
-}
-
-/// A row, and those around it.
-struct FollowedRow {
-  const float* rho;
-  const float* height;
-  const float* up_rho;  ///< of the row above; zeros if there is none
-  const float* up_height;
-  const float* above_rho;  ///< of a row clearly above
-  const float* above_height;
-  const GroundMap::Sector* sector;
-  const Passed* before;  ///< of the rows below
-  Passed* passed;
-  ground::Followed* followed;
-};
-
-/// base + growth * distance
-HWY_INLINE Floats grown(float base, float growth, Floats distance) {
-  return hn::Add(set(base), hn::Mul(set(growth), distance));
-}
-
-/// The values of the columns before: the one after, for the first column of the block.
-HWY_INLINE Floats leftOf(const float* row, std::size_t k, Floats values) {
-  if (k != 0) return hn::LoadU(kLanes, row + k - 1);
-  if (hn::MaxLanes(kLanes) == 1) return hn::LoadU(kLanes, row + 1);
-  const auto left = hn::Sub(hn::Iota(kLaneInts, 0), hn::Set(kLaneInts, 1));
-  return hn::TableLookupLanes(values, hn::IndicesFromVec(kLanes, hn::Abs(left)));
-}
-
-/// The values of the columns after: the one before, for the last column of the block.
-HWY_INLINE Floats rightOf(const float* row, std::size_t k, Floats values) {
-  constexpr auto kStep = hn::MaxLanes(kLanes);
-  if (k + kStep != Block::kColumns) return hn::LoadU(kLanes, row + k + 1);
-  if (kStep == 1) return hn::LoadU(kLanes, row + k - 1);
-  const auto last = hn::Set(kLaneInts, static_cast<std::int32_t>(kStep) - 1);
-  const auto right = hn::Add(hn::Iota(kLaneInts, 0), hn::Set(kLaneInts, 1));
-  const auto inside = hn::Sub(last, hn::Abs(hn::Sub(right, last)));
-  return hn::TableLookupLanes(values, hn::IndicesFromVec(kLanes, inside));
-}
-
-/// What the rows above show about the returns of a row.
-struct Above {
-  Mask wall;           ///< upright above the return
-  Mask steep;          ///< too steep for ground
-  Mask surface;        ///< a rising surface that begins at the return
-  Mask seen;           ///< there is a return beyond
-  Mask nearer;         ///< there is a return that is nearer
-  Floats slope, step;  ///< to it
-  Mask line;           ///< two returns beyond, on a line with this one
-  Floats line_slope;
-};
-
-HWY_INLINE Above lookUp(const FollowedRow& row, std::size_t k, Floats rho, Floats height, Floats max_slope) {
-  const auto least = set(Block::kMinRho);
-  const auto wall_width = grown(kWallWidth, kWallGrowth, rho);
-  const auto up_rho = hn::LoadU(kLanes, row.up_rho + k);
-  const auto up_height = hn::LoadU(kLanes, row.up_height + k);
-  const auto above_rho = hn::LoadU(kLanes, row.above_rho + k);
-  const auto above_height = hn::LoadU(kLanes, row.above_height + k);
-  const auto is_up = hn::Gt(up_rho, least), is_above = hn::Gt(above_rho, least);
-  const auto up_step = hn::Sub(up_rho, rho), above_step = hn::Sub(above_rho, rho);
-  const auto up_rise = hn::Sub(up_height, height), above_rise = hn::Sub(above_height, height);
-  const auto isWall = [&](Mask is, Floats step, Floats rise) {
-    return hn::And(hn::And(is, hn::And(hn::Gt(rise, set(0.05F)), hn::Lt(rise, set(kMostAbove)))),
-                   hn::Lt(hn::Abs(step), wall_width));
-  };
-  const auto isSteep = [&](Mask is, Floats step, Floats rise) {
-    return hn::And(hn::And(is, hn::And(hn::Gt(rise, set(0.1F)), hn::Lt(rise, set(kMostAbove)))),
-                   hn::And(hn::Gt(step, set(-0.2F)), hn::Gt(rise, hn::Mul(set(kSteep), step))));
-  };
-  Above above;
-  above.wall = hn::Or(isWall(is_up, up_step, up_rise), isWall(is_above, above_step, above_rise));
-  above.steep = hn::Or(isSteep(is_up, up_step, up_rise), isSteep(is_above, above_step, above_rise));
-
-  const auto up_slope = hn::Div(up_rise, hn::Max(up_step, set(0.05F)));
-  const auto above_slope = hn::Div(above_rise, hn::Max(above_step, set(0.05F)));
-  const auto sees_up = hn::And(is_up, hn::Gt(up_step, set(0.1F)));
-  const auto sees_above = hn::And(is_above, hn::Gt(above_step, set(-0.1F)));
-  above.seen = hn::Or(sees_up, sees_above);
-  above.nearer = hn::Or(hn::And(is_up, hn::Lt(up_step, set(-0.1F))), hn::And(is_above, hn::Lt(above_step, set(-0.1F))));
-  above.slope = select(sees_above, above_slope, up_slope);
-  above.step = select(sees_above, above_step, up_step);
-
-  const auto nearest = hn::Min(select(hn::And(is_up, hn::Gt(up_step, set(-0.2F))), up_step, set(1e9F)),
-                               select(hn::And(is_above, hn::Gt(above_step, set(-0.2F))), above_step, set(1e9F)));
-  const auto rises = hn::Or(above.steep, hn::And(above.seen, hn::Gt(above.slope, max_slope)));
-  above.surface = hn::And(rises, hn::Lt(nearest, grown(kSurfaceStep, kSurfaceGrowth, rho)));
-
-  const auto further = hn::Sub(above_rho, up_rho);
-  const auto further_slope = hn::Div(hn::Sub(above_height, up_height), hn::Max(further, set(kLineStep)));
-  above.line_slope = up_slope;
-  above.line = hn::And(
-      hn::And(hn::And(is_up, is_above), hn::And(hn::Gt(up_step, set(kLineStep)), hn::Gt(further, set(kLineStep)))),
-      hn::And(hn::And(hn::Lt(hn::Abs(up_slope), max_slope), hn::Gt(above_step, set(kLineSpan))),
-              hn::Lt(hn::Abs(hn::Sub(further_slope, up_slope)), set(kStraight))));
-  return above;
-}
-
-/// Whether the same laser's returns in the columns beside are at other distances, as those of leaves are.
-HWY_INLINE Mask isRough(const FollowedRow& row, std::size_t k, Floats rho, Floats height) {
-  const auto most = grown(kRough, kRoughGrowth, rho);
-  Mask seen = hn::Lt(rho, hn::Zero(kLanes)), near = seen;  // none
-  const auto look = [&](Floats beside_rho, Floats beside_height) {
-    const auto turned = hn::Abs(hn::Sub(hn::Mul(beside_height, rho), hn::Mul(height, beside_rho)));
-    const auto same_ray = hn::Lt(turned, hn::Mul(set(kSameRay), hn::Mul(rho, beside_rho)));
-    seen = hn::Or(seen, same_ray);
-    near = hn::Or(near, hn::And(same_ray, hn::Lt(hn::Abs(hn::Sub(beside_rho, rho)), most)));
-  };
-  look(leftOf(row.rho, k, rho), leftOf(row.height, k, height));
-  look(rightOf(row.rho, k, rho), rightOf(row.height, k, height));
-  return hn::AndNot(near, seen);
-}
 
 /// The ground that the map has where a return is.
 struct Mapped {
@@ -339,44 +196,35 @@ HWY_INLINE Found passGround(const FollowedRow& row, std::size_t k, const Column&
   return {ground, reached_bits, ground, ground, 0, false};
 }
 
-HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const Column& column, const Mapped& map,
-                            Floats steepest) {
-  const auto zero = hn::Zero(kLanes);
-  const auto rho = column.rho, height = column.height, slope = column.slope, distance = column.distance;
-  const auto valid = column.valid, first = column.first;
-  const Above above = lookUp(row, k, rho, height, steepest);
-  const auto off_map = hn::Abs(map.above), slack = map.slack;
-  const auto fits_map = hn::Lt(map.above, hn::Add(set(kAboveMap), slack));
-  const auto allowed = hn::Or(hn::Ge(slack, set(kKnown)), fits_map);
-  const auto obstacle = lanesOf(row.before->obstacles, k);
-  const auto off_column = hn::Abs(column.above);
-  const auto near = hn::Min(distance, set(kFirstMost));
+/// The ground seems to go on along a slope beyond a return.
+HWY_INLINE Mask goesOn(const Above& above, Floats slope) {
+  return hn::Or(hn::Not(above.seen), hn::Lt(hn::Abs(hn::Sub(above.slope, slope)), set(kSameSlope)));
+}
 
-  // Does the ground seem to go on beyond?
-  const auto unseen = hn::Not(above.seen);
-  const auto goesOn = [&](Floats along) {
-    return hn::Or(unseen, hn::Lt(hn::Abs(hn::Sub(above.slope, along)), set(kSameSlope)));
-  };
-  const auto flat = hn::AndNot(above.steep, hn::Or(unseen, hn::Lt(hn::Abs(above.slope), steepest)));
+/// Ground at the height of the map.
+HWY_INLINE Mask foundByMap(const Mapped& map, const Above& above, Mask flat, Mask expected) {
+  const auto off = hn::Abs(map.above);
+  const auto well_known = hn::And(hn::And(hn::Lt(map.slack, set(kWellKnown)), hn::Or(hn::Not(above.surface), expected)),
+                                  hn::Lt(off, hn::Add(set(kAtMap), hn::Min(map.slack, set(kMostSlack)))));
+  const auto known = hn::And(hn::And(hn::Lt(map.slack, set(kNearlyKnown)), hn::And(flat, goesOn(above, map.slope))),
+                             hn::Lt(off, hn::Add(set(kLevelAtMap), map.slack)));
+  return hn::Or(well_known, known);
+}
 
-  // At the height of the map.
-  const auto agrees = hn::Lt(off_column, grown(kAgrees, kAgreesGrowth, distance));
-  const auto sure = hn::And(hn::Lt(slack, set(kSure)), hn::Lt(off_map, set(kSure)));
-  const auto clear = hn::Or(hn::Or(hn::Not(above.surface), agrees), sure);
-  auto found = hn::And(hn::And(hn::Lt(slack, set(kWellKnown)), clear),
-                       hn::Lt(off_map, hn::Add(set(kAtMap), hn::Min(slack, set(kMostSlack)))));
-  found = hn::Or(found, hn::And(hn::And(hn::Lt(slack, set(kNearlyKnown)), hn::And(flat, goesOn(map.slope))),
-                                hn::Lt(off_map, hn::Add(set(kLevelAtMap), slack))));
-
-  // At the height of the column's ground.
+/// Ground that continues the column's.
+HWY_INLINE Mask foundByColumn(const Column& column, const Mapped& map, const Above& above, Mask flat, Mask obstacle,
+                              Floats steepest) {
+  const auto first = column.first, fits_map = hn::Lt(map.above, hn::Add(set(kAboveMap), map.slack));
+  const auto distance = column.distance, near = hn::Min(distance, set(kFirstMost)), off = hn::Abs(column.above);
+  // At its height.
   const auto at_column =
       select(first, grown(kFirst, kFirstGrowth, near),
              hn::Add(set(kAtColumn), hn::Min(hn::Mul(set(kAtColumnGrowth), distance), set(kAtColumnMost))));
-  auto continued = hn::Lt(off_column, at_column);
+  auto continued = hn::Lt(off, at_column);
   const auto level = select(first, grown(kFirst, kFirstLevelGrowth, near),
                             hn::Add(set(kLevel), hn::Min(hn::Mul(set(kLevelGrowth), distance), set(kLevelMost))));
   const auto flat_free = hn::AndNot(obstacle, flat);
-  continued = hn::Or(continued, hn::And(hn::And(flat_free, goesOn(slope)), hn::Lt(off_column, level)));
+  continued = hn::Or(continued, hn::And(hn::And(flat_free, goesOn(above, column.slope)), hn::Lt(off, level)));
   // Where the ground changes its slope: beyond, it has that slope.
   const auto here = hn::Div(column.from_ground, hn::Max(column.way, set(0.5F)));
   const auto possible = hn::AndNot(first, hn::Lt(hn::Abs(here), steepest));
@@ -385,36 +233,53 @@ HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const Column&
                                         hn::Lt(hn::Abs(hn::Sub(above.slope, here)), bend)));
   // Downwards, where no object can be.
   const auto lowest = hn::Sub(set(-kStepDown), hn::Mul(steepest, distance));
-  continued = hn::Or(continued, hn::And(hn::And(hn::AndNot(above.nearer, flat), hn::Lt(column.above, zero)),
+  continued = hn::Or(continued, hn::And(hn::And(hn::AndNot(above.nearer, flat), hn::Lt(column.above, hn::Zero(kLanes))),
                                         hn::Gt(column.from_ground, lowest)));
-  found = hn::Or(found, hn::And(continued, allowed));
+  const auto found = hn::And(continued, hn::Or(hn::Ge(map.slack, set(kKnown)), fits_map));
   // Beyond objects.
   const auto on_line =
       hn::And(hn::And(above.line, possible), hn::Lt(hn::Abs(hn::Sub(above.line_slope, here)), set(kLineBend)));
-  found = hn::Or(found, hn::And(on_line, hn::Or(hn::Gt(slack, set(kLineKnown)), fits_map)));
+  return hn::Or(found, hn::And(on_line, hn::Or(hn::Gt(map.slack, set(kLineKnown)), fits_map)));
+}
 
-  // No ground is above what is lower and nearer by more than the steepest slope allows.
+/// What is found of any part of a row.
+HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const Column& column, const Mapped& map,
+                            Floats steepest) {
+  const auto rho = column.rho, height = column.height, distance = column.distance, valid = column.valid;
+  const Above above = lookUp(row, k, rho, height, steepest);
+  const auto off_map = hn::Abs(map.above), off_column = hn::Abs(column.above);
+  const auto flat = hn::AndNot(above.steep, hn::Or(hn::Not(above.seen), hn::Lt(hn::Abs(above.slope), steepest)));
+  const auto agrees = hn::Lt(off_column, grown(kAgrees, kAgreesGrowth, distance));
+  const auto sure = hn::And(hn::Lt(map.slack, set(kSure)), hn::Lt(off_map, set(kSure)));
+
+  auto found = foundByMap(map, above, flat, hn::Or(agrees, sure));
+  if (!hn::AllFalse(kLanes, hn::AndNot(found, valid)))
+    found = hn::Or(found, foundByColumn(column, map, above, flat, lanesOf(row.before->obstacles, k), steepest));
   found = hn::And(found, hn::And(valid, hn::Le(height, hn::Add(column.limit, set(kStepUp)))));
   lowerLimit(row, k, column, found);
-  found = hn::AndNot(hn::And(first, hn::Gt(column.above, grown(kFirstHighest, kFirstHighestGrowth, distance))), found);
-  const auto foot =
-      hn::And(hn::And(hn::Lt(slack, set(kSure)), hn::Lt(off_map, set(kFoot))), hn::Lt(off_column, set(kSure)));
-  found = hn::AndNot(hn::AndNot(foot, above.wall), found);
-  found = hn::AndNot(hn::And(isRough(row, k, rho, height), hn::Not(hn::And(sure, agrees))), found);
-  const auto reached = hn::And(found, hn::Ge(column.way, set(kAdvance)));
-  const auto confirmed = hn::Lt(off_column, grown(kLevel, kLevelGrowth, distance));
 
-  const auto object = hn::And(hn::AndNot(found, rises(column, above)), valid);
-  const auto below = hn::And(
-      hn::And(hn::Lt(column.above, set(-kNearBelow)), hn::Gt(column.above, set(-kReflection))),
-      hn::And(hn::AndNot(hn::Or(found, object), valid), hn::Or(hn::Ge(slack, set(kKnown)), hn::Lt(map.above, zero))));
+  // Even so, it is none.
+  const auto too_high =
+      hn::And(column.first, hn::Gt(column.above, grown(kFirstHighest, kFirstHighestGrowth, distance)));
+  const auto foot =
+      hn::And(hn::And(hn::Lt(map.slack, set(kSure)), hn::Lt(off_map, set(kFoot))), hn::Lt(off_column, set(kSure)));
+  found = hn::AndNot(hn::Or(too_high, hn::AndNot(foot, above.wall)), found);
+  const auto unsure = hn::AndNot(hn::And(sure, agrees), found);
+  if (!hn::AllFalse(kLanes, unsure)) found = hn::AndNot(hn::And(unsure, isRough(row, k, rho, height)), found);
+
+  const auto reached = hn::And(found, hn::Ge(column.way, set(kAdvance)));
   advance(row, k, reached, rho, height, steepest);
-  const auto known = hn::And(hn::Lt(slack, set(kWellKnown)), hn::Lt(off_map, set(kKnownHeight)));
+  const auto object = hn::And(hn::AndNot(found, rises(column, above)), valid);
+  const auto below = hn::And(hn::And(hn::Lt(column.above, set(-kNearBelow)), hn::Gt(column.above, set(-kReflection))),
+                             hn::And(hn::AndNot(hn::Or(found, object), valid),
+                                     hn::Or(hn::Ge(map.slack, set(kKnown)), hn::Lt(map.above, hn::Zero(kLanes)))));
+  const auto confirmed = hn::Lt(off_column, grown(kLevel, kLevelGrowth, distance));
+  const auto known = hn::And(hn::Lt(map.slack, set(kWellKnown)), hn::Lt(off_map, set(kKnownHeight)));
   const auto higher = hn::And(hn::AndNot(found, valid), hn::Gt(column.above, set(kHigher)));
   const std::uint8_t reached_bits = bitsOf(reached, k);
   row.passed->obstacles = static_cast<std::uint8_t>((row.passed->obstacles & ~reached_bits) | bitsOf(object, k));
-  return {bitsOf(hn::Or(found, below), k), reached_bits, bitsOf(confirmed, k), bitsOf(known, k), bitsOf(higher, k),
-          false};
+  return {
+      bitsOf(hn::Or(found, below), k), reached_bits, bitsOf(confirmed, k), bitsOf(known, k), bitsOf(higher, k), false};
 }
 
 HWY_INLINE void add(const Found& part, Found& found) {
@@ -480,11 +345,16 @@ void followRows(const FollowSetting& setting, const FollowResult& result) {
       result.found[i] = {};
       continue;
     }
-    const FollowedRow followed{cellsOf(block.rho, at),        cellsOf(block.height, at),
-                               cellsOf(block.rho, row.up),    cellsOf(block.height, row.up),
-                               cellsOf(block.rho, row.above), cellsOf(block.height, row.above),
-                               setting.map[i],                &before,
-                               &result.passed[i],             &result.followed[i]};
+    const FollowedRow followed{cellsOf(block.rho, at),
+                               cellsOf(block.height, at),
+                               cellsOf(block.rho, row.up),
+                               cellsOf(block.height, row.up),
+                               cellsOf(block.rho, row.above),
+                               cellsOf(block.height, row.above),
+                               setting.map[i],
+                               &before,
+                               &result.passed[i],
+                               &result.followed[i]};
     result.found[i] = followRow(followed, steepest);
   }
 }

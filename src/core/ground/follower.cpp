@@ -90,7 +90,7 @@ void Follower::report(const Block& block, const RowOrder& order, const Plane& pl
     const std::size_t k = lastOf(returns), cell = static_cast<std::size_t>(row.row) * Block::kColumns + k;
     const float rho = block.rho[cell], reach = before(row, i).reach[k];
     if (rho <= reach && reached == 0) continue;
-    Report report{sectors_[i], reach, rho, block.height[cell] / rho, reached != 0, true, {}};
+    Report report{sectors_[i], reach, rho, block.height[cell], reached != 0, true, {}};
     if (reached != 0) {
       const std::size_t last = lastOf(reached);
       const Followed& now = *passed_[i].followed;

@@ -10,6 +10,7 @@ namespace lisco::ground {
 namespace {
 
 constexpr float kSectorWidth = 6.2831853F / static_cast<float>(kSectors);  // radians
+constexpr float kSectorsPerRadian = 1.0F / kSectorWidth;
 constexpr std::uint32_t kFresh = 40;   // blocks after which a sector shows the rotation before
 constexpr std::uint32_t kRecent = 16;  // blocks, of a sector beside
 constexpr std::size_t kReach = 12;     // sectors
@@ -37,7 +38,7 @@ void GroundMap::begin() {
 }
 
 GroundMap::Sector& GroundMap::sectorAt(float azimuth, std::uint32_t block, const Plane& plane) {
-  const std::size_t number = static_cast<std::size_t>(azimuth / kSectorWidth) % kSectors;
+  const std::size_t number = static_cast<std::size_t>(azimuth * kSectorsPerRadian) % kSectors;
   if (latest_[number] == 0 || block - latest_[number] > kFresh) renew(number, block, plane);
   latest_[number] = block;
   return sectors_[number];
@@ -45,9 +46,7 @@ GroundMap::Sector& GroundMap::sectorAt(float azimuth, std::uint32_t block, const
 
 void GroundMap::renew(std::size_t number, std::uint32_t block, const Plane& plane) {
   Sector& sector = sectors_[number];
-  const auto isRecent = [&](std::size_t other) {
-    return latest_[other] != 0 && block - latest_[other] <= kRecent;
-  };
+  const auto isRecent = [&](std::size_t other) { return latest_[other] != 0 && block - latest_[other] <= kRecent; };
   for (std::size_t step = 1; step <= kReach; ++step) {
     const std::size_t left = (number + step) % kSectors;
     const std::size_t right = (number + kSectors - step) % kSectors;

@@ -28,11 +28,11 @@ using BinMask = hn::Mask<BinFloats>;
 constexpr BinFloats kBinFloats{};
 constexpr BinInts kBinInts{};
 
-constexpr float kAlong = 0.05F;       // metres per metre, by which the ground may rise unseen between two returns
-constexpr float kBeyond = 0.1F;       // metres per metre, the same beyond the last one
+constexpr float kAlong = 0.05F;        // metres per metre, by which the ground may rise unseen between two returns
+constexpr float kBeyond = 0.1F;        // metres per metre, the same beyond the last one
 constexpr float kBeyondStart = 0.02F;  // metres, the same
-constexpr float kMostBeyond = 1.5F;   // metres
-constexpr float kStep = 0.25F;        // metres; higher ones are no ground, even if they were found to be
+constexpr float kMostBeyond = 1.5F;    // metres
+constexpr float kStep = 0.25F;         // metres; higher ones are no ground, even if they were found to be
 constexpr float kTrendGain = 0.3F;
 constexpr float kMostTrend = 0.005F;    // metres per metre of distance
 constexpr float kMarginSame = 0.01F;    // metres
@@ -74,17 +74,18 @@ using Middles = const GroundMap::Values&;
 HWY_INLINE void seeThrough(const Report& report, Middles middles) {
   const std::size_t first = GroundMap::binOf(report.seen_from) + 1, end = GroundMap::binOf(report.seen_to);
   if (first >= end) return;
+  const float slope = report.seen_height / report.seen_to;
   forBins(first, end - 1, [&](std::size_t bin, BinMask mask) HWY_ATTR {
     const Cells cells{*report.sector, bin};
     const auto middle = cells.load(middles);
-    const auto ray = hn::Add(hn::Mul(set(report.ray), middle), set(kMarginRay));
+    const auto ray = hn::Add(hn::Mul(set(slope), middle), set(kMarginRay));
     cells.store(hn::And(mask, hn::Gt(cells.heightAt(middle), ray)), set(GroundMap::kUnknown), report.sector->slack);
   });
 }
 
 /// Updates the trend in the bin of the farthest return.
-HWY_INLINE void addTrend(GroundMap::Sector& sector, const Stretch& stretch, float offset, float slope,
-                         bool turns_left, Middles middles) {
+HWY_INLINE void addTrend(GroundMap::Sector& sector, const Stretch& stretch, float offset, float slope, bool turns_left,
+                         Middles middles) {
   const std::size_t bin = GroundMap::binOf(stretch.rho);
   if (sector.slack[bin] >= 1.0F || sector.age[bin] <= 0.0F) return;
   const float at = middles[bin], before = sector.heightAt(bin, at);
@@ -104,24 +105,24 @@ HWY_INLINE void addStretch(GroundMap::Sector& sector, const Stretch& stretch, fl
   const float offset = stretch.height - slope * stretch.rho;
   const auto ray = set(stretch.height / stretch.rho);
   addTrend(sector, stretch, offset, slope, turns_left, middles);
-  forBins(GroundMap::binOf(stretch.from_rho), GroundMap::binOf(stretch.rho), [&](std::size_t bin,
-                                                                               BinMask mask) HWY_ATTR {
-    const Cells cells{sector, bin};
-    const auto at = cells.load(middles);
-    const auto inside = hn::Min(hn::Sub(at, set(stretch.from_rho)), hn::Sub(set(stretch.rho), at));
-    const auto slack = hn::Mul(set(kAlong), hn::Max(hn::Zero(kBinFloats), inside));
-    const auto before = cells.load(sector.slack);
-    // The return would have been hidden.
-    const auto is_hidden = hn::Gt(cells.heightAt(at), hn::Add(hn::Mul(ray, at), set(kMarginHidden)));
-    const auto is_better = hn::Le(slack, hn::Add(before, set(kMarginSame)));
-    const auto doubted = hn::Min(hn::Add(hn::Max(slack, before), set(kDoubt)), set(GroundMap::kUnknown));
-    const auto entered = hn::And(mask, hn::Or(is_hidden, is_better));
-    cells.store(hn::And(mask, is_hidden), hn::Zero(kBinFloats), sector.trend);
-    cells.store(entered, stretch.is_doubted ? hn::IfThenElse(is_hidden, slack, doubted) : slack, sector.slack);
-    cells.store(entered, set(offset), sector.offset);
-    cells.store(entered, set(slope), sector.slope);
-    cells.store(entered, hn::Zero(kBinFloats), sector.age);
-  });
+  forBins(GroundMap::binOf(stretch.from_rho), GroundMap::binOf(stretch.rho),
+          [&](std::size_t bin, BinMask mask) HWY_ATTR {
+            const Cells cells{sector, bin};
+            const auto at = cells.load(middles);
+            const auto inside = hn::Min(hn::Sub(at, set(stretch.from_rho)), hn::Sub(set(stretch.rho), at));
+            const auto slack = hn::Mul(set(kAlong), hn::Max(hn::Zero(kBinFloats), inside));
+            const auto before = cells.load(sector.slack);
+            // The return would have been hidden.
+            const auto is_hidden = hn::Gt(cells.heightAt(at), hn::Add(hn::Mul(ray, at), set(kMarginHidden)));
+            const auto is_better = hn::Le(slack, hn::Add(before, set(kMarginSame)));
+            const auto doubted = hn::Min(hn::Add(hn::Max(slack, before), set(kDoubt)), set(GroundMap::kUnknown));
+            const auto entered = hn::And(mask, hn::Or(is_hidden, is_better));
+            cells.store(hn::And(mask, is_hidden), hn::Zero(kBinFloats), sector.trend);
+            cells.store(entered, stretch.is_doubted ? hn::IfThenElse(is_hidden, slack, doubted) : slack, sector.slack);
+            cells.store(entered, set(offset), sector.offset);
+            cells.store(entered, set(slope), sector.slope);
+            cells.store(entered, hn::Zero(kBinFloats), sector.age);
+          });
 }
 
 /// Expects the ground to go on beyond a stretch.

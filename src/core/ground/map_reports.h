@@ -19,7 +19,7 @@ struct Stretch {
 struct Report {
   GroundMap::Sector* sector;
   float seen_from, seen_to;  ///< metres; a ray passes above the ground from one distance to the other
-  float ray;                 ///< its slope
+  float seen_height;         ///< where it ends, metres
   bool has_ground;
   bool is_last;     ///< no ground has been found beyond
   Stretch stretch;  ///< if it has ground

@@ -96,20 +96,21 @@ void PlaneEstimator::add(const Block& block, std::size_t column) {
 /// Of the heights that at least kEnough of the most weight agrees with, the lowest: the mean of those near it, and
 /// their weight.
 PlaneEstimator::Agreed PlaneEstimator::lowestOf(const Line* lines, std::size_t size, float window) {
-  std::array<float, kMemory> support{};
-  float most = 0.0F;
-  for (std::size_t i = 0; i < size; ++i) {
-    for (std::size_t j = 0; j < size; ++j)
-      if (std::fabs(lines[i].height - lines[j].height) < window) support[i] += lines[j].weight;
-    most = std::max(most, support[i]);
+  std::array<float, kMemory> heights, support{};
+  for (std::size_t i = 0; i < size; ++i) heights[i] = lines[i].height;
+  for (std::size_t j = 0; j < size; ++j) {
+    const float height = lines[j].height, weight = lines[j].weight;
+    for (std::size_t i = 0; i < size; ++i) support[i] += std::fabs(heights[i] - height) < window ? weight : 0.0F;
   }
+  float most = 0.0F;
+  for (std::size_t i = 0; i < size; ++i) most = std::max(most, support[i]);
   float lowest = std::numeric_limits<float>::infinity();
   for (std::size_t i = 0; i < size; ++i)
-    if (support[i] >= kEnough * most) lowest = std::min(lowest, lines[i].height);
+    if (support[i] >= kEnough * most) lowest = std::min(lowest, heights[i]);
   float sum = 0.0F, weight = 0.0F;
   for (std::size_t i = 0; i < size; ++i)
-    if (std::fabs(lines[i].height - (lowest + window)) < 2.0F * window) {
-      sum += lines[i].weight * lines[i].height;
+    if (std::fabs(heights[i] - (lowest + window)) < 2.0F * window) {
+      sum += lines[i].weight * heights[i];
       weight += lines[i].weight;
     }
   return {weight > 0.0F ? sum / weight : 0.0F, weight};

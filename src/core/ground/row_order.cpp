@@ -52,7 +52,6 @@ void RowOrder::update(const Block& block) {
   for (std::size_t row = 0; row < seen_.size(); ++row) {
     if (block.returns[row] == 0) continue;
     const std::size_t at = row * Block::kColumns + 31 - static_cast<std::size_t>(__builtin_clz(block.returns[row]));
-    const float rho = block.rho[at];
     Seen& seen = seen_[row];
     const float azimuth = azimuthOfDirection(block.x[at], block.y[at]);
     if (seen.block == 0) is_new = true;
@@ -60,7 +59,7 @@ void RowOrder::update(const Block& block) {
       turned += wrapped(azimuth - seen.azimuth);
       ++count;
     }
-    seen = {block.height[at] / rho, azimuth, {block.x[at] / rho, block.y[at] / rho}, block_};
+    seen = {block.x[at], block.y[at], block.rho[at], block.height[at], azimuth, block_};
   }
   if (count > 0) turn_ += (turned / static_cast<float>(count) - turn_) * (turn_ == 0.0F ? 1.0F : 0.25F);
   if (is_new || block_ >= sort_at_) {
@@ -77,7 +76,8 @@ void RowOrder::sort() {
     now_[row] = seen_[row].azimuth + turn_ * static_cast<float>(block_ - seen_[row].block);
   }
   std::sort(order_.begin(), order_.end(), [&](std::int32_t a, std::int32_t b) {
-    const float slope_a = seen_[static_cast<std::size_t>(a)].slope, slope_b = seen_[static_cast<std::size_t>(b)].slope;
+    const float slope_a = seen_[static_cast<std::size_t>(a)].slope(),
+                slope_b = seen_[static_cast<std::size_t>(b)].slope();
     return slope_a != slope_b ? slope_a < slope_b : a < b;
   });
   rows_.clear();
@@ -97,7 +97,7 @@ void RowOrder::sort() {
     for (std::int32_t j = i + 1; j < size && j <= i + kMost && row.above == kNone; ++j)
       if (isBeside(j)) {
         if (row.up == kNone) row.up = j;
-        if (j != row.up && seenAt(j).slope > seenAt(i).slope + kClearly) row.above = j;
+        if (j != row.up && seenAt(j).slope() > seenAt(i).slope() + kClearly) row.above = j;
       }
     rows_.push_back(row);
   }

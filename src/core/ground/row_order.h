@@ -32,16 +32,20 @@ class RowOrder {
   const std::vector<Row>& rows() const { return rows_; }
   /// Azimuth of a row's returns in the latest block, radians, 0 to 2 pi.
   float azimuthOf(std::int32_t row) const { return seen_[static_cast<std::size_t>(row)].azimuth; }
-  const Direction& directionOf(std::int32_t row) const { return seen_[static_cast<std::size_t>(row)].direction; }
+  Direction directionOf(std::int32_t row) const {
+    const Seen& seen = seen_[static_cast<std::size_t>(row)];
+    return {seen.x / seen.rho, seen.y / seen.rho};
+  }
 
   bool turnsLeft() const { return turn_ > 0.0F; }
 
  private:
   struct Seen {
-    float slope = 0.0F;    // of the ray
-    float azimuth = 0.0F;  // radians
-    Direction direction{1.0F, 0.0F};
+    float x = 1.0F, y = 0.0F, rho = 1.0F, height = 0.0F;  // of the latest return
+    float azimuth = 0.0F;                                 // radians
     std::uint32_t block = 0;
+
+    float slope() const { return height / rho; }
   };
   void sort();
 
