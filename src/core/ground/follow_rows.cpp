@@ -214,7 +214,7 @@ HWY_INLINE Mask foundByMap(const Mapped& map, const Above& above, Mask flat, Mas
 /// Ground that continues the column's.
 HWY_INLINE Mask foundByColumn(const Column& column, const Mapped& map, const Above& above, Mask flat, Mask obstacle,
                               Floats steepest) {
-  const auto first = column.first, fits_map = hn::Lt(map.above, hn::Add(set(kAboveMap), map.slack));
+  const Mask first = column.first, fits_map = hn::Lt(map.above, hn::Add(set(kAboveMap), map.slack));
   const auto distance = column.distance, near = hn::Min(distance, set(kFirstMost)), off = hn::Abs(column.above);
   // At its height.
   const auto at_column =
@@ -245,7 +245,8 @@ HWY_INLINE Mask foundByColumn(const Column& column, const Mapped& map, const Abo
 /// What is found of any part of a row.
 HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const Column& column, const Mapped& map,
                             Floats steepest) {
-  const auto rho = column.rho, height = column.height, distance = column.distance, valid = column.valid;
+  const Floats rho = column.rho, height = column.height, distance = column.distance;
+  const Mask valid = column.valid;
   const Above above = lookUp(row, k, rho, height, steepest);
   const auto off_map = hn::Abs(map.above), off_column = hn::Abs(column.above);
   const auto flat = hn::AndNot(above.steep, hn::Or(hn::Not(above.seen), hn::Lt(hn::Abs(above.slope), steepest)));
