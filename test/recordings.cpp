@@ -82,6 +82,7 @@ class Simulation {
     if (is_on_map_ && random_.chance(0.7)) hints.origin = {static_cast<float>(kMap[0]), static_cast<float>(kMap[1]), 0};
     if (random_.chance(0.3)) hints.roughness = static_cast<float>(random_.magnitude(0.01, 10));
     hints.jitter = static_cast<float>(jitter_);
+    if (random_.chance(0.2)) hints.drift = static_cast<float>(random_.between(0, 5));
     return hints;
   }
 

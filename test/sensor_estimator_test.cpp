@@ -173,6 +173,30 @@ TEST(SensorEstimator, MeasuresTheJitterOfAzimuths) {
   EXPECT_EQ(estimate(twice).steps_per_turn, static_cast<int>(2 * kColumns));
 }
 
+/// A rotation of a sensor that moves along x, in the frame of its start, between walls at two distances.
+/// \param way in a rotation, metres
+Scan movingRotation(double way) {
+  Scan scan(kColumns, kLasers);
+  for (std::size_t laser = 0; laser < kLasers; ++laser)
+    for (std::size_t column = 0; column < kColumns; ++column) {
+      const double part = static_cast<double>(column) / static_cast<double>(kColumns);
+      const double azimuth = 6.283185307179586 * part;
+      const double range = column % 100 < 50 ? 10.0 : 5.0;
+      scan.set(
+          laser, column,
+          {static_cast<float>(range * std::cos(azimuth) + way * part), static_cast<float>(range * std::sin(azimuth)),
+           0.03F * static_cast<float>(range) * (static_cast<float>(laser) - 8.0F)});
+    }
+  return scan;
+}
+
+TEST(SensorEstimator, MeasuresTheDriftOfAzimuths) {
+  EXPECT_LT(estimate(movingRotation(0.0)).drift, 0.05F);
+  const float slow = estimate(movingRotation(1.0)).drift;
+  EXPECT_GT(slow, 1.0F);
+  EXPECT_GT(estimate(movingRotation(3.0)).drift, slow);
+}
+
 // As from a sensor that measures at every other step: no two returns are adjacent.
 TEST(SensorEstimator, AcceptsEmptyEveryOtherColumn) {
   const Scan full = rotation();

@@ -21,6 +21,7 @@ struct SensorHints {
   bool clockwise = false;                         ///< sense of rotation, seen from above
   float far_distance = 1e30F;                     ///< horizontal distance that few returns exceed, metres
   float jitter = 0.0F;  ///< by how much azimuths of adjacent columns differ from a step of the turn, in steps
+  float drift = 0.0F;   ///< by how much azimuths of columns that are 32 apart differ from 32 steps, in steps
   /// Typical difference between the ranges of one laser's returns in adjacent columns, metres; infinite if most have
   /// none in the next column.
   float roughness = 0.0F;

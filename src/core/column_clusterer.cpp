@@ -86,6 +86,10 @@ constexpr std::size_t kWorthSorting = 256;
 /// Columns of these on which the work of far returns is measured. Fewer: a worse estimate; more: a later change
 /// (recordings).
 constexpr std::size_t kTriedColumns = 128;
+/// SensorHints::drift from which on returns leave their expected bins too often: of clouds that are motion-compensated.
+/// The first columns do not show it, as the motion grows from there. At rest 0.05, up to 0.8 in a vehicle's frame; in
+/// motion 1 to 20 (recordings).
+constexpr float kMaxDrift = 1.25F;
 /// Columns that are read from their source; fewer are gathered into blocks, which evens out their work (latency).
 constexpr std::size_t kWorthReadingAtOnce = 16;
 /// Cells from which on several threads take less time than one (threads).
@@ -170,10 +174,13 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
   scheduler_.skipColumns(columns);
 }
 
-/// Reads the first columns. If linking far returns takes longer than sorting, all returns of the rotation are near.
+/// Reads the first columns. If linking far returns takes longer than sorting, or will as the columns drift, all returns
+/// of the rotation are near.
 /// \return the columns read
 std::size_t ColumnClusterer::Rotation::tryFar(std::size_t lasers, const CellSource& cells) {
-  if (partition_count_ > 1)
+  const bool drifts = parameters_.sensor.drift > kMaxDrift;
+  if (drifts) parameters_.sensor.steps_per_turn = 0;
+  if (drifts || partition_count_ > 1)
     preparePart(0);
   else
     partitions_[0].collectNear();  // prepared by usePartitions ()

@@ -108,10 +108,10 @@ SensorHints SensorEstimator::estimate(const std::array<float, 3>& declared_origi
 
   // Over many columns, the step and the sense of rotation are measured more finely.
   Sample<double> turns;
-  for (const FurtherPair& pair : further_)
+  for (const Pair& pair : further_)
     turns.push_back(
         std::remainder(directionOf(pair.b, origin).azimuth - directionOf(pair.a, origin).azimuth, 2.0 * kPi) /
-        static_cast<double>(pair.columns));
+        static_cast<double>(kDriftColumns));
   const auto step = static_cast<double>(median(turns, 0.0F));
   Sample<double> deviations;
   for (const double turn : turns) deviations.push_back(std::fabs(turn - step));
@@ -120,13 +120,16 @@ SensorHints SensorEstimator::estimate(const std::array<float, 3>& declared_origi
   if (std::fabs(step) > kMinStep && static_cast<double>(median(deviations, 0.0F)) < kMaxDeviation * std::fabs(step))
     hints.steps_per_turn = static_cast<int>(std::lround(2.0 * kPi / std::fabs(step)));
   hints.clockwise = step < 0;
-  constexpr double kMostJitter = 0.75;  // part of the pairs that jitter less
+  constexpr double kMostPairs = 0.75;  // part of the pairs that jitter and drift less
+  if (!deviations.empty() && hints.steps_per_turn > 0)
+    hints.drift = static_cast<float>(quantile(deviations.begin(), deviations.end(), kMostPairs) / std::fabs(step)) *
+                  static_cast<float>(kDriftColumns);
   Sample<double> jitters;
   for (const Pair& pair : along_row_)
     jitters.push_back(std::fabs(
         std::remainder(directionOf(pair.b, origin).azimuth - directionOf(pair.a, origin).azimuth, 2.0 * kPi) - step));
   if (!jitters.empty() && hints.steps_per_turn > 0)
-    hints.jitter = static_cast<float>(quantile(jitters.begin(), jitters.end(), kMostJitter) / std::fabs(step));
+    hints.jitter = static_cast<float>(quantile(jitters.begin(), jitters.end(), kMostPairs) / std::fabs(step));
 
   constexpr double kFew = 0.2;  // share of the returns beyond SensorHints::far_distance
   Sample<double> distances;
@@ -146,7 +149,6 @@ SensorHints estimateSensor(std::size_t columns, std::size_t lasers, const std::a
   constexpr std::size_t kSmall = 4096;  // cells, below which a range image is not worth its preparation
   constexpr std::size_t kSampledRows = 8;
   constexpr std::size_t kSamples = 128;
-  constexpr std::size_t kFurther = 32;  // columns; less than half a turn of any sensor
   constexpr std::size_t kMinShare = 4;  // of a turn: 1 / kMinShare; less would leave the range image mostly empty
   if (lasers < 2 || columns * lasers < kSmall) return SensorHints();
   const auto valid = [](const Return& cell) { return isReturn(cell.x, cell.y, cell.z); };
@@ -166,12 +168,13 @@ SensorHints estimateSensor(std::size_t columns, std::size_t lasers, const std::a
       if (!valid(cell)) continue;
       const Return right = column + 1 < columns ? cells.at(laser, column + 1) : kNoReturn;
       const Return below = laser + 1 < lasers ? cells.at(laser + 1, column) : kNoReturn;
-      const Return further = column + kFurther < columns ? cells.at(laser, column + kFurther) : kNoReturn;
+      const std::size_t after = column + SensorEstimator::kDriftColumns;
+      const Return further = after < columns ? cells.at(laser, after) : kNoReturn;
       if (valid(right))
         estimator.addAlongRow(cell, right);
       else
         estimator.addAlone();
-      if (valid(further)) estimator.addFurtherAlongRow(cell, further, kFurther);
+      if (valid(further)) estimator.addFurtherAlongRow(cell, further);
       estimator.addOfLaser(laser, cell);
       if (!valid(below)) continue;
       estimator.addAlongColumn(cell, below);

@@ -19,10 +19,10 @@ class SensorEstimator {
   void addAlongRow(const Return& a, const Return& b) { along_row_.push_back({a, b}); }
   /// A return of a laser that has none in the next column.
   void addAlone() { ++alone_; }
-  /// Two returns of one laser, b `columns` columns after a, less than half a turn.
-  void addFurtherAlongRow(const Return& a, const Return& b, std::size_t columns) {
-    further_.push_back({a, b, columns});
-  }
+  /// Between the columns of a pair that SensorHints::drift is measured by; less than half a turn of any sensor.
+  static constexpr std::size_t kDriftColumns = 32;
+  /// Two returns of one laser, b kDriftColumns columns after a.
+  void addFurtherAlongRow(const Return& a, const Return& b) { further_.push_back({a, b}); }
   /// Two returns of adjacent lasers in one column.
   void addAlongColumn(const Return& a, const Return& b) { along_column_.push_back({a, b}); }
   /// Returns of a laser, one laser after the other.
@@ -37,12 +37,7 @@ class SensorEstimator {
   struct Pair {
     Return a, b;
   };
-  struct FurtherPair {
-    Return a, b;
-    std::size_t columns;
-  };
-  Sample<Pair> along_row_, along_column_;
-  Sample<FurtherPair> further_;
+  Sample<Pair> along_row_, along_column_, further_;
   SensorFrameEstimator frame_;
   std::size_t alone_ = 0;
 };
