@@ -22,7 +22,7 @@ run_tests() {
     shift
   done
   shift
-  build_quietly "$root" "$build" -DLISCO_WARNINGS_AS_ERRORS=ON -DLISCO_BUILD_PYTHON=ON "$@"
+  build_quietly "$root" "$build" -DLISCO_WARNINGS_AS_ERRORS=ON "$@"
   echo "$name:"
   if ! (cd "$build" && ctest --output-on-failure -j "$(nproc)" "${ctest_options[@]}" >ctest.log 2>&1 </dev/null); then
     cat "$build/ctest.log" >&2
@@ -31,10 +31,10 @@ run_tests() {
   sed -n '/tests passed/,$p' "$build/ctest.log"
 }
 
-run_tests test -- -DCMAKE_BUILD_TYPE=Release -DLISCO_BUILD_BENCHMARKS=ON
+run_tests test -- -DCMAKE_BUILD_TYPE=Release -DLISCO_BUILD_BENCHMARKS=ON -DLISCO_BUILD_PYTHON=ON
 # -O1 and line numbers only: half the time to compile. With sanitizers, GCC reports variables of the standard library as
-# perhaps uninitialized. Left out: what builds or starts programs without sanitizers, and the archives' many processes.
+# perhaps uninitialized. Left out: what builds or starts programs without sanitizers, and Python.
 sanitizers="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer"
-run_tests test-asan-ubsan -LE 'real|package' -E '^(lisco_page_tests|python_archive|python_plot)$' -- \
+run_tests test-asan-ubsan -LE 'real|package' -E '^lisco_(live_)?page_tests$' -- \
   -DCMAKE_BUILD_TYPE=RelWithDebInfo "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -g1 -DNDEBUG" \
   "-DCMAKE_CXX_FLAGS=$sanitizers -Wno-maybe-uninitialized"
