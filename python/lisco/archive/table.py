@@ -25,6 +25,7 @@ def merge(out: str, pieces: Iterable[Piece]) -> None:
         try:
             connection.execute("PRAGMA journal_mode = OFF")  # the file counts only once it is renamed
             connection.execute("PRAGMA synchronous = OFF")
+            connection.execute("PRAGMA page_size = 16384")  # a quarter less time than with 4096
             connection.execute("BEGIN")
             connection.execute(
                 "CREATE TABLE scans (id INTEGER PRIMARY KEY, name TEXT NOT NULL, time REAL, piece TEXT NOT NULL,"

@@ -15,6 +15,7 @@ from .._checks import Array
 from ..clusterer import Clusterer
 from ..ground import remove_ground
 from ..reading import RecordedScan, read, recorded_scans, sensors
+from .memory import keep_memory
 from .pieces import Piece, Settings, canonical
 
 LABELS, CLUSTERS, REPORT = "labels.npz", "clusters.npy", "piece.json"
@@ -81,6 +82,7 @@ def do_piece(out: str, piece: Piece, settings: Settings) -> Dict[str, Any]:
     done = report_of(out, piece)
     if done is not None:
         return done
+    keep_memory()
     final = os.path.join(out, "pieces", piece.name)
     temporary = f"{final}.{uuid.uuid4().hex}.tmp"
     os.mkdir(temporary)
