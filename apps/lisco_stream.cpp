@@ -227,7 +227,14 @@ struct Input {
   PacketQueue* queue = nullptr;  ///< the source, if live
   bool has_clouds = false;       ///< instead of packets
   unsigned every = 1;            ///< of how many rotations of packets the first is taken
+  std::string name{};            ///< for people: the file or folder, or the port
 };
+
+/// A file's or folder's name without those before it, also of "drives/" and ".".
+std::string nameOf(const fs::path& path) {
+  const fs::path whole = fs::absolute(path).lexically_normal();
+  return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
 
 /// The clouds of a recording, if its topic holds clouds.
 std::optional<Input> openClouds(const Options& options, Report& report) {
@@ -277,12 +284,14 @@ Input open(const Options& options, Report& report) {
   if (options.capture.empty()) {
     std::unique_ptr<Decoder> decoder = makeDecoder(options.decoder);
     auto receiver = std::make_unique<UdpReceiver>(*options.port);
-    report.warn("listening on UDP port " + std::to_string(receiver->port()));
+    const std::string name = "UDP port " + std::to_string(receiver->port());
+    report.warn("listening on " + name);
     auto queue = std::make_unique<PacketQueue>(std::move(receiver));
     PacketQueue* const live = queue.get();
-    return {std::move(queue), std::move(decoder), live};
+    return {std::move(queue), std::move(decoder), live, false, 1, name};
   }
   Input input = openFile(options, report);
+  input.name = nameOf(options.capture);
   if (options.realtime) input.source = std::make_unique<PacedCapture>(std::move(input.source));
   return input;
 }
@@ -375,9 +384,7 @@ int run(const Options& options) {
   }
   std::unique_ptr<LiveView> live;
   if (options.http) {
-    const std::string source =
-        options.capture.empty() ? "UDP port " + std::to_string(*options.port) : options.capture.filename().string();
-    live = std::make_unique<LiveView>(*options.http, report, options.stream, source + ", " + decoder.name(),
+    live = std::make_unique<LiveView>(*options.http, report, options.stream, input.name + ", " + decoder.name(),
                                       options.window);
     report.warn("view at " + live->url());
   }

@@ -97,6 +97,7 @@ std::string LiveView::status(bool has_ended) const {
       {"state", has_ended ? "ended" : "running"},
       {"frame", frames_ + 1},
       {"result", scene_.resultNumber()},
+      {"whole", scene_.isWhole()},
       {"unit", unit_},
       {"rotations", totals.turns},
       {"columns", totals.columns},

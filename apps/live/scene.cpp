@@ -12,9 +12,10 @@
 namespace lisco_apps {
 namespace {
 
-ViewCluster viewClusterOf(const lisco::ClusterFeatures& features) {
+/// \param id see ViewCluster
+ViewCluster viewClusterOf(const lisco::ClusterFeatures& features, std::uint32_t id = 0) {
   const lisco::OrientedBox& box = features.box;
-  return {features.size, box.center, box.length, box.width, box.height, box.yaw, features.nearest_range};
+  return {features.size, box.center, box.length, box.width, box.height, box.yaw, features.nearest_range, id};
 }
 
 }  // namespace
@@ -165,7 +166,7 @@ const ViewScan& LiveScene::show() {
   labelling.labels.clear();
   labelling.clusters.clear();
 
-  // An endless stream's clusters are numbered in the order of their ids.
+  // An endless stream's clusters are numbered in the order of their ids, which the page shows.
   std::map<std::uint32_t, std::uint32_t> number_of;
   if (!delivered_.empty()) {
     for (std::uint64_t number = shown_from_; number < next(); ++number)
@@ -176,7 +177,7 @@ const ViewScan& LiveScene::show() {
         it = delivered_.erase(it);
         continue;
       }
-      labelling.clusters.push_back(viewClusterOf(it->second.features));
+      labelling.clusters.push_back(viewClusterOf(it->second.features, it->first));
       found->second = static_cast<std::uint32_t>(labelling.clusters.size());
       ++it;
     }

@@ -31,6 +31,8 @@ class LiveScene {
   const ViewScan& show();
   /// Number of the last rotation or window; 0: none yet.
   std::uint64_t resultNumber() const { return result_number_; }
+  /// Whether the columns of a whole turn or window are shown, but for one.
+  bool isWhole() const { return turn_cells_ > 0 && next() - shown_from_ + preview_lasers_ >= turn_cells_; }
 
  private:
   /// The cells that are held; number n has index n - first_.

@@ -158,7 +158,12 @@ Json headerOf(const ViewLabelling& labelling) {
     clusters.push_back({cluster.size, rounded(cluster.center[0]), rounded(cluster.center[1]),
                         rounded(cluster.center[2]), rounded(cluster.length), rounded(cluster.width),
                         rounded(cluster.height), rounded(cluster.yaw), rounded(cluster.nearest_range)});
-  return {{"name", labelling.name}, {"tolerance", labelling.tolerance}, {"clusters", std::move(clusters)}};
+  Json header{{"name", labelling.name}, {"tolerance", labelling.tolerance}, {"clusters", std::move(clusters)}};
+  if (!labelling.clusters.empty() && labelling.clusters.front().id != 0) {
+    header["ids"] = Json::array();
+    for (const ViewCluster& cluster : labelling.clusters) header["ids"].push_back(cluster.id);
+  }
+  return header;
 }
 
 /// Appends the class of each point: 0 = ground, 1 = noise, otherwise 1 + the cluster's number.

@@ -17,6 +17,7 @@ struct ViewCluster {
   double length = 0, width = 0, height = 0;  ///< of the box
   double yaw = 0;                            ///< of its length, counterclockwise from the x axis
   double nearest_range = 0;
+  std::uint32_t id = 0;  ///< shown in place of its number; 0: the number. All clusters of a labelling have one, or none
 };
 
 /// Clusters of a scan's points.

@@ -191,6 +191,23 @@ TEST_F(LiveSceneTest, ShowsClustersOfAnEndlessStreamAsTheyAreDelivered) {
   const std::map<std::uint32_t, std::size_t> shown = sizes();
   EXPECT_EQ(shown.count(0), 0U);
   EXPECT_EQ(shown.size(), scan.labellings[0].clusters.size());
+  // Labels are numbers on the page; ids are the stream's, of which the first clusters are no longer shown.
+  std::uint32_t last = 0;
+  for (const lisco_apps::ViewCluster& cluster : scan.labellings[0].clusters) {
+    EXPECT_GT(cluster.id, last);
+    last = cluster.id;
+  }
+  EXPECT_GT(last, scan.labellings[0].clusters.size());
+}
+
+TEST_F(LiveSceneTest, IsWholeAfterATurn) {
+  start<lisco_apps::RotationStream>();
+  turn(kColumns / 2);
+  handOver();
+  EXPECT_FALSE(scene_->isWhole());
+  turn(kColumns);
+  handOver();
+  EXPECT_TRUE(scene_->isWhole());
 }
 
 TEST_F(LiveSceneTest, WithoutViewersNothingIsCopied) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <regex>
@@ -29,16 +30,18 @@ class LivePageTest : public BrowserTest {
   static void SetUpTestSuite() {
     BrowserTest::SetUpTestSuite();
     if (!browser_) return;
-    const std::string drive = (folder_ / "drive").string();
-    ASSERT_EQ(std::system((LISCO_SIMULATE " --terrain road --sensor vlp16 --speed 8 --rotations 12 --pcap -o " + drive +
-                           " >/dev/null")
+    simulate("drive", 12);
+  }
+  static void simulate(const std::string& folder, int rotations) {
+    ASSERT_EQ(std::system((LISCO_SIMULATE " --terrain road --sensor vlp16 --speed 8 --rotations " +
+                           std::to_string(rotations) + " --pcap -o " + (folder_ / folder).string() + " >/dev/null")
                               .c_str()),
               0);
   }
 
-  /// Starts lisco_stream on the capture, with a server on a free port.
-  void start(const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"drive/capture.pcap", "--sensor", "vlp16", "--tolerance", "0.4", "--stats"};
+  /// Starts lisco_stream on a capture, with a server on a free port.
+  void start(const std::vector<std::string>& more, const std::string& capture = "drive/capture.pcap") {
+    std::vector<std::string> arguments{capture, "--sensor", "vlp16", "--tolerance", "0.4", "--stats"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     for (const char* word : {"--http", "0"}) arguments.emplace_back(word);
     stream_.emplace(LISCO_STREAM, arguments, folder_);
@@ -89,10 +92,7 @@ TEST_F(LivePageTest, ShowsACapturesRotationsAndEnds) {
   browser_->open(url_);
   ASSERT_TRUE(waitForState("Live"));
   ASSERT_TRUE(browser_->waitFor("lisco.view.scan?.points > 1000"));
-  if (const char* const folder = std::getenv("LISCO_SCREENSHOTS")) {
-    browser_->waitFor("lisco.view.live.status.rotations >= 6");
-    browser_->saveScreenshot(std::filesystem::path(folder) / "live.png");
-  }
+  EXPECT_EQ(browser_->evaluate("document.title"), "capture.pcap, vlp16");
   ASSERT_TRUE(waitForState("Ended"));
   std::size_t frames = 0;
   for (auto message = reading.receiveMessage(); message.first == 2; message = reading.receiveMessage()) ++frames;
@@ -154,6 +154,99 @@ TEST_F(LivePageTest, ShowsWindowsAndEndlessClusters) {
     EXPECT_GT(browser_->evaluate("lisco.view.labelling.listed").get<int>(), 3) << mode[1];
     EXPECT_GT(browser_->evaluate("lisco.view.scan.points").get<int>(), 1000) << mode[1];
   }
+}
+
+TEST_F(LivePageTest, EndlessClustersKeepTheirIdsAndColours) {
+  start({"--mode", "endless", "--realtime", "--json", "--viewers", "1"});
+  browser_->open(url_);
+  ASSERT_TRUE(browser_->waitFor("lisco.view?.live?.frames_shown > 0"));
+  // The size and colour of each id in each frame
+  browser_->evaluate(
+      "(() => { const {live} = lisco.view; const show = live.show.bind(live); window.seen = []; "
+      "live.show = data => { show(data); for (const c of lisco.view.labelling.clusters.filter(c => !c.open)) "
+      "window.seen.push([c.name, c.size, c.color]); }; })()");
+  ASSERT_TRUE(waitForState("Ended"));
+  const Outcome outcome = stream_->end();
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  std::map<long long, long long> sizes;
+  std::istringstream lines(outcome.out);
+  for (std::string line; std::getline(lines, line);)
+    if (const Json found = Json::parse(line); found.contains("id")) sizes[found["id"]] = found["size"];
+  ASSERT_GT(sizes.size(), 20U);
+  std::map<long long, Json> colors;
+  std::size_t repeated = 0;
+  for (const Json& cluster : browser_->evaluate("window.seen")) {
+    const long long id = cluster[0];
+    ASSERT_EQ(sizes.count(id), 1U) << id;
+    EXPECT_EQ(cluster[1], sizes[id]) << id;
+    if (!colors.emplace(id, cluster[2]).second) ++repeated;
+    EXPECT_EQ(cluster[2], colors[id]) << id;
+  }
+  EXPECT_GT(colors.size(), 20U);
+  EXPECT_GT(repeated, 100U);
+  // Rows of the list are headed by ids, too.
+  EXPECT_EQ(browser_->evaluate("document.querySelector('#rows tr').innerText.split('\\t')[0]"),
+            browser_->evaluate("String(lisco.view.labelling.clusters[0].name)"));
+}
+
+TEST_F(LivePageTest, PlacesTheCameraByAWholeRotation) {
+  const auto place = [] { return browser_->evaluate("lisco.view.camera.place()"); };
+  start({"--realtime", "--viewers", "1"});
+  browser_->open(url_);
+  ASSERT_TRUE(browser_->waitFor("lisco.view?.live?.status?.whole"));
+  const Json fitted = place();
+  EXPECT_EQ(fitted, browser_->evaluate("lisco.view.placed"));
+  ASSERT_TRUE(waitForState("Ended"));
+  EXPECT_EQ(place(), fitted);
+  // A fit to all points of a rotation reaches about as far.
+  const double distance = browser_->evaluate("lisco.view.camera.distance");
+  browser_->key("r");
+  const double whole = browser_->evaluate("lisco.view.camera.distance");
+  EXPECT_NEAR(distance / whole, 1, 0.2);
+  EXPECT_EQ(stream_->end().status, 0);
+
+  // A camera that the user has moved stays.
+  start({"--realtime", "--viewers", "2"});
+  browser_->open(url_);
+  ASSERT_TRUE(browser_->waitFor("lisco.view?.live && document.getElementById('state').textContent !== ''"));
+  browser_->evaluate(
+      "new Promise(done => { const {live} = lisco.view; const show = live.show.bind(live); let first = true; "
+      "live.show = data => { show(data); if (first && lisco.view.scan.points) { lisco.view.top(); "
+      "window.moved = lisco.view.camera.place(); first = false; } }; done(1); })");
+  Socket second(port_);
+  ASSERT_EQ(second.openLive(port_, "").substr(0, 12), "HTTP/1.1 101");
+  ASSERT_TRUE(browser_->waitFor("lisco.view.live.status?.whole"));
+  EXPECT_EQ(place(), browser_->evaluate("window.moved"));
+  stream_->signal(SIGINT);
+  EXPECT_EQ(stream_->end().status, 0);
+}
+
+TEST_F(LivePageTest, AClickOnARowSelectsItWhileFramesCome) {
+  start({"--realtime", "--viewers", "1"});
+  browser_->open(url_);
+  ASSERT_TRUE(browser_->waitFor("document.querySelectorAll('#rows tr').length > 3"));
+  // The row that is pressed is the one that is released, some frames later.
+  EXPECT_TRUE(browser_->evaluate(
+      "(async () => { const row = document.querySelector('#rows tr:nth-child(2)'); row.focus(); "
+      "const {rotations} = lisco.view.live.status; "
+      "while (lisco.view.live.status.rotations < rotations + 2) await new Promise(requestAnimationFrame); "
+      "return row.isConnected && document.activeElement === row; })()"));
+  stream_->signal(SIGINT);
+  EXPECT_EQ(stream_->end().status, 0);
+}
+
+/// Makes a picture for doc/view.md.
+TEST_F(LivePageTest, IsDrawnWhileItRuns) {
+  const char* const folder = std::getenv("LISCO_SCREENSHOTS");
+  if (folder == nullptr) GTEST_SKIP() << "LISCO_SCREENSHOTS is not set";
+  simulate("long_drive", 60);
+  start({"--realtime", "--viewers", "1"}, "long_drive/capture.pcap");
+  browser_->open(url_);
+  ASSERT_TRUE(browser_->waitFor("lisco.view?.live?.status?.rotations >= 30"));
+  browser_->saveScreenshot(std::filesystem::path(folder) / "live.png");
+  EXPECT_TRUE(browser_->evaluate("document.getElementById('state').textContent === 'Live'"));
+  stream_->signal(SIGINT);
+  EXPECT_EQ(stream_->end().status, 0);
 }
 
 TEST_F(LivePageTest, PausesAndMeasures) {

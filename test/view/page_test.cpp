@@ -395,14 +395,58 @@ TEST_F(PageTest, LoadsAndTurns200000PointsInTime) {
   EXPECT_GT(load, 0.01);
   EXPECT_LT(load, 2.0);
   constexpr int kFrames = 30;
+  browser_->evaluate("lisco.view.renderer.adapt = () => {}");  // all points
   const double before = seconds();
   browser_->evaluate("(async () => { for (let i = 0; i < " + std::to_string(kFrames) +
                      "; ++i) { lisco.view.camera.turn(0.02, 0); lisco.view.redraw(); await new "
                      "Promise(requestAnimationFrame); } })()");
   const double per_frame = (seconds() - before) / kFrames;
-  std::printf("%.2f s to load, %.1f ms a frame\n", load, 1000 * per_frame);
+  browser_->evaluate("delete lisco.view.renderer.adapt");
+  std::printf("processor time of the page's thread: %.2f s to load, %.1f ms a frame\n", load, 1000 * per_frame);
   EXPECT_GT(per_frame, 0.0001);
   EXPECT_LT(per_frame, 1.0 / 30);
+
+  // Wall time, as a user has it; other programs delay it, so that benchmarks/view.sh alone sets its limits.
+  const double loaded = browser_->evaluate("lisco.view.shown_at");
+  double rate = 0;
+  for (int attempt = 0; attempt < 3; ++attempt)
+    rate = std::max(rate,
+                    browser_
+                        ->evaluate("(async () => { const {renderer} = lisco.view; lisco.view.toggle('turning'); "
+                                   "const [start, drawn] = [performance.now(), renderer.drawn]; "
+                                   "while (performance.now() < start + 1500) await new Promise(requestAnimationFrame); "
+                                   "const rate = 1000 * (renderer.drawn - drawn) / (performance.now() - start); "
+                                   "lisco.view.toggle('turning'); return rate; })()")
+                        .get<double>());
+  const int stride = browser_->evaluate("lisco.view.renderer.moving_stride");
+  std::printf("wall time: %.2f s from opening the file to the first picture; %.0f frames per second", loaded / 1000,
+              rate);
+  std::printf(stride > 1 ? ", of every %dth point in motion\n" : "\n", stride);
+  EXPECT_GT(loaded, 10);
+  EXPECT_GT(rate, 0.5);
+  if (std::getenv("LISCO_WALL_TIME") == nullptr) return;
+  EXPECT_LT(loaded, 2000);
+  EXPECT_GE(rate, 29.5);  // the browser counts in whole periods of 1/60 s
+  EXPECT_EQ(stride, 1);
+}
+
+TEST_F(PageTest, DrawsFewerPointsWhileASlowSceneMoves) {
+  open({largeScan()});
+  const Screenshot at_rest = browser_->screenshot();
+  const std::string turn =
+      "(async () => { const {camera} = lisco.view; for (let i = 0; i < 20; ++i) { camera.turn(0.1, 0); "
+      "lisco.view.redraw(); await new Promise(requestAnimationFrame); } return lisco.view.renderer.stride; })()";
+  // Each point takes a microsecond more.
+  browser_->evaluate(
+      "(() => { const {renderer} = lisco.view; const draw = renderer.drawPoints.bind(renderer); "
+      "renderer.drawPoints = (...all) => { const end = performance.now() + lisco.view.scan.points / renderer.stride / "
+      "1000; draw(...all); while (performance.now() < end); }; })()");
+  EXPECT_GE(browser_->evaluate(turn).get<int>(), 4);
+  // At rest, all points.
+  browser_->evaluate("lisco.view.camera.turn(-2, 0), lisco.view.redraw()");
+  EXPECT_TRUE(browser_->waitFor("lisco.view.renderer.stride === 1"));
+  browser_->settle();
+  EXPECT_LT(browser_->screenshot().differencesTo(at_rest), 200U);  // the angle is rounded
 }
 
 TEST_F(PageTest, ZPhone) {

@@ -24,6 +24,11 @@ class Camera {
     };
   }
 
+  // Equal if nothing has moved.
+  place() {
+    return JSON.stringify([this.target, this.distance, this.yaw, this.pitch]);
+  }
+
   turn(yaw, pitch) {
     this.set({yaw: this.yaw + yaw, pitch: this.pitch + pitch});
   }

@@ -42,10 +42,12 @@ class DifferenceReader {
 }
 
 // Clusters 1, 2, ... of a labelling: those of the header, and the rest measured on the points shown. Numbers may be
-// missing: those have no points.
-function clustersOf(scan, listed, classes) {
-  const clusters = listed.map(([size, x, y, z, length, width, height, yaw, range], index) =>
-    ({id: index + 1, size, center: [x, y, z], length, width, height, yaw, range})).filter(cluster => cluster.size > 0);
+// missing: those have no points. A cluster's name is what is shown: its number, or the stream's id.
+function clustersOf(scan, listed, classes, ids) {
+  const clusters = listed.map(([size, x, y, z, length, width, height, yaw, range], index) => {
+    const id = index + 1;
+    return {id, name: ids?.[index] ?? id, size, center: [x, y, z], length, width, height, yaw, range};
+  }).filter(cluster => cluster.size > 0);
   const measured = [];
   for (let i = 0; i < classes.length; ++i) {
     const id = classes[i] - 1;
@@ -63,7 +65,7 @@ function clustersOf(scan, listed, classes) {
   for (const {id, size, min, max, range} of measured.filter(Boolean)) {
     const center = min.map((low, axis) => (low + max[axis]) / 2);
     const [x, y, height] = max.map((high, axis) => high - min[axis]);
-    clusters.push({id, size, range, center, height, length: Math.max(x, y), width: Math.min(x, y),
+    clusters.push({id, name: id, size, range, center, height, length: Math.max(x, y), width: Math.min(x, y),
       yaw: y > x ? Math.PI / 2 : 0});
   }
   return clusters;
@@ -96,7 +98,7 @@ class Scan {
     }
     if (this.ring) this.rings = reader.fill(new Uint16Array(this.points));
     for (const labelling of this.labellings)
-      labelling.clusters = clustersOf(this, labelling.clusters, labelling.classes);
+      labelling.clusters = clustersOf(this, labelling.clusters, labelling.classes, labelling.ids);
   }
 
   // Metres, in the scan's own coordinates.

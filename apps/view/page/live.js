@@ -77,9 +77,13 @@ class Live {
     const scan = new Scan(new Uint8Array(data, 4 + size));
     if (this.status) this.frames_lost += Math.max(0, status.frame - this.status.frame - 1);
     ++this.frames_shown;
-    const is_new = status.result !== this.status?.result || !status.result;
-    this.status = status;
     const labelling = scan.labellings[0];
+    const ids = String(labelling.ids);
+    const fills_list = status.result !== this.status?.result || ids !== this.ids;
+    const fits = status.whole && !this.was_whole;  // the first columns are a sector at one side of the sensor
+    this.was_whole ||= status.whole;
+    this.ids = ids;
+    this.status = status;
     const visible = new Uint32Array(labelling.clusters.length + 2);
     for (const c of labelling.classes) ++visible[c];
     for (const cluster of labelling.clusters) {
@@ -87,14 +91,20 @@ class Live {
       cluster.swept = visible[cluster.id + 1] < cluster.size / 2;  // the sensor has passed it since
     }
     this.follow(labelling);
-    this.view.replace(scan, is_new);
+    this.view.replace(scan, {fills_list, fits});
     this.showStatus(labelling);
   }
 
-  // A cluster near one of the last frame keeps its colour, and stays selected.
+  // A cluster of the last frame, by its id if the stream gives ids and otherwise by its place, keeps its colour and
+  // stays selected.
   follow(labelling) {
     const before = new Map();
+    const by_id = new Map(labelling.ids ? this.known.filter(({open}) => !open).map(known => [known.name, known]) : []);
     for (const cluster of labelling.clusters) {
+      if (!cluster.open && by_id.has(cluster.name)) {
+        before.set(cluster, by_id.get(cluster.name));
+        continue;
+      }
       let best = Math.max(1, cluster.length / 2) ** 2;
       for (const known of this.known) {
         const square = (known.center[0] - cluster.center[0]) ** 2 + (known.center[1] - cluster.center[1]) ** 2;

@@ -1,12 +1,20 @@
 // Draws what Renderer draws, without WebGL: about ten times faster than WebGL where that is software itself.
 
+const MARGIN = 20;               // pixels beyond an edge, from which a point may still reach across it
+const SLOW_FRAME = 22;           // ms; 30 frames a second leave 33, of which the browser takes some
+const FAST_FRAME = 8;            // ms; below a half of SLOW_FRAME, so that the number of points settles
+const ALWAYS_DRAWN = 20000;      // points
+
 class Painter {
   constructor(canvas) {
     this.canvas = canvas;
     this.context = canvas.getContext('2d', {alpha: false, willReadFrequently: true});
     this.drawn = 0;  // frames
+    this.stride = 1;         // every how many points were drawn
+    this.moving_stride = 1;  // the same while the scene moves
+    this.frame_time = 0;     // of frames in motion, ms, smoothed
     this.positions = new Float32Array(0);
-    this.panes = [0, 1].map(() => ({colors: new Uint32Array(0), lines: [], line_colors: []}));
+    this.panes = [0, 1].map(() => ({colors: new Int32Array(0), lines: [], line_colors: []}));
   }
 
   setPositions(positions) {
@@ -14,7 +22,7 @@ class Painter {
   }
 
   setColors(pane, colors) {
-    this.panes[pane].colors = colors;
+    this.panes[pane].colors = new Int32Array(colors.buffer);
   }
 
   setLines(pane, positions, colors) {
@@ -22,11 +30,14 @@ class Painter {
     this.panes[pane].line_colors = colors;
   }
 
-  draw(matrix, panes, background, size, near_distance) {
+  // moves: fewer points are drawn if all would take too long
+  draw(matrix, panes, background, size, near_distance, moves) {
+    const start = performance.now();
+    this.stride = moves ? this.moving_stride : 1;
     const {width, height} = this.canvas;
     if (this.image?.width !== width || this.image.height !== height) {
       this.image = this.context.createImageData(width, height);
-      this.pixels = new Uint32Array(this.image.data.buffer);
+      this.pixels = new Int32Array(this.image.data.buffer);
       this.depths = new Float32Array(width * height);
     }
     this.pixels.fill(packed(background));
@@ -45,34 +56,49 @@ class Painter {
     }
     this.context.putImageData(this.image, 0, 0);
     ++this.drawn;
+    if (moves) this.adapt(performance.now() - start);
+  }
+
+  adapt(milliseconds) {
+    this.frame_time += 0.3 * (milliseconds - this.frame_time);
+    const points = this.positions.length / 3 / this.moving_stride;
+    const slower = this.frame_time > SLOW_FRAME && points > 2 * ALWAYS_DRAWN;
+    if (!slower && !(this.frame_time < FAST_FRAME && this.moving_stride > 1)) return;
+    this.moving_stride *= slower ? 2 : 0.5;
+    this.frame_time *= slower ? 0.5 : 2;
   }
 
   drawPoints(m, left, right, colors, size, near_distance) {
-    const {positions, pixels, depths} = this;
+    const {positions, pixels, depths, stride} = this;
     const {width, height} = this.canvas;
     const [m0, m1, m3, m4, m5, m7, m8, m9, m11, m12, m13, m15] =
       [0, 1, 3, 4, 5, 7, 8, 9, 11, 12, 13, 15].map(at => m[at]);
     const nearest = 0.02 * near_distance;
-    for (let i = 0, at = 0; i < colors.length; ++i, at += 3) {
+    const [low_x, high_x, high_y] = [left - MARGIN, right + MARGIN, height + MARGIN];
+    for (let i = 0; i < colors.length; i += stride) {
       const color = colors[i];
-      if (color < 0x01000000) continue;
+      const alpha = color >>> 24;
+      if (alpha === 0) continue;
+      const at = 3 * i;
       const x = positions[at], y = positions[at + 1], z = positions[at + 2];
       const w = m3 * x + m7 * y + m11 * z + m15;
       if (w < nearest) continue;
       const inverse = 1 / w;
       const screen_x = (m0 * x + m4 * y + m8 * z + m12) * inverse;
       const screen_y = (m1 * x + m5 * y + m9 * z + m13) * inverse;
-      if (!(screen_x > left - 20 && screen_x < right + 20 && screen_y > -20 && screen_y < height + 20)) continue;
-      let side = near_distance * inverse;
-      side = size * (side < 0.7 ? 0.7 : side > 2 ? 2 : side);
-      if (color < 0xff000000) side *= 1.7;
-      side = side < 1 ? 1 : side + 0.5 | 0;
-      const from_x = Math.floor(screen_x - side / 2 + 0.5), from_y = Math.floor(screen_y - side / 2 + 0.5);
+      if (!(screen_x > low_x && screen_x < high_x && screen_y > -MARGIN && screen_y < high_y)) continue;
+      let wanted = near_distance * inverse;
+      wanted = size * (wanted < 0.7 ? 0.7 : wanted > 2 ? 2 : wanted);
+      if (alpha < 255) wanted *= 1.7;
+      const side = wanted < 1 ? 1 : wanted + 0.5 | 0;
+      // Rounded down: truncated where all is positive.
+      const shift = 2 * MARGIN + 0.5 - side / 2;
+      const from_x = (screen_x + shift | 0) - 2 * MARGIN, from_y = (screen_y + shift | 0) - 2 * MARGIN;
+      const opaque = color | 0xff000000;
       const first_x = from_x < left ? left : from_x, last_x = from_x + side > right ? right : from_x + side;
       const first_y = from_y < 0 ? 0 : from_y, last_y = from_y + side > height ? height : from_y + side;
-      const opaque = color | 0xff000000;
-      for (let py = first_y; py < last_y; ++py) {
-        for (let pixel = py * width + first_x, end = py * width + last_x; pixel < end; ++pixel) {
+      for (let row = first_y * width, end_row = last_y * width; row < end_row; row += width) {
+        for (let pixel = row + first_x, end = row + last_x; pixel < end; ++pixel) {
           if (w >= depths[pixel]) continue;
           depths[pixel] = w;
           pixels[pixel] = opaque;

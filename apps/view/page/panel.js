@@ -46,7 +46,23 @@ class ClusterList {
     });
   }
 
+  // All clusters of another scan, from the top.
   fill() {
+    this.sort();
+    byId('rows').replaceChildren();
+    byId('list').scrollTop = 0;
+    this.addRows();
+  }
+
+  // The clusters of a stream's next frame in the rows that are there: a click or the focus stays on its row.
+  update() {
+    this.sort();
+    const rows = [...byId('rows').children];
+    rows.forEach((row, index) => index < this.sorted.length ? this.write(row, this.sorted[index]) : row.remove());
+    if (rows.length < ROWS) this.addRows();
+  }
+
+  sort() {
     const sign = this.descends ? -1 : 1;
     const listed = this.view.labelling.clusters.filter(({open}) => !open);
     this.sorted = listed.sort((a, b) => sign * (a[this.key] - b[this.key]) || a.id - b.id);
@@ -54,25 +70,28 @@ class ClusterList {
       const direction = this.descends ? 'descending' : 'ascending';
       button.parentNode.setAttribute('aria-sort', button.dataset.sort === this.key ? direction : 'none');
     }
-    byId('rows').replaceChildren();
-    byId('list').scrollTop = 0;
-    this.addRows();
   }
 
   addRows() {
     const rows = byId('rows');
-    const palette = PALETTES[this.view.look.theme];
     for (const cluster of this.sorted.slice(rows.children.length, rows.children.length + ROWS)) {
-      const swatch = element('span', {className: 'swatch'});
-      swatch.style.background = palette[this.view.labelling.colors[this.view.labelling.clusters.indexOf(cluster)]];
       const row = element('tr', {tabIndex: rows.children.length ? -1 : 0},
-        element('td', {}, swatch, String(cluster.id)),
-        ...[cluster.size, ...['range', 'length', 'height'].map(key => cluster[key].toFixed(2))]
-          .map(text => element('td', {textContent: text})));
-      row.dataset.id = cluster.id;
-      row.setAttribute('aria-selected', cluster.id === this.view.selected);
+        element('td', {}, element('span', {className: 'swatch'}), ''),
+        ...[0, 1, 2, 3].map(() => element('td', {}, '')));
+      this.write(row, cluster);
       rows.append(row);
     }
+  }
+
+  write(row, cluster) {
+    const {colors, clusters} = this.view.labelling;
+    const [first, ...others] = row.children;
+    first.firstChild.style.background = PALETTES[this.view.look.theme][colors[clusters.indexOf(cluster)]];
+    first.lastChild.data = String(cluster.name);
+    [cluster.size, ...['range', 'length', 'height'].map(key => cluster[key].toFixed(2))]
+      .forEach((text, column) => others[column].firstChild.data = text);
+    row.dataset.id = cluster.id;
+    row.setAttribute('aria-selected', cluster.id === this.view.selected);
   }
 
   mark(selected) {
@@ -98,7 +117,7 @@ function showSelection(scan, labelling, selected, point) {
   let title = point < 0 ? '' : labelling.classes[point] === GROUND ? 'Ground' : 'Noise: in no cluster';
   const cluster = clusterOf(labelling, selected);
   if (cluster) {
-    title = `Cluster ${cluster.id}`;
+    title = `Cluster ${cluster.name}`;
     const turned = cluster.yaw ? `, turned by ${(cluster.yaw * 180 / Math.PI).toFixed(0)}°` : '';
     pairs.push(['Points', String(cluster.size)], ['Range', `${metres(cluster.range)} (nearest point)`],
       ['Box', `${[cluster.length, cluster.width, cluster.height].map(v => v.toFixed(2)).join(' × ')} m${turned}`],

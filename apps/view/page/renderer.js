@@ -29,7 +29,8 @@ void main() { result = vec4(tint, 1.0); }`;
 class Renderer {
   constructor(canvas) {
     this.canvas = canvas;
-    this.drawn = 0;  // frames
+    this.drawn = 0;   // frames
+    this.stride = 1;  // see Painter
     canvas.addEventListener('webglcontextlost', event => event.preventDefault());
     canvas.addEventListener('webglcontextrestored', () => {
       this.start();

@@ -1,5 +1,7 @@
 // The state of the page, and what happens to it.
 
+const REST = 100;  // ms without a frame, after which the scene is at rest
+
 class View {
   constructor() {
     this.camera = new Camera();
@@ -62,7 +64,8 @@ class View {
   }
 
   // The next frame of a stream: what the user has chosen stays.
-  replace(scan, fills_list) {
+  // fits: a camera that the user has not moved is placed again
+  replace(scan, {fills_list, fits}) {
     const had_points = this.scan?.points > 0;
     this.scans = [scan];
     this.point = -1;
@@ -74,14 +77,13 @@ class View {
     if (!had_points && scan.points) {
       say('');
       this.reset();
+    } else if (fits && this.isAsPlaced()) {
+      this.reset();
     }
     if (this.selected) showSelection(scan, this.labelling, this.selected, -1);
     else if (!this.measure) byId('info').hidden = true;
     this.recolor();
-    if (!fills_list) return;
-    const top = byId('list').scrollTop;
-    this.list.fill();
-    byId('list').scrollTop = top;
+    if (fills_list) this.list.update();
   }
 
   // Offers the labellings of a scan that has several, and marks where the two that are shown differ.
@@ -167,8 +169,14 @@ class View {
     const panes = this.labellings.length;
     this.clip = multiplied(this.camera.matrix(width / panes / height), this.matrix);
     const dark = this.look.theme === 'dark';
-    this.renderer.draw(this.clip, panes, rgb(dark ? '#0e1013' : '#fafaf8'), this.size * ratio, this.camera.distance);
+    const moves = performance.now() - (this.drawn_at ?? -Infinity) < REST;
+    const background = rgb(dark ? '#0e1013' : '#fafaf8');
+    this.renderer.draw(this.clip, panes, background, this.size * ratio, this.camera.distance, moves);
+    this.drawn_at = performance.now();
+    clearTimeout(this.rest);
+    if (this.renderer.stride > 1) this.rest = setTimeout(() => this.redraw(), 1.5 * REST);  // all points
     this.drawOverlay(ratio, panes, dark ? ['#ffffff', '#000000'] : ['#000000', '#ffffff']);
+    this.shown_at ??= performance.now();  // ms after the page was opened
   }
 
   drawOverlay(ratio, panes, [color, halo]) {
@@ -178,10 +186,10 @@ class View {
       if (panes > 1) this.overlay.title(this.labellingOf(pane).name, (pane + 0.5) * width / panes, color, halo);
       if (this.ids) {
         const named = this.labellingOf(pane).clusters.filter(({open, swept}) => !open && !swept);
-        const places = named.map(({id, center, height: tall}) => {
+        const places = named.map(({name, center, height: tall}) => {
           const above = [center[0], center[1], center[2] + (this.scan.camera ? 0 : tall / 2)];
           const place = this.screenOf(above.map((v, axis) => (v - this.scan.origin[axis]) / this.scan.step), pane);
-          return place && {text: String(id), x: place[0], y: place[1] - 8};
+          return place && {text: String(name), x: place[0], y: place[1] - 8};
         });
         this.overlay.ids(places.filter(place => place && this.paneAt(place.x) === pane), color, halo);
       }
@@ -295,8 +303,12 @@ class View {
     camera.flight = null;
     camera.set({target: this.displayOf(scan.origin), distance: 1.8 * at(0.8), reach: 1.1 * at(1) + 10,
       yaw: Math.PI, pitch: scan.camera ? 0.15 : 0.6});
+    this.placed = camera.place();
     this.redraw();
   }
+
+  // Whether the camera is where reset() has put it.
+  isAsPlaced() { return this.placed === this.camera.place(); }
 
   top() {
     this.camera.set({yaw: Math.PI, pitch: Math.PI / 2});
