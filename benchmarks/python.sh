@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Measures the Python package on real scans: its overhead over the C++ call, Lisco against the DBSCAN of scikit-learn and
-# Open3D, and the archives' rate with one worker and two. Begins when the machine is quiet; takes about 25 minutes.
+# Measures the Python package on real scans: its overhead over the C++ call, Lisco against the DBSCAN of scikit-learn
+# and Open3D, and the archives' rate with one worker and two. Begins when the machine is quiet; takes about 25 minutes.
 #
 #   benchmarks/python.sh [--publish] [SECTION...]     sections: overhead dbscan archive (default: all)
 #
