@@ -79,25 +79,36 @@ def column_of(points: Any) -> Axes:
     return Axes(axes.x.T, axes.y.T, axes.z.T, axes.shape)
 
 
+def _float_of(value: Any) -> float:
+    """NaN if it is no number."""
+    try:
+        return float(value)
+    except (TypeError, ValueError, OverflowError):
+        return math.nan
+
+
 def number_of(value: Any, name: str) -> float:
     """A finite number."""
-    number = float(value)
+    number = _float_of(value)
     if not math.isfinite(number):
-        raise ValueError(f"{name} must be a finite number, not {value}")
+        raise ValueError(f"{name} must be a finite number, not {value!r}")
     return number
 
 
 def tolerance_of(tolerance: Any) -> float:
     """A distance in metres that a float32 can hold."""
-    number = float(tolerance)
+    number = _float_of(tolerance)
     if not 0 <= number <= np.finfo(np.float32).max:
-        raise ValueError(f"tolerance must be a finite number of metres, 0 or more, not {tolerance}")
+        raise ValueError(f"tolerance must be a finite number of metres, 0 or more, not {tolerance!r}")
     return number
 
 
 def count_of(value: Any, name: str, least: int = 0) -> int:
     """A whole number, `least` or more."""
-    count = operator.index(value)
+    try:
+        count = operator.index(value)
+    except TypeError:
+        raise ValueError(f"{name} must be a whole number, not {value!r}") from None
     if count < least:
         raise ValueError(f"{name} must be {least} or more, not {value}")
     return min(count, NO_LIMIT)

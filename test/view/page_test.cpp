@@ -4,6 +4,7 @@
 // The page in headless Chromium.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -287,6 +288,7 @@ TEST_F(PageTest, PlaysSeveralScans) {
   open({scanOfPosts(12), scanOfPosts(7), scanOfPosts(3)});
   EXPECT_FALSE(browser_->evaluate("document.getElementById('timeline').hidden").get<bool>());
   EXPECT_EQ(browser_->evaluate("lisco.view.scans.length"), 3);
+  EXPECT_EQ(textOf("#frame-name"), "1 of 3: posts.pcd");
   EXPECT_GT(changedBy([] { browser_->key("."); }), 1000U);
   EXPECT_EQ(textOf("#counts").substr(0, 10), "7 clusters");
   browser_->key(",");
@@ -298,6 +300,31 @@ TEST_F(PageTest, PlaysSeveralScans) {
   EXPECT_TRUE(browser_->waitFor("lisco.view.frame === 0"));
   press("#play");
   EXPECT_EQ(browser_->evaluate("lisco.view.playing"), false);
+  // The slider keeps its own keys only.
+  press("#frame");
+  const int frame = browser_->evaluate("lisco.view.frame");
+  EXPECT_EQ(browser_->evaluate("document.activeElement.id"), "frame");
+  browser_->key(".");
+  EXPECT_EQ(browser_->evaluate("lisco.view.frame"), (frame + 1) % 3);
+  browser_->key(" ");
+  EXPECT_NE(browser_->evaluate("lisco.view.playing"), false);
+  browser_->key(" ");
+  EXPECT_EQ(browser_->evaluate("lisco.view.playing"), false);
+}
+
+TEST_F(PageTest, ClustersKeepTheirColoursAlongTheTimeline) {
+  // The clusters come in another order, and stand a little aside.
+  const ViewScan first = scanOfPosts(12);
+  ViewScan second = first;
+  std::reverse(second.labellings[0].clusters.begin(), second.labellings[0].clusters.end());
+  for (std::uint32_t& label : second.labellings[0].labels)
+    if (label > 0) label = 13 - label;
+  for (lisco_apps::ViewCluster& cluster : second.labellings[0].clusters) cluster.center[0] += 0.3;
+  open({first, second});
+  const Json colors = browser_->evaluate("[...lisco.view.labelling.colors]");
+  browser_->key(".");
+  EXPECT_EQ(browser_->evaluate("[...lisco.view.labelling.colors].reverse()"), colors);
+  EXPECT_GT(browser_->evaluate("new Set(lisco.view.labelling.colors).size"), 3);
 }
 
 TEST_F(PageTest, MarksWhereTwoLabellingsDiffer) {
@@ -451,6 +478,14 @@ TEST_F(PageTest, DrawsFewerPointsWhileASlowSceneMoves) {
 
 TEST_F(PageTest, ZPhone) {
   browser_->becomePhone(390, 844);
+  ViewScan named = scanOfPosts(12);
+  named.name = "a drive with a long name, 2026-01-01.pcap, rotation 17";
+  open({named, named});
+  EXPECT_EQ(browser_->evaluate("document.documentElement.scrollWidth"), 390);
+  browser_->key("?");
+  EXPECT_EQ(browser_->evaluate("document.getElementById('help').scrollHeight - "
+                               "document.getElementById('help').clientHeight"),
+            0);
   open({scanOfPosts(12)});
   EXPECT_EQ(browser_->evaluate("document.documentElement.scrollWidth"), 390);
   const Json boxes = browser_->evaluate(

@@ -51,6 +51,36 @@ function clusterColors(clusters, colors, known = () => undefined) {
   });
 }
 
+// The cluster of the last frame, if any, that each cluster was: by its id if the stream gives ids, otherwise the
+// nearest one in a metre or half its length.
+function partnersOf(clusters, known, has_ids) {
+  const partners = new Map();
+  const by_id = new Map(has_ids ? known.filter(({open}) => !open).map(other => [other.name, other]) : []);
+  for (const cluster of clusters) {
+    if (!cluster.open && by_id.has(cluster.name)) {
+      partners.set(cluster, by_id.get(cluster.name));
+      continue;
+    }
+    let best = Math.max(1, cluster.length / 2) ** 2;
+    for (const other of known) {
+      const square = (other.center[0] - cluster.center[0]) ** 2 + (other.center[1] - cluster.center[1]) ** 2;
+      if (square >= best) continue;
+      best = square;
+      partners.set(cluster, other);
+    }
+  }
+  return partners;
+}
+
+// Colours a labelling's clusters as those of the frame before, as far as they are the same. Returns their partners.
+function colorAfter(labelling, before) {
+  const {clusters} = labelling;
+  const partners = partnersOf(clusters, before?.colors ? before.clusters : [], labelling.ids);
+  labelling.colors ||= clusterColors(clusters, PALETTES.dark.length, cluster => partners.get(cluster)?.color);
+  clusters.forEach((cluster, index) => cluster.color = labelling.colors[index]);
+  return partners;
+}
+
 // The value of each point in a mode other than 'cluster', and the range that holds 96 % of them.
 function valuesOf(scan, mode) {
   const values = new Float32Array(scan.points);
@@ -75,7 +105,6 @@ function pointColors(scan, labelling, look) {
   const plain = {ground: packed(rgb(PLAIN[look.theme].ground)), noise: packed(rgb(PLAIN[look.theme].noise))};
   const faded = value => look.theme === 'dark' ? value * 0.3 : 255 - (255 - value) * 0.3;
   const dimmed = color => color.map(value => Math.round(faded(value)));
-  labelling.colors ||= clusterColors(labelling.clusters, palette.length);
   const of_class = [plain.ground, plain.noise];
   labelling.clusters.forEach((cluster, index) => {
     const color = palette[labelling.colors[index]];

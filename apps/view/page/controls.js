@@ -92,8 +92,9 @@ function listenToKeys(view) {
   };
   addEventListener('keydown', event => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const in_field = event.target.closest?.('input, select');
-    if (in_field || (event.key === ' ' && event.target.closest?.('button'))) return;
+    const field = event.target.closest?.('input, select');
+    const is_for_field = field && (field.type !== 'range' || /^(Arrow|Home|End|Page)/.test(event.key));
+    if (is_for_field || (event.key === ' ' && event.target.closest?.('button'))) return;
     const move = moves[event.key];
     if (move) {
       if (event.target.closest?.('#list')) return;

@@ -13,7 +13,7 @@ class Live {
     this.frames_lost = 0;  // sent by the stream, not shown here
     this.frames_shown = 0;
     this.paused = false;
-    this.known = [];       // clusters of the last frame
+    this.last = null;      // labelling of the last frame
     byId('stream').hidden = false;
     byId('list').before(byId('stream'));
     byId('pause').addEventListener('click', () => this.pause());
@@ -95,30 +95,13 @@ class Live {
     this.showStatus(labelling);
   }
 
-  // A cluster of the last frame, by its id if the stream gives ids and otherwise by its place, keeps its colour and
-  // stays selected.
+  // A cluster of the last frame keeps its colour and stays selected.
   follow(labelling) {
-    const before = new Map();
-    const by_id = new Map(labelling.ids ? this.known.filter(({open}) => !open).map(known => [known.name, known]) : []);
-    for (const cluster of labelling.clusters) {
-      if (!cluster.open && by_id.has(cluster.name)) {
-        before.set(cluster, by_id.get(cluster.name));
-        continue;
-      }
-      let best = Math.max(1, cluster.length / 2) ** 2;
-      for (const known of this.known) {
-        const square = (known.center[0] - cluster.center[0]) ** 2 + (known.center[1] - cluster.center[1]) ** 2;
-        if (square >= best) continue;
-        best = square;
-        before.set(cluster, known);
-      }
-    }
     const {view} = this;
-    labelling.colors = clusterColors(labelling.clusters, PALETTES.dark.length, cluster => before.get(cluster)?.color);
-    labelling.clusters.forEach((cluster, index) => cluster.color = labelling.colors[index]);
+    const before = colorAfter(labelling, this.last);
     const selected = view.selected;
     if (selected) view.selected = labelling.clusters.find(cluster => before.get(cluster)?.id === selected)?.id ?? 0;
-    this.known = labelling.clusters;
+    this.last = labelling;
   }
 
   showStatus(labelling) {

@@ -38,6 +38,12 @@ class View {
     }
     byId('timeline').hidden = this.scans.length < 2;
     byId('frame').max = this.scans.length - 1;
+    this.nameFrame();
+  }
+
+  nameFrame() {
+    byId('frame').value = this.frame;
+    byId('frame-name').textContent = `${this.frame + 1} of ${this.scans.length}: ${this.scan.name}`;
   }
 
   // Shows a scan of the timeline; beyond its ends, the one at the other end.
@@ -48,14 +54,14 @@ class View {
     this.point = -1;
     this.ends = [];
     const scan = this.scan;
+    scan.labellings.forEach((labelling, k) => colorAfter(labelling, this.scans[this.frame - 1]?.labellings[k]));
     this.matrix = displayMatrix(scan, this.origin);
     this.renderer.setPositions(scan.positions);
     for (const option of byId('color').options)
       option.disabled = option.value in {intensity: 1, ring: 1} && !scan[option.value];
     if (byId('color').selectedOptions[0]?.disabled) this.setColor('cluster');
     byId('name').textContent = scan.name;
-    byId('frame').value = this.frame;
-    byId('frame-name').textContent = `${this.frame + 1} of ${this.scans.length}: ${scan.name}`;
+    this.nameFrame();
     byId('info').hidden = true;
     this.compare();
     this.recolor();
