@@ -14,6 +14,8 @@
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 #include <pcl/segmentation/lisco_cluster_writer.h>
 
+#include "compare/components.h"
+#include "compare/kd_tree_baselines.h"
 #include "io/point_geometry.h"
 #include "lisco/return.h"
 #include "reference/voxel_grid.h"
@@ -56,37 +58,6 @@ void checkOctreeHolds(const Problem& problem) {
       throw std::runtime_error("the scan has too many cells for an octree");
   }
 }
-
-/// Converts a component per return to PCL's vector: clusters in the order of first points, then sorted by PCL's call.
-class ComponentsToClusters {
- public:
-  /// \param component_of the component of the i-th return
-  /// \param component_count above all component numbers
-  void append(const std::vector<std::uint32_t>& component_of, std::size_t component_count, const Problem& problem,
-              Clusters& clusters) {
-    size_.assign(component_count, 0);
-    for (const std::uint32_t component : component_of) ++size_[component];
-    next_.assign(component_count, nullptr);
-    const pcl::Indices& returns = *problem.returns;
-    for (std::size_t i = 0; i < component_of.size(); ++i) {
-      const std::uint32_t component = component_of[i];
-      if (size_[component] < problem.min_size || size_[component] > problem.max_size) continue;
-      pcl::index_t*& next = next_[component];
-      if (next == nullptr) {
-        clusters.emplace_back();
-        clusters.back().header = problem.cloud->header;
-        clusters.back().indices.resize(size_[component]);
-        next = clusters.back().indices.data();
-      }
-      *next++ = returns[i];
-    }
-    std::sort(clusters.rbegin(), clusters.rend(), pcl::comparePointClusters);
-  }
-
- private:
-  std::vector<std::uint32_t> size_;
-  std::vector<pcl::index_t*> next_;  ///< where a component's next index goes
-};
 
 lisco::Return returnAt(const Problem& problem, pcl::index_t index) {
   const ComparedPoint& p = (*problem.cloud)[static_cast<std::size_t>(index)];
@@ -187,14 +158,17 @@ std::vector<Baseline> allBaselines() {
     return std::make_shared<pcl::search::Octree<ComparedPoint>>(std::fabs(problem.tolerance));
   };
   // Okabe and Ito's colours, distinct with colour blindness.
-  return {referenceBaseline(),
-          {"pcl-tutorial", "PCL, KdTree as in its tutorial", byPcl(sorted_tree), 0x999999},
-          {"pcl-octree", "PCL, Octree", byPcl(octree), 0x56B4E9},
-          {"pcl-default", "PCL, no search method given", byPcl([](const Problem&) { return Search::Ptr(); }), 0xF0E442,
-           false},
-          {"grid", "voxel grid", ByVoxelGrid(), 0x0072B2},
-          {"paper", "Lisco as in the paper", ByThePaper(), 0xE69F00, true, true},
-          {"lisco", "Lisco for PCL", ByLisco(), 0xD55E00}};
+  std::vector<Baseline> all{referenceBaseline(),
+                            {"pcl-tutorial", "PCL, KdTree as in its tutorial", byPcl(sorted_tree), 0x999999},
+                            {"pcl-octree", "PCL, Octree", byPcl(octree), 0x56B4E9},
+                            {"pcl-default", "PCL, no search method given",
+                             byPcl([](const Problem&) { return Search::Ptr(); }), 0xF0E442, false},
+                            {"grid", "voxel grid", ByVoxelGrid(), 0x0072B2},
+                            {"paper", "Lisco as in the paper", ByThePaper(), 0xE69F00, true, true},
+                            {"lisco", "Lisco for PCL", ByLisco(), 0xD55E00}};
+  std::vector<Baseline> trees = kdTreeBaselines();
+  all.insert(all.begin() + 4, std::make_move_iterator(trees.begin()), std::make_move_iterator(trees.end()));
+  return all;
 }
 
 }  // namespace lisco_apps

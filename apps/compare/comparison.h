@@ -76,7 +76,8 @@ ComparedScan prepareScan(const Cloud& cloud, std::vector<std::uint32_t> object_o
                          bool unorganized);
 
 /// Runs all baselines on one scan at one tolerance: compares their clusters with the reference's, then times them in
-/// turn. Baselines that must agree and do not are not timed.
+/// turn. Baselines that must agree and do not are not timed. If one run is wanted and it is long (kMaxShort), the run
+/// whose clusters are compared is the one.
 /// \param progress called with the current step and the share of it that is done
 /// \param report called with the clusters of each baseline
 CaseResult compareAt(

@@ -43,7 +43,6 @@ double millisecondsOf(const std::function<void()>& run, Clock clock) {
 
 std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants, Clock clock,
                               const std::function<void(std::size_t, std::size_t)>& between) {
-  constexpr double kMaxShort = 50;  // milliseconds of a run that is repeated at once
   std::size_t rounds = 0;
   for (const Contestant& contestant : contestants) rounds = std::max(rounds, contestant.runs);
   std::vector<Times> times(contestants.size());

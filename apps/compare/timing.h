@@ -32,6 +32,9 @@ struct Times {
 /// Time that passes, or that this thread computes.
 enum class Clock { kWall, kThread };
 
+/// A run that takes less is repeated at once when it is timed, milliseconds.
+inline constexpr double kMaxShort = 50;
+
 /// Something to be timed.
 struct Contestant {
   std::function<void()> run;

@@ -35,15 +35,16 @@ void writeScript(const Chart& chart, const std::string& stem, std::ostream& scri
       lowest = std::min(lowest, point.y);
       highest = std::max(highest, point.y);
     }
-  script << "set title " << forGnuplot(chart.title) << '\n'
-         << "set xlabel " << forGnuplot(chart.x_label) << '\n'
-         << "set ylabel " << forGnuplot(chart.y_label) << '\n'
-         << "set logscale y\nset grid ytics xtics back linetype 1 linecolor rgb '#dcdcdc' linewidth 1\nset key outside "
-            "bottom center horizontal\n"
-         << "set offsets graph 0.02, graph 0.02\nset border 3\nset tics nomirror\nset bars small\n"
-         << "set format y '%g'\n"
-         << "set yrange [" << lowest / 2 << ':' << highest * 2 << "]\n"
-         << (chart.log_x ? "set logscale x\n" : "");
+  script
+      << "set title " << forGnuplot(chart.title) << '\n'
+      << "set xlabel " << forGnuplot(chart.x_label) << '\n'
+      << "set ylabel " << forGnuplot(chart.y_label) << '\n'
+      << "set logscale y\nset grid ytics xtics back linetype 1 linecolor rgb '#dcdcdc' linewidth 1\nset key outside "
+         "bottom center horizontal height 1\n"
+      << "set autoscale noextend\nset offsets graph 0.02, graph 0.02\nset border 3\nset tics nomirror\nset bars small\n"
+      << "set format y '%g'\n"
+      << "set yrange [" << lowest / 2 << ':' << highest * 2 << "]\n"
+      << (chart.log_x ? "set logscale x\n" : "");
   for (std::size_t i = 0; i < chart.lines.size(); ++i) {
     script << "$line" << i << " << END\n";
     for (const Chart::Point& point : chart.lines[i].points)

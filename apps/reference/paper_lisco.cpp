@@ -33,6 +33,7 @@ const std::vector<std::uint32_t>& PaperLisco::cluster(const std::vector<lisco::R
   distance_.assign(matrix.size(), 0.0F);
   head_.assign(matrix.size(), kNoCluster);
   subclusters_.clear();
+  work_ = {};
 
   for (std::size_t step = 0; step < steps_; ++step) receiveStep(step);
 
@@ -84,6 +85,7 @@ void PaperLisco::cluster(Point p, const NeighborMask& mask) {
 
 // Algorithm 4, its four cases.
 void PaperLisco::compare(Point p, Point other) {
+  ++work_.pairs;
   const Head h1 = getH(p);
   const Head h2 = getH(other);
   if (h1 == h2 && h1 != kNoCluster) return;
@@ -130,6 +132,8 @@ void PaperLisco::merge(Head a, Head b) {
   for (const auto& array : from.arrays)
     for (const Point p : array) head_[p] = base;
   to.size += from.size;
+  ++work_.merges;
+  work_.relabelled += from.size;
   to.arrays.splice(to.arrays.end(), from.arrays);
   subclusters_.erase(merged);
 }

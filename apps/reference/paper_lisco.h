@@ -28,7 +28,7 @@ struct NeighborMask {
 /// \return 2^31 lasers and steps, that is all, for a point nearer than eps, where the paper's arcsine is undefined
 NeighborMask getNeighborMask(double distance, double eps, const NominalSensor& sensor);
 
-/// The paper's Lisco as printed, for comparison only: Algorithms 2 to 4 and section V's data structures. (Algorithm 1
+/// The paper's Lisco as printed, for comparison only: Algorithms 2 to 4 and section IV's data structures. (Algorithm 1
 /// is PCL's EuclideanClusterExtraction.)
 ///
 /// Choices where the paper is open or cannot be meant as printed:
@@ -45,6 +45,14 @@ class PaperLisco {
                                             const NominalSensor& sensor, float tolerance);
 
   static constexpr std::uint32_t kNoCluster = ~std::uint32_t{0};
+
+  /// What a call has done: section IV's trade-off between getH and merge.
+  struct Work {
+    std::size_t pairs = 0;       ///< pairs of points whose heads were compared: two calls of getH each
+    std::size_t merges = 0;      ///< calls of merge
+    std::size_t relabelled = 0;  ///< points that were given another head by these
+  };
+  const Work& work() const { return work_; }
 
  private:
   using Point = std::uint32_t;  ///< number of a cell
@@ -74,6 +82,7 @@ class PaperLisco {
   std::vector<float> distance_;  ///< p_d per cell; 0: no return
   std::vector<Head> head_;       ///< per cell
   std::unordered_map<Head, Members> subclusters_;
+  Work work_;
 };
 
 }  // namespace lisco_reference
