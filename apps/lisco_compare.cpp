@@ -42,6 +42,7 @@ struct Options {
   InputOptions input;
   CompareSettings settings;
   ScanOptions scan{"none", true};
+  std::optional<unsigned> ignored_label;  ///< of returns that are left out
   fs::path json, csv, plot, view;
 };
 
@@ -101,6 +102,10 @@ bool parse(int argc, char** argv, Options& options) {
      "the methods to compare (default: all but pcl-default)")
     ("must-agree", po::value<std::string>(&must_agree)->value_name("A,B,..."),
      "those of them that must find PCL's clusters (default lisco)")
+    ("ignore-label", textOption("N", [&options](const std::string& text) {
+       options.ignored_label = countOf(text, "--ignore-label", 0);
+     }),
+     "leave out returns whose field 'label' is N, such as a table's")
     ("unorganized", po::bool_switch(&settings.unorganized), "cluster the returns as an unorganized cloud")
     ("json", pathOption("FILE", "--json", options.json), "write everything, each run's time included")
     ("csv", pathOption("FILE", "--csv", options.csv), "write a row per input, tolerance and baseline")
@@ -154,6 +159,15 @@ InputResult compareScan(const ScanItem& item, const std::string& name, const Opt
   // The rows of an arrangement show the ground; without it, the points stay in the order of the input.
   ScanReturns returns = returnsOf(*read.clustered(), input.ground, options.scan.region);
   input.left_out = returns.ground;
+  if (options.ignored_label) {
+    const std::vector<std::uint32_t> object_of = read.objectsOfClustered();
+    if (object_of.empty()) throw std::runtime_error(input.file + ": --ignore-label needs a field 'label'");
+    auto& clustered = returns.clustered;
+    const auto is_ignored = [&](auto index) {
+      return object_of[static_cast<std::size_t>(index)] == options.ignored_label;
+    };
+    clustered.erase(std::remove_if(clustered.begin(), clustered.end(), is_ignored), clustered.end());
+  }
   ComparedScan scan;
   try {
     if (settings.unorganized && read.arranged) {
