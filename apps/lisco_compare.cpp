@@ -86,6 +86,7 @@ bool parse(int argc, char** argv, Options& options) {
   std::string baselines = "pcl,pcl-tutorial,pcl-octree,grid,paper,lisco";
   std::string must_agree = "lisco";
   bool check_only = false;
+  bool no_details = false;
   // clang-format off
   shown.add_options()
     ("tolerance,t", po::value<std::string>(&tolerances)->value_name("M[,M...]"),
@@ -98,8 +99,9 @@ bool parse(int argc, char** argv, Options& options) {
     ("max-seconds", numberOption("S", "--max-seconds", settings.max_seconds),
      "fewer runs, at least 3, for a baseline that would take longer than this for all of them (default 10)")
     ("check-only", po::bool_switch(&check_only), "compare the clusters only, without times")
+    ("no-details", po::bool_switch(&no_details), "say how much differs, but do not look for the pairs that decide")
     ("baselines", po::value<std::string>(&baselines)->value_name("A,B,..."),
-     "the methods to compare (default: all but pcl-default)")
+     "the methods to compare (default: all but pcl-default, flann and nanoflann)")
     ("must-agree", po::value<std::string>(&must_agree)->value_name("A,B,..."),
      "those of them that must find PCL's clusters (default lisco)")
     ("ignore-label", textOption("N", [&options](const std::string& text) {
@@ -124,6 +126,7 @@ bool parse(int argc, char** argv, Options& options) {
   if (given.count("tolerance") == 0) throw std::runtime_error("--tolerance is missing; see --help");
   for (const std::string& item : itemsOf(tolerances)) settings.tolerances.push_back(toleranceOf(item));
   if (check_only) settings.runs = 0;
+  settings.locate = !no_details;
   if (!(settings.max_seconds > 0)) throw std::runtime_error("--max-seconds must be positive");
   options.scan.check();
   settings.baselines = baselinesNamed(baselines, "--baselines");

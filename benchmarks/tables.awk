@@ -181,12 +181,12 @@ table == "mask" {
   pairs[scan, t] = field("pairs"); horizon[scan, t] = field("missed_horizon")
   columns[scan, t] = field("missed_columns"); lasers[scan, t] = field("missed_lasers")
 }
-function mask(   i, j, s, t, at) {
-  at = 0.3
+function mask(   i, j, s, t, missed) {
   printf "| scan | returns |"
   for (j = 1; j <= tolerance_count; ++j) printf " %g m |", tolerances[j]
-  printf " missed pairs at %g m | columns are no azimuths | off the horizon | too few lasers |\n|---|---|", at
-  for (j = 1; j <= tolerance_count + 4; ++j) printf "---|"
+  for (j = 1; j <= 2; ++j) printf " missed pairs at %g m | by reason |", tolerances[j]
+  printf "\n|"
+  for (j = 1; j <= tolerance_count + 6; ++j) printf "---|"
   print ""
   for (i = 1; i <= scan_count; ++i) {
     s = scans[i]
@@ -195,10 +195,16 @@ function mask(   i, j, s, t, at) {
       t = tolerances[j]
       printf " %d (%d) |", mislabelled[s, t], destaggered[s, t]
     }
-    printf " %.2f %% |", 100 * (lasers[s, at] + horizon[s, at] + columns[s, at]) / pairs[s, at]
-    printf " %d | %d | %d |\n", columns[s, at], horizon[s, at], lasers[s, at]
+    for (j = 1; j <= 2; ++j) {
+      t = tolerances[j]
+      missed = lasers[s, t] + horizon[s, t] + columns[s, t]
+      printf " %s %% | %d / %d / %d |", percent(missed / pairs[s, t]), columns[s, t], horizon[s, t], lasers[s, t]
+    }
+    print ""
   }
 }
+# In percent, with two digits or more.
+function percent(share) { return 100 * share >= 0.1 || share == 0 ? sprintf("%.2f", 100 * share) : sprintf("%.2g", 100 * share) }
 
 END {
   if (table == "benchmarks") benchmarks()

@@ -3,12 +3,17 @@
 . "$root/cmake/script_tools.sh"
 
 data=${LISCO_TEST_DATA:-$root/../shared/data}
-build=$root/build/benchmarks
+build=${LISCO_BUILD:-$root/build/benchmarks}
 
-# Installs missing packages and builds the programs.
+# build_benchmarks [PACKAGE... [-- CMAKE-OPTION...]]: installs missing packages, and builds the programs, unless
+# $LISCO_BUILD names a folder where they have been built.
 build_benchmarks() {
-  "$root/cmake/install_dependencies.sh"
-  build_quietly "$root" "$build" -DCMAKE_BUILD_TYPE=Release -DLISCO_BUILD_BENCHMARKS=ON -DLISCO_BUILD_TESTS=OFF
+  [ -z "${LISCO_BUILD:-}" ] || return 0
+  local packages=()
+  while [ $# -gt 0 ] && [ "$1" != -- ]; do packages+=("$1") && shift; done
+  "$root/cmake/install_dependencies.sh" "${packages[@]}"
+  build_quietly "$root" "$build" -DCMAKE_BUILD_TYPE=Release -DLISCO_BUILD_BENCHMARKS=ON -DLISCO_BUILD_TESTS=OFF \
+    "${@:2}"
 }
 
 # wait_for_quiet: waits until the machine is quiet, up to $LISCO_WAIT minutes (default 60), and sets `noise` to a line

@@ -118,7 +118,7 @@ CaseResult compareAt(const ComparedScan& scan, double tolerance, const CompareSe
     }
     entry.clusters = found.size();
     report(baseline, found);
-    entry.difference = differenceOf(problem, reference, expected, baseline, found);
+    entry.difference = differenceOf(problem, reference, expected, baseline, found, settings.locate);
     if (settings.runs == 0 || !baseline.timed || (!entry.difference.identical && settings.mustAgree(baseline)))
       continue;
     if (settings.runs == 1 && tried_ms >= kMaxShort) {

@@ -25,6 +25,7 @@ struct CompareSettings {
   std::size_t runs = 20;    ///< of each baseline, 0: compare the clusters only
   double max_seconds = 10;  ///< a baseline whose runs would take longer gets fewer, at least 3
   bool unorganized = false;
+  bool locate = true;  ///< differences; false: only how much differs
 
   bool mustAgree(const Baseline& baseline) const;
 };

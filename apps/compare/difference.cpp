@@ -170,7 +170,7 @@ std::string neighboursOf(const Problem& problem, pcl::index_t point, const Label
 }  // namespace
 
 Difference differenceOf(const Problem& problem, const Baseline& reference, const Clusters& expected,
-                        const Baseline& baseline, const Clusters& found) {
+                        const Baseline& baseline, const Clusters& found, bool locate) {
   Difference difference;
   if (sameVector(expected, found)) return difference;
   difference.identical = false;
@@ -200,6 +200,7 @@ Difference differenceOf(const Problem& problem, const Baseline& reference, const
     difference.details += "the method lists points twice, or points that are no returns\n";
     return difference;
   }
+  if (!locate) return difference;
   difference.details += "first: " + whereIs(problem, *first) + ": by PCL in " +
                         inWords(expected_label[at(*first)], expected) + ", by the method in " +
                         inWords(found_label[at(*first)], found) + "\n" +

@@ -28,8 +28,9 @@ struct Difference {
 /// tolerance, and the pair that decides: neighbours that the baseline keeps apart, neighbours that it joins and PCL's
 /// tree misses by rounding (doc/contract.md), or the nearest two unconnected points that it joins. To find the pair,
 /// both are run again with clusters of any size.
+/// \param locate false: only how much differs, not where
 Difference differenceOf(const Problem& problem, const Baseline& reference, const Clusters& expected,
-                        const Baseline& baseline, const Clusters& found);
+                        const Baseline& baseline, const Clusters& found, bool locate = true);
 
 /// How clusters cover the true objects of a scan. Objects with fewer than min_size clustered returns do not count.
 struct ObjectScore {
