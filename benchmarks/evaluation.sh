@@ -25,7 +25,7 @@ refuse_fewer_runs() {
   local stated
   stated=$(runs_stated "$root/doc/evaluation.md")
   if [ "$1" -lt "${stated:-20}" ]; then
-    echo "evaluation.sh: doc/evaluation.md states ${stated:-20} runs of each; its tables are not replaced by those of $1" >&2
+    echo "evaluation.sh: the document states ${stated:-20} runs of each; its tables are not replaced by those of $1" >&2
     exit 2
   fi
 }

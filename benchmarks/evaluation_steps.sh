@@ -31,7 +31,7 @@ scene() {
   [ -f "$scan" ] || simulate --scene "$1" -o "$scan"
 }
 
-# compare ARGUMENT...: PCL and others side by side, with tables in $work/all.txt and all.csv; without times for --counts.
+# compare ARGUMENT...: PCL and others side by side, tables in $work/all.txt and all.csv; for --counts without times.
 # $most_runs and $most_seconds may be set for it.
 compare() {
   local times=(--runs "${most_runs:-$runs}" --max-seconds "${most_seconds:-1000}")
@@ -60,7 +60,8 @@ measure_points() {
 }
 
 # Figure 9: each rotation of all recordings, and the scans that are of no recording here, once.
-rotations=(--no-details --return strongest --baselines "pcl,grid,paper,lisco" --tolerance "0.3,0.4,0.7" --ground slope)
+rotations=(--no-details --return strongest --ground slope --baselines "pcl,grid,paper,lisco"
+  --tolerance "0.3,0.4,0.7")
 measure_real() {
   local ouster=("$data"/ouster/OS-{0-32-U1,1-32-G,1-64,1-128_v}*.pcap)
   most_runs=1 compare "${rotations[@]}" "$data"/captures/*.pcap "$data"/bags/*.db3 "${ouster[@]}" \
@@ -206,9 +207,12 @@ publish_times() {
   { echo "Measured until $(date -r "$out/dbscan" +%F), at commit $(cat "$out/commit"):" && echo &&
       code_block <"$out/machine"; } | replace_section "$document" "machine"
   table times "${scenes[@]}" | replace_section "$document" "scenes"
-  { echo "![All methods on the scenes](images/evaluation_rivals.png)" && echo && tables rivals "$out/rivals/all.csv"; } |
-    replace_section "$document" "rivals"
-  tail -n +4 "$out/dbscan/all.txt" | replace_section "$document" "dbscan"
+  {
+    echo "![All methods on the scenes](images/evaluation_rivals.png)"
+    echo
+    tables rivals "$out/rivals/all.csv"
+  } | replace_section "$document" "rivals"
+  replace_section "$document" "dbscan" <"$out/dbscan/all.txt"
   table times "$out/points/all.csv" | replace_section "$document" "points"
   publish_rotations real "real rotations" "real scans"
   publish_rotations drive "simulated drive" "drive"

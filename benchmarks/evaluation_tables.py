@@ -140,7 +140,8 @@ def identical_table(files):
     for key in NAMES:
         if key in tables:
             cells = [tables[key].get(kind, [0, 0, 0]) for kind in kinds]
-            rows.append([NAMES[key], *(f"{same} of {cases}" for same, cases, _ in cells), max(c[2] for c in cells)])
+            shares = [f"{same} of {cases}" if cases else "-" for same, cases, _ in cells]
+            rows.append([NAMES[key], *shares, max(most for _, _, most in cells)])
     print_table(["clusters of", *(f"as PCL's, {kind}" for kind in kinds), "most points with another label"], rows)
 
 
@@ -187,7 +188,8 @@ def subclusters_table(files):
     rows = []
     for scan, looks in scans.items():
         columns = int(looks[0]["columns"])
-        at = [next(look for look in looks if int(look["received"]) >= share * columns) for share in (0.25, 0.5, 0.75, 1)]
+        at = [next(look for look in looks if int(look["received"]) >= share * columns)
+              for share in (0.25, 0.5, 0.75, 1)]
         numbers = [int(look["subclusters"]) for look in looks]
         falls = sum(before > after for before, after in zip(numbers, numbers[1:]))
         rows.append([scan, looks[0]["returns"], columns, *(look["subclusters"] for look in at), max(numbers), falls,
@@ -200,7 +202,8 @@ def merges_table(files):
     rows = []
     for row in rows_of(files):
         returns, pairs, merges = int(row["returns"]), int(row["pairs"]), int(row["merges"])
-        rows.append([row["scan"].replace("comb_", "worst case, rows: "), returns, row["tolerance"], f"{2 * pairs / returns:.1f}", merges,
+        name = row["scan"].replace("comb_", "worst case, rows: ")
+        rows.append([name, returns, row["tolerance"], f"{2 * pairs / returns:.1f}", merges,
                      f"{pairs / max(merges, 1):.0f}", row["relabelled"], f"{float(row['over_n_log_n']):.4f}"])
     print_table(["scan", "returns n", "ε", "getH per return", "merges", "pairs per merge", "points relabelled",
                  "of n log₂ n"], rows)

@@ -24,7 +24,8 @@ do for [format in "png svg"] {
     set xlabel "steps from the return"
     set ylabel "lasers from the return, downwards"
     set xrange [-span:span]; set yrange [span:-span]
-    set object 1 rectangle from -sigma-0.5,-lambda-0.5 to sigma+0.5,lambda+0.5 fillstyle empty border rgb "#E69F00" linewidth 2
+    set object 1 rectangle from -sigma-0.5,-lambda-0.5 to sigma+0.5,lambda+0.5 \
+      fillstyle empty border rgb "#E69F00" linewidth 2
     plot file using (is($1, 3, $2)):3 linestyle 1 title "returns", \
          file using (is($1, 1, $2)):3 linestyle 2 title "neighbours", \
          file using (is($1, 2, $2)):3 linestyle 3 title "neighbours outside the mask", \

@@ -204,7 +204,9 @@ function mask(   i, j, s, t, missed) {
   }
 }
 # In percent, with two digits or more.
-function percent(share) { return 100 * share >= 0.1 || share == 0 ? sprintf("%.2f", 100 * share) : sprintf("%.2g", 100 * share) }
+function percent(share) {
+  return share >= 0.001 || share == 0 ? sprintf("%.2f", 100 * share) : sprintf("%.2g", 100 * share)
+}
 
 END {
   if (table == "benchmarks") benchmarks()
