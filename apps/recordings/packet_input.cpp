@@ -135,12 +135,15 @@ void findMetadata(const fs::path& input, DecoderOptions& decoder, std::vector<st
 }
 
 /// Finds out which sensor sent the packets.
+/// \param is_part whether some packets are left out
 void findSensor(const fs::path& input, DecoderOptions& decoder, std::vector<std::string>& notes,
-                const OpenPackets& open) {
+                const OpenPackets& open, bool is_part) {
   const std::string all = boost::join(sensorNames(), ", ");
   if (!open) fail(input, "is no file: name the sensor by --sensor (" + all + ")");
   const std::vector<std::string> names = sensorsThatSent(*open());
-  if (names.empty()) fail(input, "holds no packets that look like those of a known sensor (" + all + ")");
+  if (names.empty())
+    fail(input, std::string("holds no packets ") + (is_part ? "in this part " : "") +
+                    "that look like those of a known sensor (" + all + ")");
   if (names.size() > 1) fail(input, "holds packets of " + boost::join(names, " or ") + ": name it by --sensor");
   decoder.sensor = names.front();
   if (decoder.sensor != kOuster)
@@ -207,10 +210,14 @@ PacketInput openPackets(const fs::path& input, const RecordingOptions& options, 
   const bool may_be_ouster = decoder.sensor.empty() && (maker.empty() || boost::contains(maker, "Ouster"));
   if (decoder.metadata.empty() && decoder.metadata_json.empty() && (decoder.sensor == kOuster || may_be_ouster))
     findMetadata(input, decoder, packets.notes, open_again);
-  if (decoder.sensor.empty()) findSensor(input, decoder, packets.notes, open_again);
+  if (decoder.sensor.empty())
+    findSensor(input, decoder, packets.notes, open_again, options.areGiven() || port.has_value());
   if (decoder.sensor == kOuster && decoder.metadata.empty() && decoder.metadata_json.empty())
     fail(input, "needs --metadata FILE, the JSON file of the Ouster sensor" + listOf(metadataBeside(input).all));
   findCalibration(input, decoder, packets.notes);
+  if (decoder.sensor == "hdl64e" && decoder.calibration.empty())
+    fail(input,
+         "needs --calibration FILE, that of the very hdl64e which sent the packets: db.xml, or YAML as ROS has it");
   packets.decoder = makeDecoder(decoder);
   if (!is_pipe) {
     const std::unique_ptr<PacketSource> first = open();

@@ -47,7 +47,7 @@ std::vector<std::string> sensorsThatSend(const Packet& packet) {
     if (decoder.decode(packet, [](const Column&) {}) == Decoder::Kind::kData) sensors.push_back(name);
   };
   for (const std::string& name : velodyneModelNames())
-    if (name != "hdl64e") try_one(name, VelodyneDecoder(makeVelodyneModel(name)));
+    if (VelodyneDecoder(velodynePackets(name)).isData(packet)) sensors.push_back(name);
   for (const std::string& name : hesaiModelNames()) try_one(name, HesaiDecoder(hesaiLayout(name)));
   if (OusterDecoder::isFromAny(packet)) sensors.emplace_back(kOuster);
   return sensors;

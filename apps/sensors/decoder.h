@@ -130,8 +130,7 @@ class Decoder {
 /// The sensors that makeDecoder () accepts.
 std::vector<std::string> sensorNames();
 
-/// The sensors that send packets of this layout, hdl64e aside, whose layout is another's too; those that need files are
-/// among them.
+/// The sensors that send packets of this layout; those that need files are among them.
 std::vector<std::string> sensorsThatSend(const Packet& packet);
 
 /// The UDP port that the sensor's maker has set.

@@ -36,36 +36,35 @@ HesaiDecoder::HesaiDecoder(HesaiModel model, ReturnChoice returns)
     : Decoder(model.name, elevationsOf(model.lasers), staggerOf(model.lasers)),
       model_(std::move(model)),
       returns_choice_(returns),
-      cells_(model_.laserCount()) {
+      cells_(model_.laserCount()),
+      form_(model_.forms.front()) {
   cells_.reserve(kMaxEchoes * model_.laserCount());
   for (const Laser& laser : model_.lasers) {
     const double elevation = laser.elevation * kRadiansPerDegree, offset = laser.azimuth_offset * kRadiansPerDegree;
-    rows_.push_back({model_.unit_bytes * laser.number, std::cos(elevation), std::sin(elevation), std::cos(offset),
-                     std::sin(offset)});
+    rows_.push_back({laser.number, std::cos(elevation), std::sin(elevation), std::cos(offset), std::sin(offset)});
   }
 }
 
 double HesaiDecoder::packetPeriodUs() const {
-  return model_.firing_period_us * static_cast<double>(model_.blocks / returns_);
+  return model_.firing_period_us * static_cast<double>(form_.blocks / returns_);
 }
 
 /// From the azimuth on.
-const std::uint8_t* HesaiDecoder::block(const std::uint8_t* packet, std::size_t i) const {
+const std::uint8_t* HesaiDecoder::block(const std::uint8_t* packet, const HesaiModel::Form& form, std::size_t i) const {
   const std::size_t flag = model_.header == HesaiModel::Header::kNone ? 2 : 0;
-  return packet + model_.headerBytes() + i * model_.blockBytes() + flag;
+  return packet + model_.headerBytes() + i * model_.blockBytes(form) + flag;
 }
 
-bool HesaiDecoder::isOurs(const Packet& packet) const {
-  if (packet.size < model_.leastBytes() || packet.size > model_.leastBytes() + model_.after_tail) return false;
+bool HesaiDecoder::isOurs(const Packet& packet, const HesaiModel::Form& form) const {
   if (model_.header != HesaiModel::Header::kNone) {
     const std::uint8_t* const counts = packet.data + (model_.header == HesaiModel::Header::kLong ? 6 : 2);
     const std::uint8_t distance_unit = counts[3];
     if (packet.data[0] != 0xEE || packet.data[1] != 0xFF || counts[0] != model_.laserCount() ||
-        counts[1] != model_.blocks || distance_unit == 0 || distance_unit > 100)
+        counts[1] != form.blocks || distance_unit == 0 || distance_unit > 100)
       return false;
   }
-  for (std::size_t i = 0; i < model_.blocks; ++i) {
-    const std::uint8_t* const azimuth = block(packet.data, i);
+  for (std::size_t i = 0; i < form.blocks; ++i) {
+    const std::uint8_t* const azimuth = block(packet.data, form, i);
     if (u16(azimuth) > kTurn) return false;
     if (model_.header == HesaiModel::Header::kNone && (azimuth[-2] != 0xFF || azimuth[-1] != 0xEE)) return false;
   }
@@ -73,32 +72,32 @@ bool HesaiDecoder::isOurs(const Packet& packet) const {
 }
 
 /// By the mode of returns; if that is unknown, by the blocks of the same azimuth.
-std::size_t HesaiDecoder::returnsOf(const Packet& packet) const {
-  std::size_t returns = returnsOfMode(packet.data[model_.tailAt() + model_.tail.mode]);
+std::size_t HesaiDecoder::returnsOf(const std::uint8_t* packet) const {
+  std::size_t returns = returnsOfMode(packet[model_.tailAt(form_) + model_.tail.mode]);
   if (returns == 0)
     for (returns = 1; returns < kMaxEchoes; ++returns)
-      if (returns == model_.blocks || u16(block(packet.data, returns)) != u16(block(packet.data, 0))) break;
-  return model_.blocks % returns == 0 ? returns : 1;
+      if (returns == form_.blocks || u16(block(packet, form_, returns)) != u16(block(packet, form_, 0))) break;
+  return form_.blocks % returns == 0 ? returns : 1;
 }
 
 /// Microseconds past the hour, of the end of the packet. The date is six bytes, or zero and the seconds since 1970.
 std::uint32_t HesaiDecoder::timeOf(const std::uint8_t* packet) const {
-  const std::uint8_t* const date = packet + model_.tailAt() + model_.tail.date;
+  const std::uint8_t* const date = packet + model_.tailAt(form_) + model_.tail.date;
   const bool is_since_1970 = date[0] == 0 && model_.header == HesaiModel::Header::kLong;
   const std::uint32_t seconds = is_since_1970 ? boost::endian::load_big_u32(date + 2) : date[4] * 60U + date[5];
-  return (seconds % 3600 * 1000000U + u32(packet + model_.tailAt() + model_.tail.time) % kHourUs) % kHourUs;
+  return (seconds % 3600 * 1000000U + u32(packet + model_.tailAt(form_) + model_.tail.time) % kHourUs) % kHourUs;
 }
 
-PacketOrder::Place HesaiDecoder::placeOf(const Packet& packet, std::uint32_t time_us) {
+PacketOrder::Place HesaiDecoder::placeOf(const std::uint8_t* packet, bool has_number, std::uint32_t time_us) {
   using Place = PacketOrder::Place;
-  if (!model_.has_sequence || packet.size < model_.leastBytes() + 4) {
+  if (!has_number) {
     const Place place = order_.place(time_us, packetPeriodUs());
     gap_us_ = order_.gap();
     if (place == Place::kAfterGap)
       counts_.missing += static_cast<std::uint64_t>(std::llround(gap_us_ / packetPeriodUs()) - 1);
     return place;
   }
-  const std::uint32_t number = u32(packet.data + model_.leastBytes());
+  const std::uint32_t number = u32(packet + model_.leastBytes(form_));
   const auto ahead = last_number_ ? static_cast<std::int32_t>(number - *last_number_) : 1;
   if (ahead <= 0 && ++late_in_a_row_ <= kMaxLate) return Place::kLate;
   late_in_a_row_ = 0;
@@ -116,8 +115,8 @@ PacketOrder::Place HesaiDecoder::placeOf(const Packet& packet, std::uint32_t tim
 
 void HesaiDecoder::measureStep(const std::uint8_t* packet, bool is_next) {
   if (!is_next) last_azimuth_.reset();
-  for (std::size_t i = 0; i < model_.blocks; i += returns_) {
-    const unsigned azimuth = u16(block(packet, i)) % kTurn;
+  for (std::size_t i = 0; i < form_.blocks; i += returns_) {
+    const unsigned azimuth = u16(block(packet, form_, i)) % kTurn;
     const unsigned step = last_azimuth_ ? (azimuth + kTurn - *last_azimuth_) % kTurn : 0;
     last_azimuth_ = azimuth;
     if (step == 0 || step > kMaxStep) continue;
@@ -137,7 +136,8 @@ void HesaiDecoder::decodeFiring(const std::uint8_t* first_block, double distance
     const Row& row = rows_[i];
     echoes.clear();
     for (std::size_t j = 0; j < returns_; ++j) {
-      const std::uint8_t* const measured = first_block + j * model_.blockBytes() + 2 + row.offset;
+      const std::uint8_t* const measured =
+          first_block + j * model_.blockBytes(form_) + 2 + form_.unit_bytes * row.number;
       echoes.add({u16(measured), static_cast<float>(measured[2]), measured[2]});
     }
     echoes.choose(returns_choice_);
@@ -159,14 +159,17 @@ Decoder::Kind HesaiDecoder::decode(const Packet& packet, const Visitor& visit) {
     ++counts_.position;
     return Kind::kPosition;
   }
-  if (!isOurs(packet)) {
+  const std::optional<HesaiModel::Shape> shape = model_.shapeOf(packet.size);
+  if (!shape || !isOurs(packet, *shape->form)) {
     ++counts_.foreign;
     return Kind::kForeign;
   }
-  const std::size_t returns_before = std::exchange(returns_, returnsOf(packet));
+  const HesaiModel::Form form_before = std::exchange(form_, *shape->form);
+  const std::size_t returns_before = std::exchange(returns_, returnsOf(packet.data));
   const std::uint32_t time_us = timeOf(packet.data);
-  const PacketOrder::Place place = placeOf(packet, time_us);
+  const PacketOrder::Place place = placeOf(packet.data, shape->has_number, time_us);
   if (place == PacketOrder::Place::kLate) {
+    form_ = form_before;
     returns_ = returns_before;
     ++counts_.late;
     return Kind::kLate;
@@ -186,11 +189,11 @@ Decoder::Kind HesaiDecoder::decode(const Packet& packet, const Visitor& visit) {
   const std::size_t unit_at = model_.header == HesaiModel::Header::kLong ? 9 : 5;
   const double distance_unit =
       model_.header == HesaiModel::Header::kNone ? kPandar40Unit : packet.data[unit_at] * kMillimetre;
-  for (std::size_t i = 0; i < model_.blocks; i += returns_) {
-    const std::uint8_t* const first = block(packet.data, i);
+  for (std::size_t i = 0; i < form_.blocks; i += returns_) {
+    const std::uint8_t* const first = block(packet.data, form_, i);
     decodeFiring(first, distance_unit);
     const double azimuth = std::fmod(u16(first) / 100. + 270, 360.);  // from +x, which is to the right
-    const auto later = static_cast<double>((model_.blocks - i) / returns_ - 1) * model_.firing_period_us;
+    const auto later = static_cast<double>((form_.blocks - i) / returns_ - 1) * model_.firing_period_us;
     const double since_hour_us = time_us - later;
     ++counts_.columns;
     visit({cells_, azimuth, since_hour_us < 0 ? since_hour_us + kHourUs : since_hour_us, after_break});

@@ -37,16 +37,16 @@ class HesaiDecoder : public Decoder {
 
  private:
   struct Row {
-    std::size_t offset = 0;  ///< of the measurement in its block, bytes
+    std::size_t number = 0;  ///< of the laser's measurement in a block
     double elevation_cosine = 0, elevation_sine = 0;
     double offset_cosine = 0, offset_sine = 0;  ///< of the azimuth's offset
   };
 
-  bool isOurs(const Packet& packet) const;
-  std::size_t returnsOf(const Packet& packet) const;
-  const std::uint8_t* block(const std::uint8_t* packet, std::size_t i) const;
+  bool isOurs(const Packet& packet, const HesaiModel::Form& form) const;
+  std::size_t returnsOf(const std::uint8_t* packet) const;
+  const std::uint8_t* block(const std::uint8_t* packet, const HesaiModel::Form& form, std::size_t i) const;
   std::uint32_t timeOf(const std::uint8_t* packet) const;
-  PacketOrder::Place placeOf(const Packet& packet, std::uint32_t time_us);
+  PacketOrder::Place placeOf(const std::uint8_t* packet, bool has_number, std::uint32_t time_us);
   void measureStep(const std::uint8_t* packet, bool is_next);
   void decodeFiring(const std::uint8_t* first_block, double distance_unit);
 
@@ -54,6 +54,7 @@ class HesaiDecoder : public Decoder {
   ReturnChoice returns_choice_;
   std::vector<Row> rows_;  ///< as the model's lasers
   std::vector<Cell> cells_;
+  HesaiModel::Form form_;    ///< of the last packet
   std::size_t returns_ = 1;  ///< of a laser in the last packet
 
   PacketOrder order_;  ///< of packets without numbers

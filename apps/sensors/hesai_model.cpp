@@ -121,24 +121,41 @@ constexpr HesaiModel::Tail kEarlyTail{22, 14, 16, 10}, kQt64Tail{24, 16, 18, 12}
 
 }  // namespace
 
+std::optional<HesaiModel::Shape> HesaiModel::shapeOf(std::size_t bytes) const {
+  for (const Form& form : forms)
+    for (const End& end : ends)
+      if (bytes == leastBytes(form) + end.bytes) return Shape{&form, end.has_number};
+  return std::nullopt;
+}
+
 HesaiModel hesaiLayout(const std::string& name) {
   if (name == "pandar40p")
-    return {
-        name, lasersInTurns(kPandar40Elevations, kPandar40Offsets, 6, 24), Header::kNone, 10, 3, 0, kEarlyTail, 4, true,
-        55.56};
+    return {name, lasersInTurns(kPandar40Elevations, kPandar40Offsets, 6, 24), Header::kNone, {{10, 3}}, kEarlyTail,
+            55.56};
   if (name == "pandar64")
-    return {
-        name, lasersInTurns(kPandar64Elevations, kPandar64Offsets, 6, 48), Header::kShort, 6, 3, 0, kEarlyTail, 4, true,
-        55.56};
+    return {name,           lasersInTurns(kPandar64Elevations, kPandar64Offsets, 6, 48),
+            Header::kShort, {{6, 3}, {7, 3}},
+            kEarlyTail,     55.56};
   if (name == "pandarqt64")
-    return {name, lasersAt(kQt64Elevations, kQt64Offsets), Header::kLong, 4, 4, 0, kQt64Tail, 4, true, 500. / 3};
-  if (name == "pandarxt16") return {name, evenLasers(16, 15, 2), Header::kLong, 8, 4, 0, kXtTail, 4, true, 50};
-  if (name == "pandarxt32") return {name, evenLasers(32, 15, 1), Header::kLong, 8, 4, 0, kXtTail, 4, true, 50};
-  if (name == "pandarxt32m") return {name, evenLasers(32, 19.5, 1.3), Header::kLong, 6, 4, 0, kXtTail, 4, true, 50};
+    return {name, lasersAt(kQt64Elevations, kQt64Offsets), Header::kLong, {{4, 4}}, kQt64Tail, 500. / 3};
+  if (name == "pandarxt16") return {name, evenLasers(16, 15, 2), Header::kLong, {{8, 4}}, kXtTail, 50};
+  if (name == "pandarxt32") return {name, evenLasers(32, 15, 1), Header::kLong, {{8, 4}}, kXtTail, 50};
+  if (name == "pandarxt32m") return {name, evenLasers(32, 19.5, 1.3), Header::kLong, {{6, 4}}, kXtTail, 50};
   if (name == "pandarqt128") {
-    // After the blocks come a check sum and the functional safety; after the tail the number, a check sum and a
-    // signature.
-    return {name, qt128Lasers(), Header::kLong, 2, 4, 4 + 17, kQt128Tail, 4 + 4 + 32, true, 111.11};
+    // A measurement may lack its confidence. After the blocks come a check sum and, if it is on, the functional safety;
+    // after the tail the number, a check sum and a signature, each of which may be missing.
+    constexpr std::size_t kSum = 4, kSafety = 17, kNumber = 4, kSignature = 32;
+    return {name,
+            qt128Lasers(),
+            Header::kLong,
+            {{2, 4, kSum + kSafety}, {2, 4, kSum}, {2, 3, kSum + kSafety}, {2, 3, kSum}},
+            kQt128Tail,
+            111.11,
+            {{kNumber + kSum + kSignature, true},
+             {kNumber + kSum, true},
+             {kSum + kSignature, false},
+             {kSum, false},
+             {0, false}}};
   }
   throw std::runtime_error("there is no sensor '" + name + "'");
 }

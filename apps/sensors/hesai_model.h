@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,24 +26,43 @@ struct HesaiModel {
   struct Tail {
     std::size_t size, mode, date, time;
   };
+  /// What varies from packet to packet.
+  struct Form {
+    std::size_t blocks;
+    std::size_t unit_bytes;       ///< of a laser in a block
+    std::size_t before_tail = 0;  ///< bytes between the blocks and the tail
+  };
+  /// What may follow the tail.
+  struct End {
+    std::size_t bytes;
+    bool has_number;  ///< the first four of them are the packet's number
+  };
+  /// A packet's form and end.
+  struct Shape {
+    const Form* form;
+    bool has_number;
+  };
 
   std::string name;
   std::vector<Laser> lasers;  ///< from top to bottom
   Header header = Header::kLong;
-  std::size_t blocks = 0;
-  std::size_t unit_bytes = 4;   ///< of a laser in a block
-  std::size_t before_tail = 0;  ///< bytes between the blocks and the tail
+  std::vector<Form> forms;  ///< the usual one first
   Tail tail{};
-  std::size_t after_tail = 4;   ///< bytes that may follow the tail
-  bool has_sequence = true;     ///< the first four of them are the packet's number, if they follow
   double firing_period_us = 0;  ///< from one firing of all lasers to the next
+  std::vector<End> ends{{0, false}, {4, true}};
 
   std::size_t laserCount() const { return lasers.size(); }
   std::size_t headerBytes() const { return header == Header::kLong ? 12 : header == Header::kShort ? 8 : 0; }
-  std::size_t blockBytes() const { return (header == Header::kNone ? 4 : 2) + unit_bytes * lasers.size(); }
-  std::size_t tailAt() const { return headerBytes() + blocks * blockBytes() + before_tail; }
+  std::size_t blockBytes(const Form& form) const {
+    return (header == Header::kNone ? 4 : 2) + form.unit_bytes * lasers.size();
+  }
+  std::size_t tailAt(const Form& form) const {
+    return headerBytes() + form.blocks * blockBytes(form) + form.before_tail;
+  }
   /// Of a packet up to the end of its tail.
-  std::size_t leastBytes() const { return tailAt() + tail.size; }
+  std::size_t leastBytes(const Form& form) const { return tailAt(form) + tail.size; }
+  /// By the length of a packet; nullopt if it has none of the forms.
+  std::optional<Shape> shapeOf(std::size_t bytes) const;
 };
 
 /// The names that makeHesaiModel () accepts.

@@ -57,7 +57,7 @@ std::string nameOf(const OusterMetadata& metadata) {
 
 OusterDecoder::Layout OusterDecoder::layoutOf(const OusterMetadata& metadata) {
   const bool is_legacy = metadata.profile == Profile::kLegacy;
-  const bool is_fusa = metadata.profile == Profile::kFusaDual;
+  const bool is_fusa = metadata.has_safety_header;
   Layout layout;
   layout.header = is_legacy ? 0 : 32;
   layout.column_header = is_legacy ? 16 : 12;
@@ -80,12 +80,16 @@ OusterDecoder::PixelLayout OusterDecoder::pixelLayoutOf(Profile profile) {
       return {12, 1, k20Bits, 0, {{0, 4, 0}, {}}, 2};
     case Profile::kSingle:
       return {12, 1, k19Bits, 0, {{0, 4, 0}, {}}, 1};
+    case Profile::kSingleColour:
+      return {16, 1, k19Bits, 0, {{0, 3, 4}, {}}, 1};
     case Profile::kDual:
       return {16, 2, k19Bits, 0, {{0, 3, 8}, {4, 7, 10}}, 1};
     case Profile::kFiveWords:
       return {20, 2, k19Bits, 0, {{0, 3, 8}, {4, 7, 10}}, 1};
-    case Profile::kFusaDual:
+    case Profile::kLowBandwidthDual:
       return {8, 2, k15Bits, 3, {{0, 2, 0}, {4, 6, 0}}, 1};
+    case Profile::kLowBandwidthZones:
+      return {8, 1, k15Bits, 3, {{0, 2, 0}, {}}, 1};
     case Profile::kLowBandwidth:
       break;
   }
@@ -147,6 +151,16 @@ bool OusterDecoder::isValid(const std::uint8_t* column) const {
   return (u16(column + kStatusAt) & 1U) != 0;
 }
 
+/// Motions and zones.
+bool OusterDecoder::isOfSensorsState(const Packet& packet) const {
+  constexpr unsigned kImuType = 2, kZoneType = 3;
+  if (layout_.header == 0) return packet.size == kImuBytes;
+  if (packet.size == kImuBytes) return true;
+  if (packet.size < 2 * layout_.header || packet.size == layout_.packet) return false;
+  const unsigned type = layout_.type_bytes == 1 ? packet.data[0] : u16(packet.data);
+  return type == kImuType || type == kZoneType;
+}
+
 bool OusterDecoder::isOurs(const Packet& packet) const {
   if (packet.size != layout_.packet) return false;
   if (layout_.type_bytes == 1 && packet.data[0] != kLidarType) return false;
@@ -163,16 +177,15 @@ bool OusterDecoder::isOurs(const Packet& packet) const {
 }
 
 bool OusterDecoder::isFromAny(const Packet& packet) {
+  // Those of further profiles are as long as these, and the type of both headers begins with the same byte.
   OusterMetadata metadata;
-  for (const Profile profile : {Profile::kLegacy, Profile::kSingle, Profile::kDual, Profile::kLowBandwidth,
-                                Profile::kFusaDual, Profile::kFiveWords})
+  for (const Profile profile : {Profile::kLegacy, Profile::kSingle, Profile::kSingleColour, Profile::kDual,
+                                Profile::kFiveWords, Profile::kLowBandwidth, Profile::kLowBandwidthZones})
     for (const std::size_t pixels : {16U, 32U, 64U, 128U}) {
       metadata.profile = profile;
       metadata.altitudes.resize(pixels);
       const Layout layout = layoutOf(metadata);
-      if (packet.size != layout.packet) continue;
-      if (layout.type_bytes == 0 || (layout.type_bytes == 1 ? packet.data[0] : u16(packet.data)) == kLidarType)
-        return true;
+      if (packet.size == layout.packet && (profile == Profile::kLegacy || packet.data[0] == kLidarType)) return true;
     }
   return false;
 }
@@ -202,7 +215,7 @@ OusterDecoder::Place OusterDecoder::placeOf(const std::uint8_t* packet, std::siz
 }
 
 Decoder::Kind OusterDecoder::decode(const Packet& packet, const Visitor& visit) {
-  if (packet.size == kImuBytes) {
+  if (isOfSensorsState(packet)) {
     ++counts_.position;
     return Kind::kPosition;
   }

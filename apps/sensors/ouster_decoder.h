@@ -82,6 +82,7 @@ class OusterDecoder : public Decoder {
   static PixelLayout pixelLayoutOf(OusterMetadata::Profile profile);
   bool isValid(const std::uint8_t* column) const;
   bool isOurs(const Packet& packet) const;
+  bool isOfSensorsState(const Packet& packet) const;
   /// The first measurement's number; nullopt if the packet has none that is valid.
   std::optional<std::size_t> firstColumn(const std::uint8_t* packet) const;
   Place placeOf(const std::uint8_t* packet, std::size_t first_column) const;

@@ -27,10 +27,17 @@ constexpr Transform kDefaultLidarToSensor{-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 36.
 const std::map<std::string, Profile>& profiles() {
   static const std::map<std::string, Profile> all{{"LEGACY", Profile::kLegacy},
                                                   {"RNG19_RFL8_SIG16_NIR16", Profile::kSingle},
+                                                  {"RNG19_RFL8_SIG16_NIR16_ZONE16", Profile::kSingle},
+                                                  {"RNG19_RFL8_SIG16_NIR16_RGB16", Profile::kSingleColour},
                                                   {"RNG19_RFL8_SIG16_NIR16_DUAL", Profile::kDual},
+                                                  {"RNG19_RFL8_SIG16_ZONE16_DUAL", Profile::kDual},
+                                                  {"RNG19_RFL8_SIG16_NIR16_RGB16_DUAL", Profile::kFiveWords},
+                                                  {"FIVE_WORD_PIXEL", Profile::kFiveWords},
                                                   {"RNG15_RFL8_NIR8", Profile::kLowBandwidth},
-                                                  {"FUSA_RNG15_RFL8_NIR8_DUAL", Profile::kFusaDual},
-                                                  {"FIVE_WORD_PIXEL", Profile::kFiveWords}};
+                                                  {"RNG15_RFL8_WIN8", Profile::kLowBandwidth},
+                                                  {"RNG15_RFL8_NIR8_ZONE16", Profile::kLowBandwidthZones},
+                                                  {"RNG15_RFL8_NIR8_DUAL", Profile::kLowBandwidthDual},
+                                                  {"FUSA_RNG15_RFL8_NIR8_DUAL", Profile::kLowBandwidthDual}};
   return all;
 }
 
@@ -161,6 +168,9 @@ OusterMetadata metadataOf(const Reader& reader) {
       reader.refuse("udp_profile_lidar is " + profile + ", which cannot be read; it must be one of " + names);
     }
     metadata.profile = known->second;
+    const std::string header = reader.text("header_type");
+    metadata.has_safety_header =
+        metadata.profile != Profile::kLegacy && (header.empty() ? profile.rfind("FUSA_", 0) == 0 : header == "FUSA");
   }
 
   Transform beam = kIdentity;

@@ -18,13 +18,23 @@ using Transform = std::array<double, 16>;
 /// What the metadata of an Ouster sensor says.
 struct OusterMetadata {
   /// Layout of a packet's pixels.
-  enum class Profile { kLegacy, kSingle, kDual, kLowBandwidth, kFusaDual, kFiveWords };
+  enum class Profile {
+    kLegacy,
+    kSingle,
+    kSingleColour,
+    kDual,
+    kFiveWords,
+    kLowBandwidth,
+    kLowBandwidthZones,
+    kLowBandwidthDual
+  };
 
   std::string product;                      ///< for example "OS-1-128"; empty if unknown
   std::uint64_t serial_number = 0;          ///< 0 if unknown
   std::vector<double> altitudes, azimuths;  ///< degrees, of each pixel of a column; azimuths clockwise
   Transform beam_to_lidar{}, lidar_to_sensor{};
   Profile profile = Profile::kLegacy;
+  bool has_safety_header = false;  ///< of packets, as functional safety (FuSa) has it; never with kLegacy
   std::size_t columns_per_frame = 0, columns_per_packet = 16;
   std::size_t first_column = 0, last_column = 0;  ///< that are sent; the last may be before the first
   double frames_per_second = 10;

@@ -173,6 +173,10 @@ Cell VelodyneDecoder::cellOf(const Echo& echo, std::size_t row) const {
           static_cast<float>(distance * rows_[row].sine + laser.height), echo.intensity};
 }
 
+bool VelodyneDecoder::isData(const Packet& packet) const {
+  return packet.size == kDataBytes && layoutOf(packet.data);
+}
+
 Decoder::Kind VelodyneDecoder::decode(const Packet& packet, const Visitor& visit) {
   if (packet.size == kPositionBytes) {
     ++counts_.position;

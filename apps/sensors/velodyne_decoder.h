@@ -34,6 +34,9 @@ class VelodyneDecoder : public Decoder {
   explicit VelodyneDecoder(VelodyneModel model, ReturnChoice returns = ReturnChoice::kBoth,
                            Turning turning = Turning::kDriver);
 
+  /// Whether a packet is laid out as this sensor's data; known of a model without lasers, too.
+  bool isData(const Packet& packet) const;
+
   Kind decode(const Packet& packet, const Visitor& visit) override;
   /// Sets the step to that of the whole capture.
   void prepare(PacketSource& capture) override;

@@ -44,8 +44,8 @@ std::string OtherSensors::paceWarning(const Decoder& decoder) {
   if (std::fabs(usual_us / own_us - 1) < kMaxOwnDeviation) return {};
   std::vector<std::string> by_pace;
   for (const std::string& name : velodyneModelNames())
-    if (name != "hdl64e" &&
-        std::fabs(usual_us / VelodyneDecoder(makeVelodyneModel(name)).packetPeriodUs() - 1) < kMaxOtherDeviation)
+    if (name != "hdl64e" &&  // whose packets are no other's
+        std::fabs(usual_us / VelodyneDecoder(velodynePackets(name)).packetPeriodUs() - 1) < kMaxOtherDeviation)
       by_pace.push_back(name);
   return formatted("packets come every %.0f us, but those of %s every %.0f us", usual_us, decoder.name().c_str(),
                    own_us) +

@@ -10,8 +10,7 @@
 
 namespace lisco_apps {
 
-/// Detects packets of another sensor than the one named, and proposes which. Never proposes the hdl64e, whose
-/// layout is the vls128's too.
+/// Detects packets of another sensor than the one named, and proposes which.
 class OtherSensors {
  public:
   /// \param kind the decoder's result for the packet

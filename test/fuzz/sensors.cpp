@@ -90,10 +90,12 @@ const std::vector<HesaiModel>& smallHesaiModels() {
 
 OusterMetadata ousterOf(unsigned what) {
   using Profile = OusterMetadata::Profile;
-  constexpr std::array kProfiles{Profile::kLegacy,       Profile::kSingle,   Profile::kDual,
-                                 Profile::kLowBandwidth, Profile::kFusaDual, Profile::kFiveWords};
+  constexpr std::array kProfiles{Profile::kLegacy,       Profile::kSingle,           Profile::kDual,
+                                 Profile::kLowBandwidth, Profile::kLowBandwidthDual, Profile::kFiveWords,
+                                 Profile::kSingleColour};
   OusterMetadata metadata;
-  metadata.profile = kProfiles[what % kProfiles.size()];
+  metadata.profile = kProfiles[what % 8 % kProfiles.size()];
+  metadata.has_safety_header = metadata.profile == Profile::kLowBandwidthDual;
   metadata.columns_per_frame = 64;
   metadata.columns_per_packet = 8;
   metadata.last_column = 63;
@@ -120,8 +122,11 @@ std::size_t ousterBytes(OusterMetadata::Profile profile) {
       return 64 + 8 * (12 + 8 * 16);
     case Profile::kLowBandwidth:
       return 64 + 8 * (12 + 8 * 4);
-    case Profile::kFusaDual:
+    case Profile::kLowBandwidthDual:
+    case Profile::kLowBandwidthZones:
       return 64 + 8 * (12 + 8 * 8);
+    case Profile::kSingleColour:
+      return 64 + 8 * (12 + 8 * 16);
     case Profile::kFiveWords:
       break;
   }
@@ -137,7 +142,10 @@ void fuzzHesai(const std::uint8_t* data, std::size_t size) {
   const std::vector<HesaiModel>& models = has_all_lasers ? hesaiModels() : smallHesaiModels();
   const HesaiModel& model = models[data[0] % 8 % models.size()];
   lisco_apps::HesaiDecoder decoder(model, kChoices[data[0] / 8 % 3]);
-  const std::size_t most = model.leastBytes() + (data[0] / 32 % 2 == 0 ? 4 : 0);
+  const unsigned shape = input.byte();
+  const HesaiModel::Form& form = model.forms[shape % model.forms.size()];
+  const HesaiModel::End& end = model.ends[shape / 8 % model.ends.size()];
+  const std::size_t tail = model.tailAt(form), most = model.leastBytes(form) + end.bytes;
   unsigned azimuth = 0;
   std::uint32_t number = 0;
   decodeAll(input, decoder, most, 3 * model.laserCount(), [&](std::vector<std::uint8_t>& packet) {
@@ -149,19 +157,19 @@ void fuzzHesai(const std::uint8_t* data, std::size_t size) {
       packet[0] = 0xEE;
       packet[1] = 0xFF;
       packet[counts] = static_cast<std::uint8_t>(model.laserCount());
-      packet[counts + 1] = static_cast<std::uint8_t>(model.blocks);
+      packet[counts + 1] = static_cast<std::uint8_t>(form.blocks);
       packet[counts + 3] = static_cast<std::uint8_t>(1 + how % 4);
     }
-    for (std::size_t block = 0; block < model.blocks; ++block) {
-      const std::size_t at = model.headerBytes() + block * model.blockBytes();
+    for (std::size_t block = 0; block < form.blocks; ++block) {
+      const std::size_t at = model.headerBytes() + block * model.blockBytes(form);
       const bool has_flag = model.header == HesaiModel::Header::kNone;
       if (has_flag) put16(packet, at, 0xEEFF);
       put16(packet, at + (has_flag ? 2 : 0), azimuth);
       azimuth = (azimuth + 10 * (how / 4 % 8)) % 36000;
     }
-    packet[model.tailAt() + model.tail.mode] = kModes[how / 32 % kModes.size()];
+    packet[tail + model.tail.mode] = kModes[how / 32 % kModes.size()];
     number += input.byte() % 4;
-    if (packet.size() >= model.leastBytes() + 4) put16(packet, model.leastBytes(), number);
+    if (end.has_number) put16(packet, tail + model.tail.size, number);
   });
 }
 
@@ -191,7 +199,7 @@ void fuzzOuster(const std::uint8_t* data, std::size_t size) {
     for (std::size_t i = 0; i < packet.size(); ++i) packet[i] = static_cast<std::uint8_t>(filling * i);
     place += how % 8;
     if (how / 8 % 8 == 0) place -= input.byte() % 8;
-    const bool is_fusa = metadata.profile == OusterMetadata::Profile::kFusaDual;
+    const bool is_fusa = metadata.has_safety_header;
     if (!is_legacy) {
       std::fill(packet.begin(), packet.begin() + 32, std::uint8_t{0});
       packet[0] = 1;

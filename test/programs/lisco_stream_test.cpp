@@ -588,6 +588,8 @@ TEST_F(LiscoStream, ProposesTheRightSensor) {
   writeCapture("vls128.pcap", packetsOf(PacketEncoder("vls128"), 100));
   expectRefusal("vlp16.pcap --sensor vls128 -t 1", {"no data packet of a vls128", "100 foreign", "is it a vlp16"});
   expectRefusal("vls128.pcap --sensor hdl32e -t 1", {"no data packet of a hdl32e", "is it a vls128?"});
+  writeCapture("hdl64e.pcap", packetsOf(PacketEncoder("hdl64e"), 100));
+  expectRefusal("hdl64e.pcap --sensor vls128 -t 1", {"no data packet of a vls128", "is it a hdl64e?"});
   const Outcome outcome = run("vlp16.pcap --sensor hdl32e -t 1");
   EXPECT_EQ(outcome.status, 0);
   EXPECT_NE(outcome.err.find("packets come every 1327 us"), std::string::npos) << outcome.err;
@@ -598,7 +600,14 @@ TEST_F(LiscoStream, ReadsAnHdl64eByItsCalibration) {
   write("db.xml", lisco_test::calibrationXml(lisco_test::usualCalibration));
   writeCapture("a.pcap", packetsOf(PacketEncoder("hdl64e"), 800));
   const std::string options = "a.pcap --sensor hdl64e -t 0.5 --ground none ";
-  expectRefusal(options, {"needs its calibration file", "--calibration"});
+  expectRefusal(options, {"a.pcap: needs --calibration FILE, that of the very hdl64e"});
+  // Its packets show what it is; its calibration may lie beside them.
+  expectRefusal("a.pcap -t 0.5", {"a.pcap: needs --calibration FILE, that of the very hdl64e"});
+  write("a.xml", lisco_test::calibrationXml(lisco_test::usualCalibration));
+  const Outcome found = run("a.pcap -t 0.5 --ground none --rotations 1");
+  EXPECT_EQ(found.status, 0) << found.err;
+  EXPECT_NE(found.err.find("sensor hdl64e, by its packets"), std::string::npos) << found.err;
+  EXPECT_NE(found.err.find("calibrated by the file beside it: a.xml"), std::string::npos) << found.err;
   const Outcome outcome = run(options + "--calibration db.xml --json --stats -o clouds");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const std::vector<Json> lines = linesOf(outcome.out);

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -219,6 +220,72 @@ TEST_P(EachHesai, AcceptsAnyBytes) {
   }
   EXPECT_EQ(decoder.counts().columns, came);
   EXPECT_GT(came, 100U);
+}
+
+/// Packets of any form hold the same returns.
+void expectSameReturns(const std::string& name, const std::function<void(HesaiEncoder&)>& change) {
+  const HesaiEncoder::World world = [](std::size_t firing, std::size_t laser, std::size_t second) {
+    return Measured{static_cast<std::uint16_t>(500 + 7 * firing + 11 * laser + 4001 * second),
+                    static_cast<std::uint8_t>(laser)};
+  };
+  for (const std::uint8_t mode : {std::uint8_t{0x37}, std::uint8_t{0x39}}) {
+    std::vector<SavedColumn> usual, others;
+    HesaiDecoder of_usual(makeHesaiModel(name)), of_others(makeHesaiModel(name));
+    HesaiEncoder encoder(name, mode), other(name, mode);
+    change(other);
+    while (usual.size() < 42) decode(of_usual, encoder.next(world), usual);
+    while (others.size() < 42) ASSERT_EQ(decode(of_others, other.next(world), others), Kind::kData);
+    for (std::size_t i = 0; i < 42; ++i) {
+      EXPECT_EQ(others[i].azimuth, usual[i].azimuth);
+      EXPECT_FALSE(others[i].after_break);
+      ASSERT_EQ(others[i].cells.size(), usual[i].cells.size());
+      for (std::size_t row = 0; row < usual[i].cells.size(); ++row) {
+        EXPECT_EQ(others[i].cells[row].x, usual[i].cells[row].x);
+        EXPECT_EQ(others[i].cells[row].intensity, usual[i].cells[row].intensity);
+      }
+    }
+    EXPECT_EQ(of_others.counts().missing + of_others.counts().foreign + of_others.counts().late, 0U);
+    EXPECT_EQ(lisco_apps::sensorsThatSend(asPacket(other.next(world))), std::vector<std::string>{name});
+  }
+}
+
+TEST(HesaiPackets, OfAPandar64MayHaveSevenBlocks) {
+  const HesaiEncoder::World world = [](std::size_t firing, std::size_t, std::size_t) {
+    return Measured{static_cast<std::uint16_t>(1000 + firing), 1};
+  };
+  for (const bool has_number : {false, true}) {
+    HesaiDecoder decoder(makeHesaiModel("pandar64"));
+    HesaiEncoder encoder("pandar64");
+    encoder.blocks = 7;
+    encoder.has_number = has_number;
+    std::vector<SavedColumn> columns;
+    const Bytes packet = encoder.next(world);
+    EXPECT_EQ(packet.size(), has_number ? 1392U : 1388U);
+    ASSERT_EQ(decode(decoder, packet, columns), Kind::kData);
+    ASSERT_EQ(columns.size(), 7U);
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      EXPECT_NEAR(rangeOf(columns[i].cells.front()), 0.004 * (1000. + static_cast<double>(i)), 1e-5);
+    EXPECT_NEAR(decoder.packetPeriodUs(), 7 * 55.56, 1e-6);
+  }
+}
+
+TEST(HesaiPackets, OfAQt128MayLackWhatItsFlagsTurnOff) {
+  expectSameReturns("pandarqt128", [](HesaiEncoder& encoder) { encoder.has_confidence = false; });
+  expectSameReturns("pandarqt128", [](HesaiEncoder& encoder) { encoder.has_safety = false; });
+  expectSameReturns("pandarqt128", [](HesaiEncoder& encoder) { encoder.has_number = false; });
+  expectSameReturns("pandarqt128", [](HesaiEncoder& encoder) {
+    encoder.has_number = encoder.has_check_sums = encoder.has_safety = encoder.has_confidence = false;
+  });
+}
+
+TEST(HesaiPackets, HaveTheLengthsOfTheManuals) {
+  const struct {
+    const char* name;
+    std::size_t bytes;
+  } cases[] = {{"pandar40p", 1266},  {"pandar64", 1198},   {"pandarqt64", 1072}, {"pandarxt16", 568},
+               {"pandarxt32", 1080}, {"pandarxt32m", 820}, {"pandarqt128", 1127}};
+  for (const auto& c : cases)
+    EXPECT_EQ(HesaiEncoder(c.name).next([](auto...) { return Measured{1000, 1}; }).size(), c.bytes) << c.name;
 }
 
 using HesaiModels = InTemporaryFolder;

@@ -25,7 +25,7 @@ class HesaiEncoder {
 
   std::size_t lasers() const { return lasers_; }
   std::size_t returns() const { return mode == 0x3D ? 3 : mode >= 0x39 ? 2 : 1; }
-  std::size_t firingsPerPacket() const { return blocks_ / returns(); }
+  std::size_t firingsPerPacket() const { return blocks / returns(); }
 
   std::uint8_t mode;
   unsigned azimuth = 0;  ///< of the next block, hundredths of a degree
@@ -35,10 +35,14 @@ class HesaiEncoder {
   double period_us = 0;  ///< of a firing
   unsigned step = 20;    ///< from firing to firing
   std::uint8_t distance_unit = 4;
+  std::size_t blocks = 0;      ///< of a packet
+  bool has_confidence = true;  ///< of the QT128's measurements
+  bool has_safety = true;      ///< of the QT128's packets
+  bool has_check_sums = true;  ///< behind the tail of the QT128's packets, with the signature
 
  private:
   std::string name_;
-  std::size_t lasers_ = 0, blocks_ = 0, unit_bytes_ = 4;
+  std::size_t lasers_ = 0, unit_bytes_ = 4;
   std::size_t firing_ = 0;
 };
 

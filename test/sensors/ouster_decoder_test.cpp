@@ -50,7 +50,10 @@ std::array<double, 3> positionOf(const OusterSensor& sensor, std::size_t column,
 class EachProfile : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Ouster, EachProfile,
                          testing::Values("LEGACY", "RNG19_RFL8_SIG16_NIR16", "RNG19_RFL8_SIG16_NIR16_DUAL",
-                                         "RNG15_RFL8_NIR8", "FUSA_RNG15_RFL8_NIR8_DUAL", "FIVE_WORD_PIXEL"),
+                                         "RNG15_RFL8_NIR8", "FUSA_RNG15_RFL8_NIR8_DUAL", "FIVE_WORD_PIXEL",
+                                         "RNG15_RFL8_NIR8_DUAL", "RNG15_RFL8_NIR8_ZONE16", "RNG15_RFL8_WIN8",
+                                         "RNG19_RFL8_SIG16_NIR16_ZONE16", "RNG19_RFL8_SIG16_ZONE16_DUAL",
+                                         "RNG19_RFL8_SIG16_NIR16_RGB16", "RNG19_RFL8_SIG16_NIR16_RGB16_DUAL"),
                          [](const auto& test) { return std::string(test.param); });
 
 TEST_P(EachProfile, GivesEachPixelItsPlace) {
@@ -230,6 +233,29 @@ TEST_P(EachProfile, CountsForeignPackets) {
   EXPECT_EQ(decode(decoder, other_type, came), is_legacy ? Kind::kData : Kind::kForeign);
   EXPECT_EQ(decoder.counts().foreign, is_legacy ? 6U : 7U);
   EXPECT_EQ(came.size(), is_legacy ? 16U : 0U);
+}
+
+TEST_P(EachProfile, HasOneOfTwoHeaders) {
+  for (const std::string type : {"STANDARD", "FUSA"}) {
+    OusterSensor sensor{GetParam()};
+    if (sensor.profile == "LEGACY") continue;
+    sensor.header_type = type;
+    OusterDecoder decoder = decoderOf(sensor);
+    std::vector<SavedColumn> came;
+    for (std::size_t frame = 3; frame < 5; ++frame)
+      for (const Bytes& packet : ousterFrame(sensor, frame, numberedRange)) {
+        ASSERT_EQ(decode(decoder, packet, came), Kind::kData) << type;
+        EXPECT_EQ(lisco_apps::sensorsThatSend(asPacket(packet)), std::vector<std::string>{"ouster"});
+      }
+    EXPECT_EQ(came.size(), 2 * sensor.columns);
+    EXPECT_EQ(decoder.counts().missing + decoder.counts().says_other_model, 0U);
+    // Motions with sentences of a GPS, and zones
+    for (const std::uint8_t state : {std::uint8_t{2}, std::uint8_t{3}}) {
+      Bytes packet(32 + 100 + 36 * 4 + 32);
+      packet[0] = state;
+      EXPECT_EQ(decode(decoder, packet, came), Kind::kPosition);
+    }
+  }
 }
 
 TEST_P(EachProfile, AcceptsAnyBytes) {

@@ -26,31 +26,34 @@ void addPixel(Bytes& packet, const std::string& profile, std::uint32_t first, st
     add(packet, strength, 2);
     add(packet, 5, 2);
     add(packet, 0, 2);
-  } else if (profile == "RNG19_RFL8_SIG16_NIR16") {
+  } else if (profile == "RNG19_RFL8_SIG16_NIR16" || profile == "RNG19_RFL8_SIG16_NIR16_ZONE16") {
     add(packet, (first & 0x7FFFFU) | 0x80000U, 4);  // a flag above the range
     add(packet, strength, 1);
     add(packet, 0, 1);
     add(packet, strength, 2);
     add(packet, 5, 2);
     add(packet, 0, 2);
-  } else if (profile == "RNG19_RFL8_SIG16_NIR16_DUAL" || profile == "FIVE_WORD_PIXEL") {
+  } else if (profile == "RNG19_RFL8_SIG16_NIR16_RGB16") {
+    add(packet, (first & 0x7FFFFU) | strength << 24U, 4);
+    add(packet, strength, 2);
+    add(packet, 5, 2);
+    add(packet, 0xABCDEF, 8);
+  } else if (profile.rfind("RNG19", 0) == 0 || profile == "FIVE_WORD_PIXEL") {
     add(packet, (first & 0x7FFFFU) | strength << 24U, 4);
     add(packet, (second & 0x7FFFFU) | second_strength << 24U, 4);
     add(packet, strength, 2);
     add(packet, second_strength, 2);
     add(packet, 5, 2);
-    add(packet, 0, profile == "FIVE_WORD_PIXEL" ? 6 : 2);
-  } else if (profile == "FUSA_RNG15_RFL8_NIR8_DUAL") {
-    add(packet, first / 8 | 0x8000U, 2);
-    add(packet, strength, 1);
-    add(packet, 5, 1);
-    add(packet, second / 8, 2);
-    add(packet, second_strength, 1);
-    add(packet, 0, 1);
+    add(packet, 0, profile == "FIVE_WORD_PIXEL" || profile.find("RGB16") != std::string::npos ? 6 : 2);
   } else {
     add(packet, first / 8 | 0x8000U, 2);
     add(packet, strength, 1);
     add(packet, 5, 1);
+    if (profile == "RNG15_RFL8_NIR8_ZONE16") add(packet, 0xABCDEF, 4);
+    if (profile.find("DUAL") == std::string::npos) return;
+    add(packet, second / 8, 2);
+    add(packet, second_strength, 1);
+    add(packet, 0, 1);
   }
 }
 
@@ -66,7 +69,8 @@ std::string OusterSensor::metadata(bool in_sections) const {
   std::ostringstream format, beams;
   format << R"({"column_window": [)" << window.first << ", " << window.second << R"(], "columns_per_frame": )"
          << columns << R"(, "columns_per_packet": )" << columns_per_packet << R"(, "pixels_per_column": )" << pixels
-         << R"(, "udp_profile_lidar": ")" << profile << R"("})";
+         << R"(, "udp_profile_lidar": ")" << profile << '"'
+         << (header_type.empty() ? "" : R"(, "header_type": ")" + header_type + '"') << '}';
   beams << R"("beam_altitude_angles": )" << altitudes << R"(, "beam_azimuth_angles": )" << azimuths
         << R"(, "lidar_origin_to_beam_origin_mm": )" << beam_origin_mm;
   const std::string mode = R"("lidar_mode": ")" + std::to_string(columns) + R"(x20")";
@@ -82,7 +86,7 @@ std::string OusterSensor::metadata(bool in_sections) const {
 
 std::vector<Bytes> ousterFrame(const OusterSensor& sensor, std::size_t frame, const OusterWorld& world,
                                std::uint32_t initialization) {
-  const bool is_legacy = sensor.profile == "LEGACY", is_fusa = sensor.profile == "FUSA_RNG15_RFL8_NIR8_DUAL";
+  const bool is_legacy = sensor.profile == "LEGACY", is_fusa = sensor.hasSafetyHeader();
   const auto [first, last] = sensor.window;
   const auto is_seen = [first = first, last = last](std::size_t column) {
     return first <= last ? column >= first && column <= last : column >= first || column <= last;

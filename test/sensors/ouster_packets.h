@@ -20,10 +20,12 @@ struct OusterSensor {
   std::size_t pixels = 32, columns = 1024, columns_per_packet = 16;
   std::pair<std::size_t, std::size_t> window{0, 1023};
   double beam_origin_mm = 15.806;
+  std::string header_type = "";  ///< "STANDARD" or "FUSA"; "": that of the profile, and not in the metadata
 
   double altitude(std::size_t pixel) const { return static_cast<double>(pixels) / 2 - static_cast<double>(pixel); }
   double azimuth(std::size_t pixel) const { return pixel % 2 == 0 ? 2. : -2.; }
   std::size_t returns() const;
+  bool hasSafetyHeader() const { return header_type.empty() ? profile.rfind("FUSA", 0) == 0 : header_type == "FUSA"; }
   /// \param in_sections as since firmware 3.0
   std::string metadata(bool in_sections = true) const;
 };
