@@ -293,10 +293,10 @@ class Workers {
     scan.ground = options_.scan.ground.of(item.file.stem().string());
     scan.cloud = input.clustered();
     scan.fields = input.fields;
-    if (scan.cloud->empty()) throw std::runtime_error(item.file.string() + ": holds no points");
+    if (scan.cloud->empty()) fail(item.file, (item.folder.empty() ? "" : item.folder + ": ") + "holds no points");
 
     const auto read = Clock::now();
-    scan.returns = returnsOf(*scan.cloud, scan.ground, options_.scan.region);
+    scan.returns = returnsOf(*scan.cloud, scan.ground, options_.scan.region, item.of_packets);
 
     const auto ground = Clock::now();
     extraction.setInputCloud(scan.cloud);

@@ -160,7 +160,7 @@ InputResult compareScan(const ScanItem& item, const std::string& name, const Opt
   input.file = item.file.string() + (item.folder.empty() ? "" : ": " + item.folder);
   input.ground = options.scan.ground.of(item.file.stem().string());
   // The rows of an arrangement show the ground; without it, the points stay in the order of the input.
-  ScanReturns returns = returnsOf(*read.clustered(), input.ground, options.scan.region);
+  ScanReturns returns = returnsOf(*read.clustered(), input.ground, options.scan.region, item.of_packets);
   input.left_out = returns.ground;
   if (options.ignored_label) {
     const std::vector<std::uint32_t> object_of = read.objectsOfClustered();

@@ -39,7 +39,7 @@ bool isAroundSensor(const Cloud& cloud) {
 }
 
 /// Per point: 1 on the ground. Empty if the cloud is not the scan of a rotating sensor.
-std::vector<std::uint8_t> groundBySlope(const Cloud& cloud, const Region& region) {
+std::vector<std::uint8_t> groundBySlope(const Cloud& cloud, const Region& region, bool is_rotation) {
   const std::size_t columns = cloud.width;
   const std::size_t lasers = cloud.height;
   const auto cell_at = [&](std::size_t laser, std::size_t column) {
@@ -57,8 +57,11 @@ std::vector<std::uint8_t> groundBySlope(const Cloud& cloud, const Region& region
     lisco::labelGround(points.data(), points.size(), sizeof points[0], unorganized, ground.data());
     return ground;
   }
-  const lisco::GroundParameters parameters = lisco::estimateGround(columns, lasers, origin, lisco::CellSource(cell_at));
-  if (parameters.sensor.steps_per_turn == 0) return {};
+  lisco::GroundParameters parameters;
+  if (!is_rotation) {
+    parameters = lisco::estimateGround(columns, lasers, origin, lisco::CellSource(cell_at));
+    if (parameters.sensor.steps_per_turn == 0) return {};
+  }
   lisco::GroundFilter().filter(parameters, columns, lasers, cell_at, ground.data());
   return ground;
 }
@@ -70,11 +73,11 @@ std::string shareOf(std::size_t part, std::size_t all) {
 
 }  // namespace
 
-ScanReturns returnsOf(const Cloud& cloud, const GroundChoice& ground, const Region& region) {
+ScanReturns returnsOf(const Cloud& cloud, const GroundChoice& ground, const Region& region, bool is_rotation) {
   ScanReturns result;
   std::vector<std::uint8_t> by_slope;
   if (ground.method == GroundChoice::Method::kSlope) {
-    by_slope = groundBySlope(cloud, region);
+    by_slope = groundBySlope(cloud, region, is_rotation);
     result.is_rotating = !by_slope.empty();
   }
   for (std::size_t i = 0; i < cloud.size(); ++i) {

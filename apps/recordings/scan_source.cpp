@@ -96,6 +96,7 @@ class ScanSource::Messages : public Sequence {
       return item;
     }
     if (!reader_->error().empty()) throw std::runtime_error(reader_->error());
+    if (taken_ == 0) fail(file_, "topic " + reader_->topic().name + " has no message, or none between --from and --to");
     return std::nullopt;
   }
   double share() const override { return reader_->share(); }
@@ -117,6 +118,7 @@ class ScanSource::Turns : public Sequence {
     while (std::optional<Rotation> rotation = rotations_.next()) {
       if (taken_++ % every_ != 0) continue;
       ScanItem item = itemOf(file_, rotation->number, 1000 * rotation->time_us);
+      item.of_packets = true;
       item.read = [cloud = rotation->cloud] {
         Scan scan;
         scan.cloud = cloud;
@@ -138,6 +140,13 @@ class ScanSource::Turns : public Sequence {
   std::uint64_t taken_ = 0;
 };
 
+void addFileOptions(boost::program_options::options_description& shown, ReadOptions& files) {
+  shown.add_options()(
+      "bin-fields", countOption("--bin-fields", files.bin_fields, 3, 64),
+      "floats a point of a .bin: 4 of KITTI (x y z intensity), 5 of nuScenes (and ring), others (default: by their "
+      "looks)");
+}
+
 void InputOptions::addTo(boost::program_options::options_description& shown) {
   recording.addTo(shown);
   addSensorOptions(shown, decoder);
@@ -145,11 +154,9 @@ void InputOptions::addTo(boost::program_options::options_description& shown) {
   shown.add_options()
     ("port", textOption("N", [this](const std::string& text) {
        port = static_cast<std::uint16_t>(countOf(text, "--port", 1, 65535)); }),
-     "of a capture: take only packets to this UDP port")
-    ("bin-fields", countOption("--bin-fields", files.bin_fields, 3, 64),
-     "floats a point of a .bin: 4 of KITTI (x y z intensity), 5 of nuScenes (and ring), others (default: by their "
-     "looks)");
+     "of a capture: take only packets to this UDP port");
   // clang-format on
+  addFileOptions(shown, files);
 }
 
 void InputOptions::check() const {

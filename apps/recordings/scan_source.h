@@ -17,6 +17,9 @@
 
 namespace lisco_apps {
 
+/// Adds --bin-fields.
+void addFileOptions(boost::program_options::options_description& shown, ReadOptions& files);
+
 /// How the inputs of a program are read.
 struct InputOptions {
   RecordingOptions recording;
@@ -35,6 +38,7 @@ struct ScanItem {
   std::string folder;          ///< for its results among those of the input; empty: the input is one scan
   std::size_t input = 0;       ///< number of the file or recording it is from
   std::int64_t time_ns = 0;    ///< of a message or rotation, nanoseconds since 1970; else 0
+  bool of_packets = false;     ///< a rotation in the sensor's own frame
   std::function<Scan()> read;  ///< may be called on another thread. Throws what readScan () throws
 };
 
