@@ -55,6 +55,7 @@ struct Options {
   std::optional<std::uint16_t> port;  ///< of a capture: only packets to it
   DecoderOptions decoder;
   RecordingOptions recording;
+  ReadOptions files;
   Mode mode = Mode::kRotation;
   unsigned window = 0, hop = 0;  ///< columns
   StreamOptions stream;
@@ -115,6 +116,7 @@ bool parse(int argc, char** argv, Options& options) {
   ScanOptions scan("slope", false);
   scan.addTo(shown);
   options.recording.addTo(shown);
+  addFileOptions(shown, options.files);
   // clang-format off
   shown.add_options()
     ("port", po::value<std::string>(&port)->value_name("N")->implicit_value("default"),
@@ -209,6 +211,7 @@ class PacedCapture : public PacketSource {
     packet = waiting_;
     return Arrival::kPacket;
   }
+  double share() const override { return capture_->share(); }
 
  private:
   static constexpr std::chrono::seconds kMaxBreak{10};
@@ -224,10 +227,10 @@ class PacedCapture : public PacketSource {
 struct Input {
   std::unique_ptr<PacketSource> source;
   std::unique_ptr<Decoder> decoder;
-  PacketQueue* queue = nullptr;  ///< the source, if live
-  bool has_clouds = false;       ///< instead of packets
-  unsigned every = 1;            ///< of how many rotations of packets the first is taken
-  std::string name{};            ///< for people: the file or folder, or the port
+  PacketQueue* queue = nullptr;    ///< the source, if live
+  CloudColumns* clouds = nullptr;  ///< the decoder, if there are clouds instead of packets
+  unsigned every = 1;              ///< of how many rotations of packets the first is taken
+  std::string name{};              ///< for people: the file or folder, or the port
 };
 
 /// A file's or folder's name without those before it, also of "drives/" and ".".
@@ -248,8 +251,9 @@ std::optional<Input> openClouds(const Options& options, Report& report) {
   auto reader = std::make_unique<TopicReader>(std::move(recording), index, part.span);
   Input input;
   input.source = std::make_unique<RawMessages>(std::move(reader), part.every);
-  input.decoder = std::make_unique<CloudColumns>(topic);
-  input.has_clouds = true;
+  auto columns = std::make_unique<CloudColumns>(topic);
+  input.clouds = columns.get();
+  input.decoder = std::move(columns);
   return input;
 }
 
@@ -260,12 +264,13 @@ std::optional<Input> openCloudFiles(const Options& options, Report& report) {
   if (!fs::is_directory(options.capture, unknown) && !isCloudFile(options.capture)) return std::nullopt;
   ScanSource scans({options.capture.string()}, {});
   if (scans.files().empty()) throw std::runtime_error(scans.takeFailures().front());
-  auto clouds = std::make_unique<CloudFiles>(scans.files(), options.recording.every,
+  auto clouds = std::make_unique<CloudFiles>(scans.files(), options.recording.every, options.files,
                                              [&report](const std::string& note) { report.warn(note); });
   Input input;
-  input.decoder = std::make_unique<CloudColumns>([from = clouds.get()](const Packet&) { return from->take(); });
+  auto columns = std::make_unique<CloudColumns>([from = clouds.get()](const Packet&) { return from->take(); });
+  input.clouds = columns.get();
+  input.decoder = std::move(columns);
   input.source = std::move(clouds);
-  input.has_clouds = true;
   return input;
 }
 
@@ -277,7 +282,7 @@ Input openFile(const Options& options, Report& report) {
   PacketInput packets =
       openPackets(options.capture, options.recording, options.decoder, options.port, Interruption::happened);
   for (const std::string& note : packets.notes) report.warn(options.capture.string() + ": " + note);
-  return {std::move(packets.source), std::move(packets.decoder), nullptr, false, options.recording.every};
+  return {std::move(packets.source), std::move(packets.decoder), nullptr, nullptr, options.recording.every};
 }
 
 Input open(const Options& options, Report& report) {
@@ -288,7 +293,7 @@ Input open(const Options& options, Report& report) {
     report.warn("listening on " + name);
     auto queue = std::make_unique<PacketQueue>(std::move(receiver));
     PacketQueue* const live = queue.get();
-    return {std::move(queue), std::move(decoder), live, false, 1, name};
+    return {std::move(queue), std::move(decoder), live, nullptr, 1, name};
   }
   Input input = openFile(options, report);
   input.name = nameOf(options.capture);
@@ -329,7 +334,7 @@ void takePackets(const Input& input, Decoder& decoder, OtherSensors& others, Str
       if (const std::string warning = others.paceWarning(decoder); !warning.empty()) report.warn(warning);
     }
     report.flush();
-    report.showStatus(decoder, stream);
+    report.showStatus(decoder, stream, input.queue == nullptr ? input.source.get() : nullptr);
     if (live != nullptr) live->handOver(decoder, stream);
   }
 }
@@ -402,10 +407,13 @@ int run(const Options& options) {
 
   const std::string& error = input.source->error();
   if (!error.empty()) report.warn(error);
+  const std::vector<std::string> left_out =
+      input.clouds != nullptr ? input.clouds->leftOut() : std::vector<std::string>();
+  for (const std::string& line : left_out) report.warn(options.capture.string() + ": " + line);
   const bool was_cut_short = Interruption::happened() && input.queue == nullptr;
-  if (decoder.counts().data == 0 && !was_cut_short && input.has_clouds)
-    fail(options.capture, "holds no cloud with rows or a field 'ring'" +
-                              std::string(input.source->packets() > 0 ? "; lisco_cluster takes any cloud" : ""));
+  if (input.clouds != nullptr && decoder.counts().data == 0 && left_out.empty() && error.empty() && !was_cut_short)
+    fail(options.capture, options.recording.areGiven() ? "holds no cloud between --from and --to" : "holds no cloud");
+  if (input.clouds != nullptr) return error.empty() && left_out.empty() ? 0 : 2;
   if (decoder.counts().data == 0 && !was_cut_short)
     throw std::runtime_error((options.capture.empty() ? "" : options.capture.string() + ": ") +
                              others.nothingCame(*input.source, decoder) +

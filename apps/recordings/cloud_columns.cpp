@@ -35,12 +35,17 @@ Decoder::Kind CloudColumns::decode(const Packet& packet, const Visitor& visit) {
   Scan scan;
   try {
     scan = read_(packet);
-  } catch (const Broken&) {
+  } catch (const Broken& why) {
     ++counts_.foreign;
+    if (++malformed_ == 1)
+      first_malformed_ = formatted("at %lld.%06lld: ", static_cast<long long>(packet.time_us / 1000000),
+                                   static_cast<long long>(packet.time_us % 1000000)) +
+                         why.what();
     return Kind::kForeign;
   }
   const Cloud& cloud = *scan.clustered();
   if (cloud.height < 2) {
+    ++without_rows_;
     ++counts_.foreign;
     return Kind::kForeign;
   }
@@ -65,6 +70,17 @@ Decoder::Kind CloudColumns::decode(const Packet& packet, const Visitor& visit) {
            column == 0});
   }
   return Kind::kData;
+}
+
+std::vector<std::string> CloudColumns::leftOut() const {
+  std::vector<std::string> lines;
+  const auto count = [](std::uint64_t clouds) {
+    return formatted("%llu cloud%s left out: ", static_cast<unsigned long long>(clouds), clouds == 1 ? "" : "s");
+  };
+  if (malformed_ > 0) lines.push_back(count(malformed_) + "malformed, the first " + first_malformed_);
+  if (without_rows_ > 0)
+    lines.push_back(count(without_rows_) + "neither rows nor a field 'ring'; lisco_cluster takes any cloud");
+  return lines;
 }
 
 }  // namespace lisco_apps

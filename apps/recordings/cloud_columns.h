@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -42,6 +43,9 @@ class CloudColumns : public Decoder {
 
   Kind decode(const Packet& packet, const Visitor& visit) override;
 
+  /// The clouds that were left out since they are malformed, or since they have no rows: a line each; empty if none.
+  std::vector<std::string> leftOut() const;
+
   // Unknown: a message says nothing about the sensor.
   double columnsPerTurn() const override { return 0; }
   double turnUs() const override { return 0; }
@@ -53,6 +57,8 @@ class CloudColumns : public Decoder {
   std::function<Scan(const Packet&)> read_;
   std::vector<Cell> cells_;
   double azimuth_ = 0;  ///< of the last column
+  std::uint64_t malformed_ = 0, without_rows_ = 0;
+  std::string first_malformed_;  ///< when, and why
 };
 
 }  // namespace lisco_apps

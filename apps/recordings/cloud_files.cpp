@@ -14,8 +14,9 @@ PacketSource::Arrival CloudFiles::next(Packet& packet) {
     const auto time_us = static_cast<std::int64_t>(at_) * kApartUs;
     if (at_++ % every_ != 0) continue;
     try {
-      scan_ = readScan(file);
+      scan_ = readScan(file, options_);
     } catch (const std::runtime_error& why) {
+      if (files_.size() == 1) throw;
       note_(why.what());
       ++unreadable_;
       continue;

@@ -19,9 +19,11 @@ class CloudFiles : public PacketSource {
  public:
   /// \param every takes the first of so many files
   /// \param note receives a line about a file that is left out or arranged
-  CloudFiles(std::vector<fs::path> files, unsigned every, std::function<void(const std::string&)> note)
-      : files_(std::move(files)), every_(every), note_(std::move(note)) {}
+  CloudFiles(std::vector<fs::path> files, unsigned every, const ReadOptions& options,
+             std::function<void(const std::string&)> note)
+      : files_(std::move(files)), every_(every), options_(options), note_(std::move(note)) {}
 
+  /// \throws std::runtime_error with one line if the only file cannot be read
   Arrival next(Packet& packet) override;
   double share() const override { return static_cast<double>(at_) / static_cast<double>(files_.size()); }
 
@@ -31,6 +33,7 @@ class CloudFiles : public PacketSource {
  private:
   std::vector<fs::path> files_;
   unsigned every_;
+  ReadOptions options_;
   std::function<void(const std::string&)> note_;
   std::size_t at_ = 0, unreadable_ = 0;
   Scan scan_;

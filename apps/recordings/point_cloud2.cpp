@@ -2,8 +2,13 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "recordings/point_cloud2.h"
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <limits>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <pcl/console/print.h>
 #include <pcl/io/lisco_point_cloud2.h>
@@ -11,6 +16,55 @@
 #include "recordings/message_fields.h"
 
 namespace lisco_apps {
+namespace {
+
+std::size_t sizeOf(std::uint8_t datatype) {
+  constexpr std::array<std::size_t, 9> kSizes{0, 1, 1, 2, 2, 4, 4, 4, 8};  // by the numbers of sensor_msgs/PointField
+  return datatype < kSizes.size() ? kSizes[datatype] : 0;
+}
+
+/// Makes a big-endian cloud little-endian. Leaves it as it is if its rows overlap or are empty, or if its fields
+/// overlap or are not within its points.
+void turnBytes(pcl::PCLPointCloud2& cloud) {
+  const std::size_t row_bytes = std::size_t{cloud.width} * cloud.point_step;
+  if (row_bytes == 0 || (cloud.height > 1 && cloud.row_step < row_bytes)) return;
+  std::vector<bool> is_turned(std::min<std::size_t>(cloud.point_step, cloud.data.size()), false);
+  for (const pcl::PCLPointField& field : cloud.fields) {
+    const std::size_t size = sizeOf(field.datatype), count = std::max<std::size_t>(field.count, 1);
+    if (size == 0 || field.offset > is_turned.size() || count > (is_turned.size() - field.offset) / size) return;
+    for (std::size_t i = field.offset; i < field.offset + size * count; ++i) {
+      if (is_turned[i]) return;
+      is_turned[i] = true;
+    }
+  }
+  for (std::size_t row = 0; row < cloud.height; ++row) {
+    const std::size_t row_at = row * cloud.row_step;
+    if (row_at > cloud.data.size() || row_bytes > cloud.data.size() - row_at) break;
+    for (std::size_t point = 0; point < cloud.width; ++point)
+      for (const pcl::PCLPointField& field : cloud.fields) {
+        const std::size_t size = sizeOf(field.datatype), count = std::max<std::size_t>(field.count, 1);
+        auto at = cloud.data.begin() + static_cast<std::ptrdiff_t>(row_at + point * cloud.point_step + field.offset);
+        for (std::size_t i = 0; i < count; ++i, at += static_cast<std::ptrdiff_t>(size))
+          std::reverse(at, at + static_cast<std::ptrdiff_t>(size));
+      }
+  }
+  cloud.is_bigendian = 0;
+}
+
+/// Says what the library, which refuses such a cloud, would tell on stderr.
+void refuseWithoutCoordinates(const pcl::PCLPointCloud2& cloud) {
+  constexpr std::uint8_t kFloat32 = 7, kFloat64 = 8;
+  if (cloud.data.empty()) return;
+  for (const std::string name : {"x", "y", "z"}) {
+    const auto field = std::find_if(cloud.fields.begin(), cloud.fields.end(),
+                                    [&](const pcl::PCLPointField& f) { return f.name == name; });
+    if (field == cloud.fields.end()) throw Broken("a cloud without a field '" + name + "'");
+    if (field->datatype != kFloat32 && field->datatype != kFloat64)
+      throw Broken("a cloud whose field '" + name + "' is neither FLOAT32 nor FLOAT64");
+  }
+}
+
+}  // namespace
 
 pcl::PCLPointCloud2 pointCloud2In(const Message& message, const Topic& topic) {
   constexpr std::uint32_t kMaxFields = 1000;
@@ -36,11 +90,13 @@ pcl::PCLPointCloud2 pointCloud2In(const Message& message, const Topic& topic) {
   const MessageFields::Span data = fields.array();
   cloud.data.assign(data.data, data.data + data.size);
   cloud.is_dense = fields.number<std::uint8_t>();
+  if (cloud.is_bigendian != 0) turnBytes(cloud);
   return cloud;
 }
 
 Scan scanOf(const pcl::PCLPointCloud2& message) {
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // errors are reported once, by the caller
+  refuseWithoutCoordinates(message);
   auto arranged = std::make_shared<Cloud>();
   Scan scan;
   scan.cloud = std::make_shared<Cloud>();

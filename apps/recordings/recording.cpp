@@ -27,6 +27,12 @@ const Format* formatOf(const fs::path& file) {
   return found == kFormats.end() ? nullptr : found;
 }
 
+/// As of rosbag2's compression of files: "bag.db3.zstd".
+bool isCompressedAsAWhole(const fs::path& file) {
+  const std::string ending = boost::to_lower_copy(file.extension().string());
+  return (ending == ".zstd" || ending == ".zst") && formatOf(file.stem()) != nullptr;
+}
+
 /// A folder with metadata.yaml, or with .db3 or .mcap files whose names differ in their numbers only.
 bool isBagFolder(const fs::path& folder) {
   std::error_code error;
@@ -46,13 +52,14 @@ bool isBagFolder(const fs::path& folder) {
 }  // namespace
 
 bool isRecording(const fs::path& input) {
-  return isBagFolder(input) || formatOf(input) != nullptr;
+  return isBagFolder(input) || formatOf(input) != nullptr || isCompressedAsAWhole(input);
 }
 
 std::unique_ptr<Recording> openRecording(const fs::path& input) {
   std::error_code error;
   if (!fs::exists(input, error)) fail(input, error ? "cannot be read: " + error.message() : "does not exist");
   if (fs::is_directory(input, error)) return openBagFolder(input);
+  if (isCompressedAsAWhole(input)) fail(input, "is compressed as a whole: decompress it (unzstd)");
   const Format* const format = formatOf(input);
   if (format == nullptr) fail(input, "is no recording (known: db3, mcap, bag)");
   if (fs::is_regular_file(input, error) && fs::file_size(input, error) == 0) fail(input, "is empty");

@@ -21,12 +21,12 @@ std::string listOf(const std::vector<Topic>& topics) {
   }
   std::string list;
   for (const Topic& topic : topics)
-    list +=
-        formatted("\n  %-*s  %-*s  %llu messages", static_cast<int>(name_width), topic.name.c_str(),
-                  static_cast<int>(type_width), topic.type.c_str(), static_cast<unsigned long long>(topic.messages)) +
-        (kindOf(topic) == TopicKind::kClouds    ? ", clouds"
-         : kindOf(topic) == TopicKind::kPackets ? ", packets of " + makerOfPackets(topic.type)
-                                                : "");
+    list += formatted("\n  %-*s  %-*s  %llu message%s", static_cast<int>(name_width), topic.name.c_str(),
+                      static_cast<int>(type_width), topic.type.c_str(), static_cast<unsigned long long>(topic.messages),
+                      topic.messages == 1 ? "" : "s") +
+            (kindOf(topic) == TopicKind::kClouds    ? ", clouds"
+             : kindOf(topic) == TopicKind::kPackets ? ", packets of " + makerOfPackets(topic.type)
+                                                    : "");
   return list.empty() ? "\n  (none)" : list;
 }
 
@@ -70,7 +70,7 @@ std::size_t chooseTopic(const Recording& recording, const fs::path& file, const 
     if (lidar != fitting.begin()) fitting.erase(lidar, fitting.end());
   }
   if (fitting.empty())
-    refuse(std::string("holds neither clouds nor packets that are known") +
+    refuse(std::string("holds no messages of clouds or packets that are known") +
            (recording.error().empty() ? "" : " before it breaks off"));
   if (fitting.size() > 1) refuse("has several topics that fit: choose one by --topic");
   return fitting.front();

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <string>
 
 #include "io/terminal_line.h"
 #include "io/text.h"
+#include "io/time_left.h"
 
 namespace lisco_apps {
 
@@ -27,11 +27,7 @@ class WorkProgress {
     shown_at_ = now;
     std::string pace;
     if (now > kMinTime && done > 0) pace = formatted("%.1f a second, ", static_cast<double>(done) / now);
-    if (now > kMinTime && share > 0) {
-      const auto left = static_cast<long>(std::ceil(now / share - now));
-      pace += formatted("%ld:%02ld left, ", left / 60, left % 60);
-    }
-    bar_.show(share, pace + what);
+    bar_.show(share, pace + timeLeft(now, share) + what);
   }
   void clear() { bar_.clear(); }
 

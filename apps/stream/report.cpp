@@ -12,6 +12,7 @@
 #include "io/cluster_json.h"
 #include "io/point_geometry.h"
 #include "io/text.h"
+#include "io/time_left.h"
 #include "sensors/laser.h"
 
 namespace lisco_apps {
@@ -153,7 +154,7 @@ void Report::turnIsLabelled(const Turn& turn) {
   if (clouds_ != nullptr) clouds_->write(turn);
 }
 
-void Report::showStatus(const Decoder& decoder, const Stream& stream) {
+void Report::showStatus(const Decoder& decoder, const Stream& stream, const PacketSource* file) {
   constexpr std::chrono::milliseconds kMinPause{200};
   const auto now = Clock::now();
   if (!status_.isShown() || now - shown_at_ < kMinPause) return;
@@ -168,6 +169,13 @@ void Report::showStatus(const Decoder& decoder, const Stream& stream) {
         formatted("%llu rotations, %llu columns, packets: %llu lost, %llu late; %llu clusters, ms: p50 %.2f, p99 %.2f",
                   number(totals_.turns), number(counts.columns), number(counts.missing), number(counts.late),
                   number(totals_.clusters), latency.percentileMs(0.5), latency.percentileMs(0.99));
+  if (file != nullptr) {
+    const double share = file->share();
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    const std::string rate =
+        seconds > 1 ? formatted("%.1f a second, ", static_cast<double>(totals_.turns) / seconds) : "";
+    shown_ = formatted("%d%%, ", static_cast<int>(100 * share)) + timeLeft(seconds, share) + rate + shown_;
+  }
   status_.show(shown_);
 }
 

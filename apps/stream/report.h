@@ -48,7 +48,8 @@ class Report : public Listener {
   void flush();
 
   /// Updates the status line, at most five times a second.
-  void showStatus(const Decoder& decoder, const Stream& stream);
+  /// \param file that is read; nullptr: live
+  void showStatus(const Decoder& decoder, const Stream& stream, const PacketSource* file);
   /// Prints a line on stderr.
   void warn(const std::string& text);
 
@@ -72,6 +73,7 @@ class Report : public Listener {
   const bool shares_terminal_ = isatty(STDOUT_FILENO) != 0;  ///< stdout and the status line
   std::string shown_;                                        ///< status
   Clock::time_point shown_at_;
+  const Clock::time_point start_ = Clock::now();
   bool unflushed_ = false;
   Totals totals_;
   std::uint64_t clusters_of_turn_ = 0;  ///< delivered since the turn began

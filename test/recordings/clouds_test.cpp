@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <random>
 #include <set>
 
+#include "../sensors/temporary_folder.h"
 #include "bags.h"
 #include "io/scan_file.h"
+#include "recordings/bytes.h"
 #include "recordings/little_endian.h"
 #include "recordings/point_cloud2.h"
 
@@ -229,6 +232,108 @@ TEST(CloudMessages, AreTheSameInBothSerializations) {
       EXPECT_THROW(lisco_apps::pointCloud2In(part, topic), std::runtime_error) << size;
     }
   }
+}
+
+/// A cloud of three points: a double that is no coordinate, x, y and z, two of which are floats, and an array.
+pcl::PCLPointCloud2 mixedCloud(bool is_bigendian) {
+  pcl::PCLPointCloud2 cloud;
+  cloud.width = 3;
+  cloud.height = 1;
+  cloud.point_step = 40;
+  cloud.row_step = 120;
+  cloud.is_bigendian = is_bigendian;
+  const auto add = [&](const char* name, std::uint32_t offset, std::uint8_t type, std::uint32_t count) {
+    pcl::PCLPointField field;
+    field.name = name;
+    field.offset = offset;
+    field.datatype = type;
+    field.count = count;
+    cloud.fields.push_back(field);
+  };
+  add("time", 1, 8, 1);
+  add("y", 9, 7, 1);
+  add("x", 13, 8, 0);
+  add("z", 21, 7, 1);
+  add("codes", 26, 4, 3);
+  cloud.data.resize(120, 0xAB);
+  const auto put = [&](std::size_t at, auto value) {
+    std::uint8_t* const to = cloud.data.data() + at;
+    std::memcpy(to, &value, sizeof value);
+    if (is_bigendian) std::reverse(to, to + sizeof value);
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    put(40 * i + 1, 0.5 * static_cast<double>(i));
+    put(40 * i + 9, 2.25F * static_cast<float>(i + 1));
+    put(40 * i + 13, 1.125 * static_cast<double>(i + 1));
+    put(40 * i + 21, -3.5F);
+    for (std::size_t code = 0; code < 3; ++code) put(40 * i + 26 + 2 * code, static_cast<std::uint16_t>(0x1234 + code));
+  }
+  return cloud;
+}
+
+/// As a message.
+std::string messageOf(const pcl::PCLPointCloud2& cloud) {
+  lisco_apps::CdrText message;
+  message.header(0, "lidar");
+  for (const auto value : {cloud.height, cloud.width, static_cast<std::uint32_t>(cloud.fields.size())})
+    message.number(value);
+  for (const pcl::PCLPointField& field : cloud.fields) {
+    message.text(field.name);
+    message.number(field.offset);
+    message.number(field.datatype);
+    message.number(field.count);
+  }
+  message.number(static_cast<std::uint8_t>(cloud.is_bigendian));
+  message.number(cloud.point_step);
+  message.number(cloud.row_step);
+  message.number(static_cast<std::uint32_t>(cloud.data.size()));
+  message.bytes().append(cloud.data.begin(), cloud.data.end());
+  message.number(std::uint8_t{1});
+  return message.done();
+}
+
+pcl::PCLPointCloud2 read(const std::string& data) {
+  return lisco_apps::pointCloud2In({0, 1, reinterpret_cast<const std::uint8_t*>(data.data()), data.size()},
+                                   {"/p", "sensor_msgs/PointCloud2", Serialization::kCdr, 1});
+}
+
+TEST(CloudMessages, MayBeBigEndian) {
+  const pcl::PCLPointCloud2 little = read(messageOf(mixedCloud(false)));
+  const pcl::PCLPointCloud2 big = read(messageOf(mixedCloud(true)));
+  EXPECT_EQ(big.data, little.data);
+  EXPECT_EQ(big.is_bigendian, 0);
+  const Scan scan = lisco_apps::scanOf(big);
+  ASSERT_EQ(scan.cloud->size(), 3U);
+  EXPECT_EQ((*scan.cloud)[2].x, 3.375F);
+  EXPECT_EQ((*scan.cloud)[2].y, 6.75F);
+  EXPECT_EQ((*scan.cloud)[2].z, -3.5F);
+  // Fields that overlap, or reach beyond a point, cannot be turned.
+  for (const auto& [offset, count] : {std::pair(3U, 1U), {37U, 1U}, {21U, 1U << 31U}}) {
+    pcl::PCLPointCloud2 wrong = mixedCloud(true);
+    wrong.fields[3].offset = offset;
+    wrong.fields[3].count = count;
+    EXPECT_THROW(lisco_apps::scanOf(read(messageOf(wrong))), lisco_apps::Broken) << offset;
+  }
+}
+
+TEST(CloudMessages, OfManyEmptyRowsTakeNoTime) {
+  pcl::PCLPointCloud2 cloud = mixedCloud(true);
+  cloud.height = 0xFFFFFFFF;
+  for (const std::uint32_t width : {0U, 3U}) {
+    cloud.width = width;
+    cloud.row_step = 0;
+    EXPECT_THROW(lisco_apps::scanOf(read(messageOf(cloud))), lisco_apps::Broken) << width;
+  }
+}
+
+TEST(CloudMessages, WithoutCoordinatesAreRefusedWithTheReason) {
+  pcl::PCLPointCloud2 cloud = mixedCloud(false);
+  cloud.fields[1].name = "Y";
+  EXPECT_EQ(lisco_test::refusalOf([&] { lisco_apps::scanOf(cloud); }), "a cloud without a field 'y'");
+  cloud = mixedCloud(false);
+  cloud.fields[3].datatype = 6;
+  EXPECT_EQ(lisco_test::refusalOf([&] { lisco_apps::scanOf(cloud); }),
+            "a cloud whose field 'z' is neither FLOAT32 nor FLOAT64");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "../sensors/temporary_folder.h"
 #include "bags.h"
 #include "recordings/recording.h"
 #include "recordings/topic_reader.h"
@@ -159,6 +160,12 @@ TEST_F(Formats, RefuseOtherFiles) {
     }
   }
   EXPECT_THROW(openRecording(file("missing.mcap")), std::runtime_error);
+  for (const char* const name : {"a.db3.zstd", "A.MCAP.ZST"}) {
+    std::ofstream(file(name)) << "compressed" << std::endl;
+    EXPECT_TRUE(lisco_apps::isRecording(file(name)));
+    EXPECT_EQ(lisco_test::refusalOf([&] { openRecording(file(name)); }),
+              file(name).string() + ": is compressed as a whole: decompress it (unzstd)");
+  }
   EXPECT_THROW(openRecording(file("a.txt")), std::runtime_error);
 }
 

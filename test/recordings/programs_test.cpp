@@ -11,6 +11,7 @@
 
 #include "../programs/program_test.h"
 #include "bags.h"
+#include "recordings/little_endian.h"
 #include "recordings/recording.h"
 
 namespace {
@@ -117,6 +118,62 @@ TEST_F(Programs, StreamTheCloudsOfAFolder) {
   EXPECT_EQ(countOf("2 clusters", outcome.out), 2U) << outcome.out;
   EXPECT_EQ(countOf("b.pcd", outcome.err), 1U) << outcome.err;
   EXPECT_EQ(countOf("1 of 3 files could not be read", outcome.err), 1U) << outcome.err;
+}
+
+TEST_F(Programs, StreamFloatsAsTold) {
+  // Three rings, firing by firing, of seven fields, which do not show their number: the last four are random.
+  std::string bin;
+  std::uint32_t state = 1;
+  for (int firing = 0; firing < 300; ++firing)
+    for (int ring = 0; ring < 3; ++ring) {
+      const double azimuth = -2 * 3.14159265 * firing / 300;
+      for (const double value : {10 * std::cos(azimuth), 10 * std::sin(azimuth), 0.2 * ring})
+        lisco_apps::putNumber(bin, static_cast<float>(value));
+      lisco_apps::putNumber(bin, 0.5F);
+      lisco_apps::putNumber(bin, static_cast<float>(ring));
+      for (int i = 0; i < 2; ++i)
+        lisco_apps::putNumber(bin, static_cast<float>((state = state * 1664525U + 1013904223U) >> 8U));
+    }
+  std::ofstream(folder_ / "a.bin", std::ios::binary) << bin;
+  const std::string stream = std::string(LISCO_STREAM) + " a.bin -t 0.5 --ground none";
+  Outcome outcome = runLine(stream + " --bin-fields 7");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(countOf("300 columns, 900 returns, 1 clusters", outcome.out), 1U) << outcome.out << outcome.err;
+  outcome = runLine(stream + " --bin-fields 8");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.err,
+            "lisco_stream: a.bin: is no cloud of 8 floats a point: its size, 25200 bytes, is no multiple of 32\n");
+}
+
+TEST_F(Programs, SayWhichCloudsAStreamLeavesOut) {
+  TestRecording recording = walls(3);
+  recording.messages[3].data.resize(300);
+  writeMcap(recording, "a.mcap");
+  const Outcome outcome = runLine(std::string(LISCO_STREAM) + " a.mcap -t 0.5 --ground none");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(countOf("240 returns", outcome.out), 2U) << outcome.out;
+  EXPECT_EQ(countOf("1 cloud left out: malformed, the first at 1600000000.100000: a message that ends too early",
+                    outcome.err),
+            1U)
+      << outcome.err;
+}
+
+TEST_F(Programs, LeaveOutTheGroundOfRotationsAsAStreamDoes) {
+  if (!fs::is_directory(data() / "bags")) GTEST_SKIP() << "no recordings in " << data();
+  for (const std::string name : {"pandar40p", "pandarqt64", "pandarxt32", "vlp16"}) {
+    const std::string rest = " " + (data() / "bags" / (name + ".db3")).string() + " -t 0.5 ";
+    const auto ground = [&](const Outcome& outcome, const std::string& before) {
+      EXPECT_EQ(outcome.status, 0) << outcome.err;
+      const std::size_t at = outcome.out.find(before);
+      EXPECT_NE(at, std::string::npos) << outcome.out;
+      return at == std::string::npos ? 0. : std::atof(outcome.out.c_str() + at + before.size());
+    };
+    const Outcome streamed = runLine(std::string(LISCO_STREAM) + rest + "--rotations 1 --json");
+    const Outcome clustered = runLine(std::string(LISCO_CLUSTER) + rest + "--to 0.11");
+    const double streams = ground(streamed, "\"ground\":"), clouds = ground(clustered, "  ground    ");
+    EXPECT_GT(streams, 3000) << name;
+    EXPECT_NEAR(clouds, streams, 0.005 * streams) << name;
+  }
 }
 
 TEST_F(Programs, TakeEveryNthRotationOfPackets) {

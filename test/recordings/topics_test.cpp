@@ -68,9 +68,9 @@ TEST_F(Topics, LeavesOutTheMotionSensorOfOuster) {
 TEST_F(Topics, ListsThemWhereThereIsAChoice) {
   const std::string several = refusal({kCloud, kImage, kOtherCloud}, "");
   for (const char* const part :
-       {"choose one by --topic", "/points ", "/rear/points ", "/image ", "1 messages", "sensor_msgs/PointCloud2"})
+       {"choose one by --topic", "/points ", "/rear/points ", "/image ", "1 message", "sensor_msgs/PointCloud2"})
     EXPECT_NE(several.find(part), std::string::npos) << several;
-  EXPECT_NE(refusal({kImage}, "").find("neither clouds nor packets"), std::string::npos);
+  EXPECT_NE(refusal({kImage}, "").find("no messages of clouds or packets"), std::string::npos);
   EXPECT_NE(refusal({kCloud}, "/nothing").find("has no topic '/nothing'"), std::string::npos);
   EXPECT_NE(refusal({kCloud, kImage}, "/image").find("neither clouds nor packets"), std::string::npos);
 }
