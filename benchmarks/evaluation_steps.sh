@@ -5,7 +5,7 @@
 
 timed_steps=(scene1 scene2 scene3 scene4 scene5 points real drive rivals columns threads dbscan)
 counted_steps=(mask subclusters merges boards table pictures)
-[ $counts_only = no ] || counted_steps=(scene1 scene2 scene3 scene4 scene5 real "${counted_steps[@]}")
+[ "$counts_only" = no ] || counted_steps=(scene1 scene2 scene3 scene4 scene5 real "${counted_steps[@]}")
 
 # run_step NAME: what measure_NAME does in the folder $work becomes $out/NAME.
 run_step() {
@@ -35,10 +35,11 @@ scene() {
 # $most_runs and $most_seconds may be set for it.
 compare() {
   local times=(--runs "${most_runs:-$runs}" --max-seconds "${most_seconds:-1000}")
-  [ $counts_only = no ] || times=(--check-only)
-  report "$work/all.txt" "$build/apps/lisco_compare" --must-agree grid,lisco "${times[@]}" --csv "$work/all.csv" "$@"
+  [ "$counts_only" = no ] || times=(--check-only)
+  report "$work/all.txt" "$build/apps/lisco_compare" --must-agree grid,lisco "${times[@]}" --csv "$work/all.csv" "$@" \
+    2>"$work/notes.txt" || { cat "$work/notes.txt" >&2 && return 1; }
 }
-plot() { [ $counts_only = yes ] || echo "--plot $work/charts"; }
+plot() { [ "$counts_only" = yes ] || echo "--plot $work/charts"; }
 
 # Figure 7, and table I and the objects.
 measure_scene() {
@@ -71,7 +72,7 @@ measure_real() {
 # The same on a simulated drive.
 measure_drive() {
   simulate --terrain road --speed 10 --rotations "$drive" -o "$work/rotations"
-  most_runs=1 compare "${rotations[@]}" "$work/rotations"
+  most_runs=1 compare "${rotations[@]}" "$work"/rotations/rotation_*.pcd
   rm -r "$work/rotations"
 }
 
@@ -194,8 +195,11 @@ publish_counts() {
 
 # publish_rotations NAME TITLE SECTION: the chart and the table of a step over rotations.
 publish_rotations() {
-  { echo "![Time of each of the $2](images/evaluation_$1.png)" && echo && tables rotations "$out/$1/all.csv"; } |
-    replace_section "$document" "$3"
+  {
+    echo "![Time over tolerance and returns, $2](images/evaluation_$1.png)"
+    echo
+    tables rotations "$out/$1/all.csv"
+  } | replace_section "$document" "$3"
   tables rotations-data "$out/$1/all.csv" >"$out/$1/data.txt"
   gnuplot -e "data='$out/$1/data.txt'; stem='$images/evaluation_$1'; what='$2'" "$root/benchmarks/rotations.gp" \
     2>"$out/$1/gnuplot.log" || { cat "$out/$1/gnuplot.log" >&2 && return 1; }
