@@ -51,7 +51,7 @@ measure_dbscan() {
 
 measure_archive() {
   "${python:-python3}" "$root/python/benchmarks/archive.py" "$data"/scans/vls128_street_0.pcd --repeat 1000 \
-    --tolerance 0.4 --remove-ground --piece 20 --runs 3
+    --tolerance 0.4 --remove-ground --piece 10 --runs 3
 }
 
 document_of() {

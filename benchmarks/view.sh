@@ -35,7 +35,7 @@ LISCO_WALL_TIME=1 "$build/test/view/lisco_page_tests" --gtest_filter='*LoadsAndT
 {
   echo "Chromium $(chromium --version 2>/dev/null | grep -oE '[0-9.]{5,}'),$(
     sed -n 's/^model name[^:]*://p' /proc/cpuinfo | head -n 1), $noise"
-  sed -n 's/^  //; /^wall time/p; /^processor time/p' "$out"
+  sed -n '/^wall time/p; /^processor time/p' "$out"
 } >"$out.lines"
 cat "$out.lines"
 [ -z "$publishes" ] || [ "$status" != 0 ] || code_block <"$out.lines" | replace_section "$root/doc/view.md" "page speed"

@@ -4,6 +4,7 @@
 import ctypes
 import filecmp
 import os
+import platform
 import signal
 import socket
 import sqlite3
@@ -296,6 +297,20 @@ def test_memory_does_not_grow_with_the_scans_of_a_piece(tmp_path):
         peaks.append(usage.ru_maxrss)
     assert peaks[1] < 1.1 * peaks[0]  # 55 more scans are 35 MB of points and 9 MB of labels
     assert peaks[1] - peaks[0] < 8 * 1024  # kilobytes
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="not glibc")
+def test_memory_stays_for_the_next_scan(tmp_path):
+    faults = []
+    for count in (5, 25):
+        source = write_scans(tmp_path / f"scans{count}", count, points=40000)
+        command = [*COMMAND, source, "-o", tmp_path / f"out{count}", "--tolerance", "0.4", "--workers", "0"]
+        environment = {**os.environ, "MALLOC_TRIM_THRESHOLD_": "65536"}  # as Dask starts workers
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, env=environment)
+        _, status, usage = os.wait4(process.pid, 0)
+        assert status == 0
+        faults.append(usage.ru_minflt)
+    assert (faults[1] - faults[0]) / 20 < 300  # 40 measured, 2300 if memory goes back to the system
 
 
 def test_wrong_arguments_are_one_line(scans, tmp_path):

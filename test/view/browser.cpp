@@ -80,6 +80,8 @@ Browser::Browser(const std::filesystem::path& folder, int width, int height) {
                                  "--window-size=" + std::to_string(width) + "," + std::to_string(height),
                                  "--user-data-dir=" + (folder / "chromium").string(),
                                  "about:blank"};
+  // Pages are composited by the processor, too, as on machines without a graphics processor.
+  if (std::getenv("LISCO_WALL_TIME") != nullptr) words.emplace_back("--disable-gpu");
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
