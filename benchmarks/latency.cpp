@@ -23,6 +23,7 @@
 #include <pcl/segmentation/lisco_cluster_writer.h>
 
 #include "captured_rotations.h"
+#include "column_periods.h"
 #include "compare/comparison.h"
 #include "compare/report.h"
 #include "ground_heights.h"
@@ -33,7 +34,6 @@
 #include "lisco/endless_clusterer.h"
 #include "lisco/sensor_hints.h"
 #include "lisco/window_clusterer.h"
-#include "sensors/velodyne_model.h"
 
 namespace {
 
@@ -56,7 +56,7 @@ struct Options {
   unsigned runs = 5;
   unsigned rotations = 3;  ///< of a capture
   PerInput<float> ground = groundHeights({});
-  std::vector<std::pair<std::string, std::string>> sensors;  ///< begin of a name, model
+  lisco_benchmarks::SensorNames sensors;
 };
 
 /// \return false if there is nothing to do but to print help or version, which has been done
@@ -115,25 +115,8 @@ bool parse(int argc, char** argv, Options& options) {
   options.runs = countOf(runs, "--runs", 1);
   options.rotations = countOf(rotations, "--rotations", 1);
   options.ground = groundHeights(ground);
-  for (const std::string& item : sensors) {
-    const std::size_t equals = item.find('=');
-    if (equals == std::string::npos) throw std::runtime_error("--sensor must be NAME=MODEL, not '" + item + "'");
-    options.sensors.emplace_back(item.substr(0, equals), item.substr(equals + 1));
-  }
+  for (const std::string& item : sensors) options.sensors.add(item);
   return true;
-}
-
-std::string modelOf(const Options& options, const std::string& name) {
-  for (const auto& [begin, model] : options.sensors)
-    if (name.compare(0, begin.size(), begin) == 0) return model;
-  throw std::runtime_error("no --sensor says what " + name + " was recorded with");
-}
-
-/// The time between two columns where the sensor fires, or turns, as fast as it can, microseconds.
-double columnPeriodOf(const std::string& model) {
-  if (model == "os1") return 1e6 / (20 * 1024);
-  if (model == "hdl64e") return 48.0;  // its calibration file is of no use for that
-  return makeVelodyneModel(model).firing_period_us;
 }
 
 /// A rotation as its columns come.
@@ -529,8 +512,8 @@ int run(const Options& options, Table table) {
       Case one;
       one.name = names[i];
       const float ground_z = options.ground.of(files[i].stem().string());
-      const std::string model = modelOf(options, one.name);
-      one.period_us = columnPeriodOf(model);
+      const std::string model = options.sensors.modelOf(one.name);
+      one.period_us = lisco_benchmarks::columnPeriodOf(model);
       if (files[i].extension() == ".pcap") {
         for (const Cloud::Ptr& cloud : readRotations(files[i], model, options.rotations))
           one.rotations.push_back(makeRotation(*cloud, ground_z));

@@ -44,7 +44,8 @@ class GroundFilter::State {
   void addAll(std::size_t columns, const CellSource& cells, std::uint8_t* ground);
 
  private:
-  void decideWaiting(const GroundVisitor& visit);
+  void decideWaiting();
+  void visitNext(const GroundVisitor& visit);
   void decide(std::size_t first, std::size_t count, std::uint8_t* ground, std::size_t stride);
   void estimatePlane();
 
@@ -53,10 +54,12 @@ class GroundFilter::State {
   std::size_t lasers_ = 0;
   bool begun_ = false;
   Columns received_;
-  std::size_t waiting_ = 0;                                 // columns received and not decided
-  std::array<std::size_t, Block::kColumns> cell_counts_{};  // of these columns
-  std::size_t decided_ = 0;                                 // columns, from begin () on
-  std::vector<std::uint8_t> waiting_ground_, column_ground_;
+  std::size_t waiting_ = 0;                                  // columns received and not decided
+  std::array<std::size_t, Block::kColumns> cell_counts_{};   // of these columns
+  std::size_t ready_ = 0, ready_end_ = 0;                    // columns of the latest block decided and not visited
+  std::array<std::size_t, Block::kColumns> ready_counts_{};  // cells of the columns of the latest block
+  std::size_t visited_ = 0;                                  // columns, from begin () on
+  std::vector<std::uint8_t> ready_ground_, column_ground_;
   Block block_;
   std::uint64_t block_number_ = 0;
   RowOrder order_;
@@ -75,12 +78,12 @@ void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t 
   lasers_ = lasers;
   block_.resize(lasers);
   received_.resize(lasers, Block::kColumns);
-  waiting_ground_.resize(std::max(waiting_ground_.size(), lasers * Block::kColumns));
+  ready_ground_.resize(std::max(ready_ground_.size(), lasers * Block::kColumns));
   column_ground_.resize(std::max(column_ground_.size(), lasers));
   order_.begin(lasers);
   map_.begin();
   follower_.begin(lasers, max_slope_);
-  waiting_ = decided_ = 0;
+  waiting_ = ready_ = ready_end_ = visited_ = 0;
   block_number_ = 0;
   plane_estimator_.begin(parameters, max_slope_);
   begun_ = true;
@@ -97,25 +100,35 @@ void GroundFilter::State::add(const Return* cells, std::size_t lasers, const Gro
     received_.z[i] = cell.z;
   }
   cell_counts_[waiting_++] = lasers;
-  if (waiting_ == Block::kColumns) decideWaiting(visit);
+  if (waiting_ == Block::kColumns) decideWaiting();
+  if (ready_ < ready_end_) visitNext(visit);
 }
 
 void GroundFilter::State::finish(const GroundVisitor& visit) {
-  if (!begun_ || waiting_ == 0) return;
+  if (!begun_) return;
+  while (ready_ < ready_end_) visitNext(visit);
+  if (waiting_ == 0) return;
   for (std::size_t column = waiting_; column < Block::kColumns; ++column) received_.clear(column, lasers_);
-  decideWaiting(visit);
+  decideWaiting();
+  while (ready_ < ready_end_) visitNext(visit);
 }
 
-void GroundFilter::State::decideWaiting(const GroundVisitor& visit) {
-  const std::size_t count = waiting_;
+/// The columns decided together are visited one by one as further ones come, so that what is done with them is spread
+/// evenly.
+void GroundFilter::State::decideWaiting() {
+  ready_counts_ = cell_counts_;
+  ready_ = 0;
+  ready_end_ = waiting_;
   waiting_ = 0;
-  std::fill(waiting_ground_.begin(), waiting_ground_.end(), std::uint8_t{0});
-  decide(0, count, waiting_ground_.data(), Block::kColumns);
-  for (std::size_t column = 0; column < count; ++column) {
-    for (std::size_t laser = 0; laser < cell_counts_[column]; ++laser)
-      column_ground_[laser] = waiting_ground_[laser * Block::kColumns + column];
-    visit(decided_++, column_ground_.data(), cell_counts_[column]);
-  }
+  std::fill(ready_ground_.begin(), ready_ground_.end(), std::uint8_t{0});
+  decide(0, ready_end_, ready_ground_.data(), Block::kColumns);
+}
+
+void GroundFilter::State::visitNext(const GroundVisitor& visit) {
+  const std::size_t column = ready_++, cells = ready_counts_[column];
+  for (std::size_t laser = 0; laser < cells; ++laser)
+    column_ground_[laser] = ready_ground_[laser * Block::kColumns + column];
+  visit(visited_++, column_ground_.data(), cells);
 }
 
 /// Reads more columns at a time than are decided together: the returns of a laser lie side by side in a cloud's memory.
