@@ -47,6 +47,7 @@ class GroundFilter::State {
   void decideWaiting();
   void visitNext(const GroundVisitor& visit);
   void decide(std::size_t first, std::size_t count, std::uint8_t* ground, std::size_t stride);
+  void tellMap();
   void estimatePlane();
 
   GroundParameters parameters_;
@@ -65,6 +66,7 @@ class GroundFilter::State {
   RowOrder order_;
   GroundMap map_;
   Follower follower_;
+  bool is_told_ = true;  // the map, of the latest block
   PlaneEstimator plane_estimator_;
 };
 
@@ -85,6 +87,7 @@ void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t 
   follower_.begin(lasers, max_slope_);
   waiting_ = ready_ = ready_end_ = visited_ = 0;
   block_number_ = 0;
+  is_told_ = true;
   plane_estimator_.begin(parameters, max_slope_);
   begun_ = true;
 }
@@ -100,7 +103,10 @@ void GroundFilter::State::add(const Return* cells, std::size_t lasers, const Gro
     received_.z[i] = cell.z;
   }
   cell_counts_[waiting_++] = lasers;
-  if (waiting_ == Block::kColumns) decideWaiting();
+  if (waiting_ == Block::kColumns)
+    decideWaiting();
+  else
+    tellMap();
   if (ready_ < ready_end_) visitNext(visit);
 }
 
@@ -153,13 +159,21 @@ void GroundFilter::State::addAll(std::size_t columns, const CellSource& cells, s
 /// Decides on `count` of the columns received.
 /// \param ground receives 1 for each cell on the ground, 0 for some of the others, in rows of `stride`
 void GroundFilter::State::decide(std::size_t first, std::size_t count, std::uint8_t* ground, std::size_t stride) {
+  tellMap();
   ++block_number_;
   block_.measure(received_, first, parameters_.sensor);
   order_.update(block_);
   estimatePlane();
+  is_told_ = !plane_estimator_.isKnown();
   if (plane_estimator_.isKnown())
     follower_.follow(block_, order_, plane_estimator_.plane(), map_, static_cast<std::uint32_t>(block_number_), ground,
                      count, stride);
+}
+
+/// Enters what the latest block has shown into the map, for the next one.
+void GroundFilter::State::tellMap() {
+  if (!is_told_) follower_.tell(block_, order_, plane_estimator_.plane());
+  is_told_ = true;
 }
 
 void GroundFilter::State::estimatePlane() {

@@ -61,7 +61,9 @@ struct FollowedRow {
   const GroundMap::Sector* sector;
   const Passed* before;  ///< of the rows below
   Passed* passed;
+  const ground::Followed* inwards;  ///< the ground that these have reached
   ground::Followed* followed;
+  std::size_t number;  ///< of `followed`
 };
 
 HWY_INLINE Floats set(float value) {

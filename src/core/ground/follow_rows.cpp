@@ -84,7 +84,7 @@ struct Column {
 };
 
 HWY_INLINE Column columnOf(const FollowedRow& row, std::size_t k, Floats steepest) {
-  const ground::Followed& before = *row.before->followed;
+  const ground::Followed& before = *row.inwards;
   const auto load = [k](const ground::Lanes& lanes) { return hn::LoadU(kLanes, lanes.data() + k); };
   Column column;
   column.rho = hn::LoadU(kLanes, row.rho + k);
@@ -139,7 +139,7 @@ HWY_INLINE Mask rises(const Column& column, const Above& above) {
 /// Moves the ground reached to the returns of `reached`.
 HWY_INLINE void advance(const FollowedRow& row, std::size_t k, Mask reached, Floats rho, Floats height,
                         Floats max_slope) {
-  const ground::Followed& before = *row.before->followed;
+  const ground::Followed& before = *row.inwards;
   ground::Followed& now = *row.followed;
   const auto load = [k](const ground::Lanes& lanes) { return hn::LoadU(kLanes, lanes.data() + k); };
   const auto store = [k](Floats value, ground::Lanes& lanes) { hn::StoreU(value, kLanes, lanes.data() + k); };
@@ -319,7 +319,7 @@ HWY_INLINE Found followRow(const FollowedRow& row, Floats steepest) {
                    hn::AllFalse(kLanes, hn::AndNot(hn::AndNot(too_high, areWhereExpected(column, map)), column.valid));
     }
   }
-  if (!are_objects) passed.followed = row.followed;
+  if (!are_objects) passed.followed = row.number;
   for (std::size_t i = 0; i < kParts; ++i) {
     const std::size_t k = i * kStep;
     add(are_objects  ? passObjects(row, k, columns[i], steepest)
@@ -355,7 +355,9 @@ void followRows(const FollowSetting& setting, const FollowResult& result) {
                                setting.map[i],
                                &before,
                                &result.passed[i],
-                               &result.followed[i]};
+                               &result.followed[before.followed],
+                               &result.followed[i],
+                               i};
     result.found[i] = followRow(followed, steepest);
   }
 }

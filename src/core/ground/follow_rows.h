@@ -26,7 +26,7 @@ struct Followed {
 
 /// What the rows up to one of them have shown.
 struct Passed {
-  const Followed* followed;
+  std::size_t followed;    ///< number of the Followed, in FollowResult
   Lanes reach;             ///< distance of the farthest return
   Lanes limit;             ///< no ground is higher than this, beneath the sensor, but for the steepest slope
   std::uint8_t obstacles;  ///< columns in which objects hide the ground beyond the ground reached, as bits
@@ -45,7 +45,7 @@ struct FollowSetting {
 /// What they show, for each row.
 struct FollowResult {
   Passed* passed;
-  Followed* followed;  ///< used by the rows that change what the rows below have shown
+  Followed* followed;  ///< of the rows that change what the rows below have shown; those of `starts` lie behind
   Found* found;
 };
 

@@ -25,21 +25,18 @@ std::array<std::uint8_t, 8> bytesOf(std::uint8_t bits) {
 }
 
 /// Ground as far as it is known before the first row of a chain.
-void setStart(const Plane& plane, float slope, Followed& start, Passed& passed) {
+void setStart(const Plane& plane, float slope, Followed& start) {
   for (Lanes* lanes : {&start.rho, &start.back_rho, &start.next_rho}) lanes->fill(0.0F);
   for (Lanes* lanes : {&start.height, &start.back_height, &start.next_height}) lanes->fill(plane.height);
   start.slope.fill(slope);
-  passed = {&start, {}, {}, 0};
-  passed.limit.fill(plane.height + kStartLimit);
 }
 
 }  // namespace
 
 void Follower::begin(std::size_t lasers, float max_slope) {
   if (sectors_.size() < lasers) {
-    started_.resize(lasers);
     starts_.resize(lasers);
-    followed_.resize(lasers);
+    followed_.resize(2 * lasers);
     passed_.resize(lasers);
     sectors_.resize(lasers);
     found_.resize(lasers);
@@ -64,6 +61,9 @@ void Follower::follow(const Block& block, const RowOrder& order, const Plane& pl
     else
       std::copy_n(decisions.data(), columns, to);
   }
+}
+
+void Follower::tell(const Block& block, const RowOrder& order, const Plane& plane) {
   report(block, order, plane);
   enterReports(reports_, max_slope_, order.turnsLeft());
 }
@@ -71,8 +71,11 @@ void Follower::follow(const Block& block, const RowOrder& order, const Plane& pl
 void Follower::prepare(const RowOrder& order, const Plane& plane, GroundMap& map, std::uint32_t number) {
   const auto& rows = order.rows();
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].down == RowOrder::kNone)
-      setStart(plane, plane.slopeTowards(order.directionOf(rows[i].row)), started_[i], starts_[i]);
+    if (rows[i].down == RowOrder::kNone) {
+      starts_[i] = {starts_.size() + i, {}, {}, 0};
+      starts_[i].limit.fill(plane.height + kStartLimit);
+      setStart(plane, plane.slopeTowards(order.directionOf(rows[i].row)), followed_[starts_[i].followed]);
+    }
     sectors_[i] = &map.sectorAt(order.azimuthOf(rows[i].row), number, plane);
   }
 }
@@ -93,8 +96,8 @@ void Follower::report(const Block& block, const RowOrder& order, const Plane& pl
     Report report{sectors_[i], reach, rho, block.height[cell], reached != 0, true, {}};
     if (reached != 0) {
       const std::size_t last = lastOf(reached);
-      const Followed& now = *passed_[i].followed;
-      const Followed& inwards = *before(row, i).followed;
+      const Followed& now = followed_[passed_[i].followed];
+      const Followed& inwards = followed_[before(row, i).followed];
       report.stretch = {is_first ? 0.0F : inwards.rho[last],
                         is_first ? plane.height : inwards.height[last],
                         now.rho[last],

@@ -22,11 +22,13 @@ class Follower {
   /// Allocates only if there are more lasers than ever before.
   void begin(std::size_t lasers, float max_slope);
   /// \param number of the block, from 1 on
-  /// \param map tells of the blocks before, and is told of this one
+  /// \param map tells of the blocks before
   /// \param ground receives a byte for each of the first `columns` cells of the lasers in the order, 1 on the ground,
   ///        else 0, in rows of `stride`
   void follow(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map, std::uint32_t number,
               std::uint8_t* ground, std::size_t columns, std::size_t stride);
+  /// Tells the map of the block just followed.
+  void tell(const Block& block, const RowOrder& order, const Plane& plane);
 
  private:
   void prepare(const RowOrder& order, const Plane& plane, GroundMap& map, std::uint32_t number);
@@ -38,9 +40,8 @@ class Follower {
 
   // By position in the order.
   std::vector<GroundMap::Sector*> sectors_;
-  std::vector<Followed> started_;  // of rows with none below
-  std::vector<Passed> starts_;     // likewise
-  std::vector<Followed> followed_;
+  std::vector<Passed> starts_;      // of rows with none below: what is known before
+  std::vector<Followed> followed_;  // then those of the starts
   std::vector<Passed> passed_;
   std::vector<Found> found_;
   std::vector<std::int32_t> last_ground_;  // of the reports: latest one with ground, or RowOrder::kNone
