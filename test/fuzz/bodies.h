@@ -29,6 +29,9 @@ void fuzzEngine(const std::uint8_t* data, std::size_t size);
 /// Calls of the clusterers in any order, wrong ones too.
 void fuzzStream(const std::uint8_t* data, std::size_t size);
 
+/// The ground of a scan: the whole equals column by column, and none of it is no return.
+void fuzzGround(const std::uint8_t* data, std::size_t size);
+
 /// A scan's file, whose first byte gives the format.
 void fuzzReaders(const std::uint8_t* data, std::size_t size);
 

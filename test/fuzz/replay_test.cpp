@@ -39,7 +39,7 @@ class Fuzz : public testing::TestWithParam<Target> {
 
 INSTANTIATE_TEST_SUITE_P(Bodies, Fuzz,
                          testing::Values(Target{"engine", fuzzEngine, 6000}, Target{"stream", fuzzStream, 6000},
-                                         Target{"readers", fuzzReaders, 2000},
+                                         Target{"ground", fuzzGround, 2000}, Target{"readers", fuzzReaders, 2000},
                                          Target{"recordings", fuzzRecordings, 2000},
                                          Target{"packets", fuzzPackets, 6000}, Target{"hesai", fuzzHesai, 6000},
                                          Target{"ouster", fuzzOuster, 6000}, Target{"http", fuzzHttp, 6000}),
