@@ -236,8 +236,8 @@ std::string jsonOf(const std::vector<InputResult>& inputs, const CompareSettings
                               {"rows", input.rows},
                               {"columns", input.columns},
                               {"returns", input.returns},
-                              {"ground", nameOf(input.ground)},
-                              {"ground_returns", input.left_out},
+                              {"ground", input.left_out},
+                              {"ground_method", nameOf(input.ground)},
                               {"ground_z", finiteOrNull(static_cast<double>(input.ground.height))},
                               {"cases", std::move(cases)}});
   }

@@ -180,7 +180,9 @@ TEST_F(LiscoCompare, WritesJson) {
     EXPECT_EQ(input["rows"], 4);
     EXPECT_EQ(input["columns"], 180);
     EXPECT_EQ(input["returns"], 180);
+    EXPECT_EQ(input["ground_method"], "height:-1.5");
     EXPECT_EQ(input["ground_z"], -1.5);
+    EXPECT_TRUE(input["ground"].is_number_unsigned());
     ASSERT_EQ(input["cases"].size(), 2U);
     EXPECT_EQ(input["cases"][1]["tolerance"], 0.7);
     EXPECT_EQ(input["cases"][1]["clusters"], 2);
