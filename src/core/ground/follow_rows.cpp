@@ -227,7 +227,7 @@ HWY_INLINE Mask foundByColumn(const Column& column, const Mapped& map, const Abo
   continued = hn::Or(continued, hn::And(hn::And(flat_free, goesOn(above, column.slope)), hn::Lt(off, level)));
   // Where the ground changes its slope: beyond, it has that slope.
   const auto here = hn::Div(column.from_ground, hn::Max(column.way, set(0.5F)));
-  const auto possible = hn::Lt(hn::Abs(here), steepest);
+  const auto possible = hn::AndNot(first, hn::Lt(hn::Abs(here), steepest));
   const auto bend = hn::Add(set(kBend), hn::Div(set(kBendGrowth), hn::Max(above.step, set(0.5F))));
   continued = hn::Or(continued, hn::And(hn::And(hn::And(flat_free, above.seen), possible),
                                         hn::Lt(hn::Abs(hn::Sub(above.slope, here)), bend)));
@@ -238,7 +238,7 @@ HWY_INLINE Mask foundByColumn(const Column& column, const Mapped& map, const Abo
   const auto found = hn::And(continued, hn::Or(hn::Ge(map.slack, set(kKnown)), fits_map));
   // Beyond objects.
   const auto on_line =
-      hn::And(hn::And(above.line, hn::AndNot(first, possible)), hn::Lt(hn::Abs(hn::Sub(above.line_slope, here)), set(kLineBend)));
+      hn::And(hn::And(above.line, possible), hn::Lt(hn::Abs(hn::Sub(above.line_slope, here)), set(kLineBend)));
   return hn::Or(found, hn::And(on_line, hn::Or(hn::Gt(map.slack, set(kLineKnown)), fits_map)));
 }
 

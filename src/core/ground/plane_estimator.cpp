@@ -18,6 +18,12 @@ constexpr float kSameSlope = 0.08F;     // metres per metre
 constexpr float kLevel = 0.1F;          // metres per metre
 constexpr float kEnough = 0.5F;         // of the most weight
 constexpr float kWindow = 0.15F;        // metres, of heights that agree
+constexpr float kRefinedWindow = 0.4F;  // metres, of heights that agree with the plane's slope
+constexpr float kRefinedEnough = 0.7F;  // of the most weight
+constexpr float kTrust = 0.5F;          // of the plane's slope, the rest of a line's own
+constexpr double kPointReach = 6.0;     // metres; where lines begin further out, they count less as points
+constexpr double kSlopeReach = 2.0;     // metres, over which a line's slope counts
+constexpr double kLevelWeight = 20.0;   // square metres, of the horizon
 constexpr float kMinWeight = 6.0F;      // of the lines that show a plane
 
 }  // namespace
@@ -78,24 +84,25 @@ void PlaneEstimator::add(const Block& block, std::size_t column) {
       continue;
     }
     const float height = lows[i].height - slope * lows[i].rho;
-    if (height < highest_) lines[line_count++] = {height, slope, weight, direction};
+    if (height < highest_) lines[line_count++] = {height, slope, weight, lows[i].rho, direction};
   }
-  const Agreed agreed = lowestOf(lines.data(), line_count, 0.1F);
+  const Agreed agreed = lowestOf(lines.data(), line_count, 0.1F, kEnough);
   if (agreed.weight == 0.0F) return;
-  Line line{agreed.height, 0.0F, agreed.weight, direction};
+  Line line{agreed.height, 0.0F, agreed.weight, 0.0F, direction};
   float weight = 0.0F;
   for (std::size_t i = 0; i < line_count; ++i)
     if (std::fabs(lines[i].height - agreed.height) < 0.2F) {
       line.slope += lines[i].weight * lines[i].slope;
       weight += lines[i].weight;
+      if (line.rho == 0.0F) line.rho = lines[i].rho;
     }
   line.slope = weight > 0.0F ? line.slope / weight : 0.0F;
   lines_[count_++ % kMemory] = line;
 }
 
-/// Of the heights that at least kEnough of the most weight agrees with, the lowest: the mean of those near it, and
+/// Of the heights that at least `enough` of the most weight agrees with, the lowest: the mean of those near it, and
 /// their weight.
-PlaneEstimator::Agreed PlaneEstimator::lowestOf(const Line* lines, std::size_t size, float window) {
+PlaneEstimator::Agreed PlaneEstimator::lowestOf(const Line* lines, std::size_t size, float window, float enough) {
   std::array<float, kMemory> heights, support{};
   for (std::size_t i = 0; i < size; ++i) heights[i] = lines[i].height;
   for (std::size_t j = 0; j < size; ++j) {
@@ -106,7 +113,7 @@ PlaneEstimator::Agreed PlaneEstimator::lowestOf(const Line* lines, std::size_t s
   for (std::size_t i = 0; i < size; ++i) most = std::max(most, support[i]);
   float lowest = std::numeric_limits<float>::infinity();
   for (std::size_t i = 0; i < size; ++i)
-    if (support[i] >= kEnough * most) lowest = std::min(lowest, heights[i]);
+    if (support[i] >= enough * most) lowest = std::min(lowest, heights[i]);
   float sum = 0.0F, weight = 0.0F;
   for (std::size_t i = 0; i < size; ++i)
     if (std::fabs(heights[i] - (lowest + window)) < 2.0F * window) {
@@ -117,9 +124,10 @@ PlaneEstimator::Agreed PlaneEstimator::lowestOf(const Line* lines, std::size_t s
 }
 
 void PlaneEstimator::update() {
+  if (known_ && !height_given_) return refine();
   const std::size_t size = std::min(count_, kMemory);
   if (!height_given_) {
-    const Agreed agreed = lowestOf(lines_.data(), size, kWindow);
+    const Agreed agreed = lowestOf(lines_.data(), size, kWindow, kEnough);
     if (agreed.weight < kMinWeight) return;
     plane_.height = agreed.height;
     known_ = true;
@@ -141,6 +149,44 @@ void PlaneEstimator::update() {
   const float determinant = xx * yy - xy * xy;
   plane_.slope_x = std::clamp((xs * yy - ys * xy) / determinant, -max_slope_, max_slope_);
   plane_.slope_y = std::clamp((ys * xx - xs * xy) / determinant, -max_slope_, max_slope_);
+}
+
+/// Fits a known plane to where the lines begin and to their slopes: on uneven ground, a line's own height beneath the
+/// sensor is far off.
+void PlaneEstimator::refine() {
+  const std::size_t size = std::min(count_, kMemory);
+  std::array<Line, kMemory> lines = lines_;
+  for (std::size_t i = 0; i < size; ++i)
+    lines[i].height += kTrust * (lines[i].slope - plane_.slopeTowards(lines[i].direction)) * lines[i].rho;
+  const Agreed agreed = lowestOf(lines.data(), size, kRefinedWindow, kRefinedEnough);
+  // Least squares of height + slope_x x + slope_y y = z.
+  std::array<std::array<double, 4>, 3> rows{};
+  rows[1][1] = rows[2][2] = kLevelWeight;
+  const auto add = [&rows](double weight, const std::array<double, 4>& terms) {
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 4; ++j) rows[i][j] += weight * terms[i] * terms[j];
+  };
+  double all = 0.0;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (std::fabs(lines[i].height - agreed.height) > 2.0F * kRefinedWindow) continue;
+    const Line& line = lines_[i];
+    const double weight = line.weight, rho = line.rho, slope = line.slope;
+    const double x = line.direction.x, y = line.direction.y, reach = rho / kPointReach;
+    add(weight / (1.0 + reach * reach), {1.0, rho * x, rho * y, line.height + slope * rho});
+    add(weight, {0.0, kSlopeReach * x, kSlopeReach * y, kSlopeReach * slope});
+    all += weight;
+  }
+  if (all < kMinWeight) return;
+  for (std::size_t pivot = 0; pivot < 3; ++pivot)
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (i == pivot) continue;
+      const double factor = rows[i][pivot] / rows[pivot][pivot];
+      for (std::size_t j = 0; j < 4; ++j) rows[i][j] -= factor * rows[pivot][j];
+    }
+  const auto valueOf = [&rows](std::size_t i) { return static_cast<float>(rows[i][3] / rows[i][i]); };
+  plane_.height = valueOf(0);
+  plane_.slope_x = std::clamp(valueOf(1), -max_slope_, max_slope_);
+  plane_.slope_y = std::clamp(valueOf(2), -max_slope_, max_slope_);
 }
 
 }  // namespace lisco::ground

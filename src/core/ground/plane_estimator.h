@@ -43,12 +43,14 @@ class PlaneEstimator {
     float height;  // beneath the sensor
     float slope;
     float weight;
+    float rho;  // where it begins
     Direction direction;
   };
   struct Agreed {
     float height, weight;
   };
-  static Agreed lowestOf(const Line* lines, std::size_t size, float window);
+  static Agreed lowestOf(const Line* lines, std::size_t size, float window, float enough);
+  void refine();
 
   std::array<Line, kMemory> lines_;
   std::size_t count_ = 0;  // ever added
