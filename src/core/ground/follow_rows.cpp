@@ -29,7 +29,7 @@ constexpr float kKnownHeight = 0.06F;  // even among returns of which most are h
 
 // The ground of the same column.
 constexpr float kAtColumn = 0.07F, kAtColumnGrowth = 0.03F, kAtColumnMost = 0.15F;
-constexpr float kLevel = 0.15F, kLevelGrowth = 0.06F, kLevelMost = 0.8F, kSameSlope = 0.15F;
+constexpr float kLevel = 0.15F, kLevelGrowth = 0.1F, kLevelMost = 0.8F, kSameSlope = 0.15F;
 constexpr float kFirst = 0.1F, kFirstGrowth = 0.04F, kFirstLevelGrowth = 0.12F, kFirstMost = 10.0F;
 constexpr float kFirstHighest = 0.2F, kFirstHighestGrowth = 0.3F;
 constexpr float kBend = 0.1F, kBendGrowth = 0.1F, kLineBend = 0.2F, kLineKnown = 0.3F;
