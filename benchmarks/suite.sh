@@ -8,12 +8,12 @@
 #   benchmarks/suite.sh [--runs N] [SECTION...]     --runs: timed runs of each baseline (default 5)
 #
 # Sections: real recordings vehicle worst growth memory threads stages; latency, whose tables and picture are in
-# doc/streaming.md; ground and ground_real, whose tables are in doc/ground.md
+# doc/streaming.md; ground, ground_real and ground_latency, whose tables are in doc/ground.md
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/benchmarks/tools.sh"
 
-all_sections=(real recordings vehicle worst growth memory threads stages latency ground ground_real)
+all_sections=(real recordings vehicle worst growth memory threads stages latency ground ground_real ground_latency)
 runs=5
 sections=()
 while [ $# -gt 0 ]; do
@@ -160,14 +160,14 @@ measure_engine() {
     code_block <"$out/$table.txt" | replace_section "$document" "$table" && cat "$out/$table.txt"
 }
 
+sensors=(--sensor hdl32e=hdl32e --sensor hdl64e=hdl64e --sensor vlp16=vlp16 --sensor vls128=vls128 --sensor os1=os1)
+
 # The captures, and column by column the scans of sensors without a capture.
 measure_latency() {
   local scans=("$data"/scans/{hdl64e_city_0,vls128_street_0,os1_128_outdoor_0,os1_64_sparse_0}.pcd)
   local streams=("$data"/captures/*.pcap "${scans[@]}")
   local heights=("${ground[@]}" --ground-z hdl32e_outdoor=-2.10 --ground-z vlp16_close=-0.57
     --ground-z vlp16_street=-1.99 --ground-z vls128_street=-1.74)
-  local sensors=(--sensor hdl32e=hdl32e --sensor hdl64e=hdl64e --sensor vlp16=vlp16 --sensor vls128=vls128
-    --sensor os1=os1)
   local latency=("$build/benchmarks/stream_latency" --runs "$runs" "${sensors[@]}" "${heights[@]}")
   local streaming=$root/doc/streaming.md
   report "$out/latency.txt" "${latency[@]}" --tolerance 0.1,0.4,1 "${streams[@]}" &&
@@ -189,6 +189,15 @@ measure_ground_real() {
   report "$out/ground_real.txt" "$build/benchmarks/ground_real" "${rotating[@]}" &&
     code_block <"$out/ground_real.txt" | replace_section "$root/doc/ground.md" "ground real" &&
     cat "$out/ground_real.txt"
+}
+
+# A column's time with the ground filter.
+measure_ground_latency() {
+  local scans=("$data"/scans/{hdl32e_outdoor_0,hdl64e_city_0,hdl64e_kitti_0,os1_128_outdoor_0,os1_64_sparse_0}.pcd
+    "$data"/scans/{vlp16_street_0,vls128_street_0}.pcd)
+  report "$out/ground_latency.txt" "$build/benchmarks/ground_latency" --runs 20 "${sensors[@]}" "${scans[@]}" &&
+    code_block <"$out/ground_latency.txt" | replace_section "$root/doc/ground.md" "ground latency" &&
+    cat "$out/ground_latency.txt"
 }
 
 measure_threads() { measure_engine threads; }
