@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # run.sh BODY RUNS [SEED]: runs that many inputs (default seed: 1) on engine, stream, ground, readers, recordings,
-# packets, hesai, ouster or http, beginning with those of test/fuzz/corpus. Prints their number; stops at the first that fails
-# and prints its file.
+# packets, hesai, ouster or http, beginning with those of test/fuzz/corpus. Prints their number; stops at the first that
+# fails and prints its file.
 # LISCO_FUZZER_SANITIZERS=address,undefined checks memory as well, and takes several times as long. Needs clang.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
