@@ -380,6 +380,22 @@ TEST_F(LiscoCompare, ScoresTrueObjects) {
   expectSaid("true objects: 3; 3 whole, 0 split, 0 merged with others, 0 missed\n", unorganized.out);
 }
 
+TEST_F(LiscoCompare, LeavesOutReturnsByTheirLabel) {
+  write("walls.pcd", threeWalls(true));
+  const Outcome outcome = run("walls.pcd -t 0.3 --ground-z -1.5 --check-only --ignore-label 5");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  expectSaid("true objects: 2; 2 whole, 0 split, 0 merged with others, 0 missed\n", outcome.out);
+  writeScan();
+  expectRefusal("walls.pcd -t 0.3 --ignore-label -1", {"--ignore-label must be a whole number"});
+}
+
+TEST_F(LiscoCompare, ComparesFlannsTree) {
+  writeScan();
+  const Outcome outcome = run("walls.pcd -t 0.3 --check-only --baselines pcl,flann,lisco --must-agree flann,lisco");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  expectSaid("FLANN's tree, directly", outcome.out);
+}
+
 TEST_F(LiscoCompare, ReportsAMismatch) {
   const std::vector<LabelledPoint> points = staggeredRows();
   write("staggered.pcd", pcdOf(points, 2));
