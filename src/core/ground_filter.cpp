@@ -172,7 +172,7 @@ void GroundFilter::State::decide(std::size_t first, std::size_t count, std::uint
 
 /// Enters what the latest block has shown into the map, for the next one.
 void GroundFilter::State::tellMap() {
-  if (!is_told_) follower_.tell(block_, order_, plane_estimator_.plane());
+  if (!is_told_) follower_.tell(block_, order_, plane_estimator_.plane(), map_);
   is_told_ = true;
 }
 

@@ -39,6 +39,7 @@ void Follower::begin(std::size_t lasers, float max_slope) {
     followed_.resize(2 * lasers);
     passed_.resize(lasers);
     sectors_.resize(lasers);
+    sector_numbers_.resize(lasers);
     found_.resize(lasers);
     last_ground_.resize(lasers);
     reports_.reserve(lasers);
@@ -63,7 +64,8 @@ void Follower::follow(const Block& block, const RowOrder& order, const Plane& pl
   }
 }
 
-void Follower::tell(const Block& block, const RowOrder& order, const Plane& plane) {
+void Follower::tell(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map) {
+  for (std::size_t i = 0; i < order.rows().size(); ++i) sectors_[i] = map.sectors() + sector_numbers_[i];
   report(block, order, plane);
   enterReports(reports_, max_slope_, order.turnsLeft());
 }
@@ -77,6 +79,7 @@ void Follower::prepare(const RowOrder& order, const Plane& plane, GroundMap& map
       setStart(plane, plane.slopeTowards(order.directionOf(rows[i].row)), followed_[starts_[i].followed]);
     }
     sectors_[i] = &map.sectorAt(order.azimuthOf(rows[i].row), number, plane);
+    sector_numbers_[i] = static_cast<std::size_t>(sectors_[i] - map.sectors());
   }
 }
 

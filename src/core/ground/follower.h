@@ -28,7 +28,7 @@ class Follower {
   void follow(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map, std::uint32_t number,
               std::uint8_t* ground, std::size_t columns, std::size_t stride);
   /// Tells the map of the block just followed.
-  void tell(const Block& block, const RowOrder& order, const Plane& plane);
+  void tell(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map);
 
  private:
   void prepare(const RowOrder& order, const Plane& plane, GroundMap& map, std::uint32_t number);
@@ -40,6 +40,7 @@ class Follower {
 
   // By position in the order.
   std::vector<GroundMap::Sector*> sectors_;
+  std::vector<std::size_t> sector_numbers_;  // a copy has a map of its own
   std::vector<Passed> starts_;      // of rows with none below: what is known before
   std::vector<Followed> followed_;  // then those of the starts
   std::vector<Passed> passed_;

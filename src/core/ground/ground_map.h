@@ -54,6 +54,9 @@ class GroundMap {
   /// known beside it.
   Sector& sectorAt(float azimuth, std::uint32_t block, const Plane& plane);
 
+  /// All kSectors sectors.
+  Sector* sectors() { return sectors_.data(); }
+
  private:
   void renew(std::size_t number, std::uint32_t block, const Plane& plane);
 
