@@ -219,6 +219,46 @@ TEST(GroundFilter, GoesOnAfterARotationWithoutAnotherBegin) {
   EXPECT_EQ(missed, 0U);
 }
 
+// Whatever was decided last, and is still to be entered into the map, is each copy's own.
+TEST(GroundFilter, CopiesGoOnIndependently) {
+  const std::size_t lasers = 32, columns = 600;
+  for (std::size_t common = 300; common < 316; ++common) {
+    // Both are the same until one goes uphill.
+    const auto scanRising = [&](double rise) {
+      return scanOf(lasers, columns, [&](double azimuth, double slope) {
+        const bool is_common = azimuth < 2.0 * M_PI * static_cast<double>(common) / static_cast<double>(columns) - 1e-9;
+        return meetsPlane(azimuth, slope, 1.8, is_common ? 0.0 : rise);
+      });
+    };
+    const Scan scans[2] = {scanRising(0.0), scanRising(-0.2)};
+    std::vector<std::uint8_t> ground[2];
+    for (auto& decisions : ground) decisions.assign(lasers * columns, 7);
+    const auto visitorOf = [&](std::vector<std::uint8_t>& decisions) {
+      return [&decisions, columns](std::size_t column, const std::uint8_t* decided, std::size_t count) {
+        for (std::size_t laser = 0; laser < count; ++laser) decisions[laser * columns + column] = decided[laser];
+      };
+    };
+    const auto columnOf = [&](const Scan& scan, std::size_t column) {
+      std::vector<lisco::Return> cells;
+      for (std::size_t laser = 0; laser < lasers; ++laser) cells.push_back(scan.cells[laser * columns + column]);
+      return cells;
+    };
+    lisco::GroundFilter filters[2];
+    filters[0].begin({}, lasers);
+    for (std::size_t column = 0; column < common; ++column)
+      filters[0].addColumn(columnOf(scans[0], column).data(), lasers, visitorOf(ground[0]));
+    ground[1] = ground[0];
+    filters[1] = filters[0];
+    for (std::size_t column = common; column < columns; ++column)
+      for (const std::size_t i : {0U, 1U})
+        filters[i].addColumn(columnOf(scans[i], column).data(), lasers, visitorOf(ground[i]));
+    for (const std::size_t i : {0U, 1U}) {
+      filters[i].finish(visitorOf(ground[i]));
+      EXPECT_EQ(ground[i], filterByColumns(scans[i])) << "copied after " << common << " columns, copy " << i;
+    }
+  }
+}
+
 TEST(GroundFilter, FindsNothingWithoutReturns) {
   Scan scan{16, 100, std::vector<lisco::Return>(1600, lisco::kNoReturn)};
   for (const std::uint8_t decision : filterAll(scan)) ASSERT_EQ(decision, 0);
