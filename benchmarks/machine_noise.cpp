@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// How much other work disturbs this machine: times a fixed loop on all cores, again and again.
+// How much other work disturbs this machine: times a fixed loop on each processor, again and again.
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include <omp.h>
+#include <sched.h>
 
 #include "io/options.h"
 
@@ -28,7 +29,8 @@ struct Options {
 bool parse(int argc, char** argv, Options& options) {
   po::options_description shown(
       "Usage: machine_noise [options]\n\n"
-      "Times a fixed loop of some milliseconds on each core, once a second, and prints by how much the loops exceed\n"
+      "Times a fixed loop of some milliseconds on each processor, once a second, and prints by how much the loops "
+      "exceed\n"
       "the fastest one: their median and their 90th percentile.\n\n"
       "Exit code: 0 if the percentile is at most --limit, 1 if it is above, 2 on bad usage.\n\n"
       "Options");
@@ -55,20 +57,36 @@ double timeLoop() {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// The processors that the program may use.
+std::vector<std::size_t> allowedProcessors() {
+  cpu_set_t allowed;
+  if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) throw std::runtime_error("the processors are unknown");
+  std::vector<std::size_t> processors;
+  for (std::size_t i = 0; i < CPU_SETSIZE; ++i)
+    if (CPU_ISSET(i, &allowed)) processors.push_back(i);
+  return processors;
+}
+
+/// Continues on a processor.
+void moveTo(std::size_t processor) {
+  cpu_set_t only;
+  CPU_ZERO(&only);
+  CPU_SET(processor, &only);
+  if (sched_setaffinity(0, sizeof only, &only) != 0) throw std::runtime_error("a processor cannot be chosen");
+}
+
 int run(const Options& options) {
-  std::vector<double> loops(static_cast<std::size_t>(omp_get_num_procs()) * options.seconds);
-  std::size_t measured = 0;
+  const std::vector<std::size_t> processors = allowedProcessors();
+  std::vector<double> loops;
   for (unsigned second = 0; second < options.seconds; ++second) {
     const auto next = std::chrono::steady_clock::now() + std::chrono::seconds(1);
-#pragma omp parallel num_threads(omp_get_num_procs())
-    {
-      const double ms = timeLoop();
-#pragma omp critical
-      if (measured < loops.size()) loops[measured++] = ms;
+    // One after the other: two processors may share a core.
+    for (const std::size_t processor : processors) {
+      moveTo(processor);
+      loops.push_back(timeLoop());
     }
     std::this_thread::sleep_until(next);
   }
-  loops.resize(measured);
   std::sort(loops.begin(), loops.end());
   const auto excess = [&](std::size_t percent) {
     return 100 * (loops[(loops.size() - 1) * percent / 100] / loops.front() - 1);
