@@ -15,7 +15,7 @@ namespace lisco_benchmarks {
 /// The time between two columns where the sensor fires, or turns, as fast as it can, microseconds.
 inline double columnPeriodOf(const std::string& model) {
   if (model == "os1") return 1e6 / (20 * 1024);
-  if (model == "hdl64e") return 48.0;  // its calibration file is of no use for that
+  if (model == "hdl64e") return 48.0;  // makeVelodyneModel () needs a calibration for it
   return lisco_apps::makeVelodyneModel(model).firing_period_us;
 }
 

@@ -31,19 +31,20 @@ class Flood {
     queue_.reserve(count);
     squared_radius_ = squared_radius;
   }
-  bool isSeen(std::size_t point) const { return component_of_[point] != kUnseen; }
   void see(std::size_t point) {
-    if (isSeen(point)) return;
+    if (component_of_[point] != kUnseen) return;
     component_of_[point] = component_;
     queue_.push_back(static_cast<std::uint32_t>(point));
   }
-  /// Calls search(point) for a point and all that are connected to it.
+  /// Calls search (point) once for each point, component by component.
   template <typename Search>
-  void spread(std::size_t seed, Search&& search) {
-    component_ = static_cast<std::uint32_t>(seed);
-    std::size_t next = queue_.size();
-    see(seed);
-    while (next < queue_.size()) search(queue_[next++]);
+  void spreadFromAll(Search&& search) {
+    std::size_t next = 0;
+    for (std::size_t seed = 0; seed < component_of_.size(); ++seed) {
+      component_ = static_cast<std::uint32_t>(seed);
+      see(seed);
+      while (next < queue_.size()) search(queue_[next++]);
+    }
   }
   float squaredRadius() const { return squared_radius_; }
   const std::vector<std::uint32_t>& components() const { return component_of_; }
@@ -73,10 +74,7 @@ void searchByFlann(Coordinates& coordinates, Flood& flood) {
   tree.buildIndex();
   FlannResults results(flood);
   const flann::SearchParams parameters(-1, 0, false);
-  for (std::size_t seed = 0; seed < count; ++seed)
-    if (!flood.isSeen(seed))
-      flood.spread(seed,
-                   [&](std::uint32_t point) { tree.findNeighbors(results, &coordinates[3UL * point], parameters); });
+  flood.spreadFromAll([&](std::uint32_t point) { tree.findNeighbors(results, &coordinates[3UL * point], parameters); });
 }
 
 #ifdef LISCO_HAS_NANOFLANN
@@ -112,10 +110,7 @@ void searchByNanoflann(Coordinates& coordinates, Flood& flood) {
   tree.buildIndex();
   NanoflannResults results{flood};
   const nanoflann::SearchParams parameters(0, 0, false);
-  for (std::size_t seed = 0; seed < source.kdtree_get_point_count(); ++seed)
-    if (!flood.isSeen(seed))
-      flood.spread(seed,
-                   [&](std::uint32_t point) { tree.findNeighbors(results, &coordinates[3UL * point], parameters); });
+  flood.spreadFromAll([&](std::uint32_t point) { tree.findNeighbors(results, &coordinates[3UL * point], parameters); });
 }
 #endif
 

@@ -121,7 +121,7 @@ SensorHints SensorEstimator::estimate(const std::array<float, 3>& declared_origi
     hints.steps_per_turn = static_cast<int>(std::lround(2.0 * kPi / std::fabs(step)));
   hints.clockwise = step < 0;
   constexpr double kMostPairs = 0.75;  // part of the pairs that jitter and drift less
-  if (!deviations.empty() && hints.steps_per_turn > 0)
+  if (hints.steps_per_turn > 0)
     hints.drift = static_cast<float>(quantile(deviations.begin(), deviations.end(), kMostPairs) / std::fabs(step)) *
                   static_cast<float>(kDriftColumns);
   Sample<double> jitters;
