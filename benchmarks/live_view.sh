@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Plays a capture at the sensor's speed by lisco_stream, in turns without --http and with viewers, and compares the
-# latencies: medians of the rounds, in ms, and the ratio of the two. One viewer more never reads.
+# latencies: medians of the rounds, in ms, and the median of the rounds' ratios. One viewer more never reads.
 #
 #   benchmarks/live_view.sh CAPTURE SENSOR [--viewers N] [--rounds N] [--tolerance M] [--publish]
 #
-# --publish rewrites the table in doc/view.md.
+# --publish rewrites the sensor's table in doc/view.md.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/benchmarks/tools.sh"
@@ -63,9 +63,11 @@ for ((round = 1; round <= rounds; ++round)); do
   wait "${watching[@]}" 2>/dev/null || true
 done
 
-# numbers KIND ROW: p50, p99 and max of a row of the closing table in all rounds
+# numbers KIND ROW: p50, p99 and max of a row of the closing table, a line for each round
 numbers() {
-  sed -n "s/^  $2 *p50 \([0-9.]*\), p99 \([0-9.]*\), max \([0-9.]*\).*/\1 \2 \3/p" "$out/$1".*
+  for ((round = 1; round <= rounds; ++round)); do
+    sed -n "s/^  $2 *p50 \([0-9.]*\), p99 \([0-9.]*\), max \([0-9.]*\).*/\1 \2 \3/p" "$out/$1.$round"
+  done
 }
 median() { sort -g | awk '{ value[NR] = $1 } END { print (value[int((NR + 1) / 2)] + value[int(NR / 2) + 1]) / 2 }'; }
 rotations() { cat "$out/$1".* | sed -n 's/, after .*//; /^rotation /p' | sort | uniq | md5sum; }
@@ -75,15 +77,17 @@ rotations() { cat "$out/$1".* | sed -n 's/, after .*//; /^rotation /p' | sort | 
   [ "$(rotations without)" = "$(rotations with)" ] && echo "the rotations and their clusters are the same"
   printf '%-10s %-5s %10s %10s %8s\n' latency '' without with ratio
   for row in column rotation; do
+    paste -d ' ' <(numbers without $row) <(numbers with $row) >"$out/both"
     column=0
     for what in p50 p99 max; do
       column=$((column + 1))
-      without=$(numbers without $row | awk -v at=$column '{ print $at }' | median)
-      with=$(numbers with $row | awk -v at=$column '{ print $at }' | median)
-      awk -v row=$row -v what=$what -v a="$without" -v b="$with" \
-        'BEGIN { printf "%-10s %-5s %10.4f %10.4f %8.2f\n", row, what, a, b, b / a }'
+      values=()
+      for value in "\$$column" "\$($column + 3)" "\$($column + 3) / \$$column"; do
+        values+=("$(awk "{ print $value }" "$out/both" | median)")
+      done
+      printf '%-10s %-5s %10.5f %10.5f %8.2f\n' "$row" "$what" "${values[@]}"
     done
   done
 } >"$out/table"
 cat "$out/table"
-[ -z "$publishes" ] || code_block <"$out/table" | replace_section "$root/doc/view.md" "live view"
+[ -z "$publishes" ] || code_block <"$out/table" | replace_section "$root/doc/view.md" "live view $sensor"

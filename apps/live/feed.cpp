@@ -8,17 +8,25 @@ namespace lisco_apps {
 
 void LiveFeed::column(const PreparedColumn& column) {
   if (is_copying_) {
-    if (batch_.cells.size() + column.cells.size() > kMaxCells) {
-      batch_.column_sizes.clear();
-      batch_.cells.clear();
-      batch_.uses.clear();
-      batch_.first_cell = next_cell_;
-    }
-    batch_.column_sizes.push_back(static_cast<std::uint32_t>(column.cells.size()));
-    batch_.cells.insert(batch_.cells.end(), column.cells.begin(), column.cells.end());
-    batch_.uses.insert(batch_.uses.end(), column.uses.begin(), column.uses.end());
+    if (latest_.cells.size() + column.cells.size() > kMaxLatest) flushColumns();
+    latest_.add(column);
   }
   next_cell_ += column.cells.size();
+}
+
+void LiveFeed::flushColumns() {
+  if (batch_.columns.cells.size() + latest_.cells.size() > kMaxCells) {
+    batch_.columns.clear();
+    batch_.first_cell = next_cell_ - latest_.cells.size();
+  }
+  batch_.columns.add(latest_);
+  latest_.clear();
+}
+
+/// Drops what has been copied.
+void LiveFeed::clear() {
+  latest_.clear();
+  batch_.clear(next_cell_);
 }
 
 void LiveFeed::rotation(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) {
@@ -70,12 +78,13 @@ void LiveFeed::fillTotals(const Decoder& decoder, const Stream& stream) {
 
 void LiveFeed::handOver(bool has_viewers, const Decoder& decoder, const Stream& stream) {
   if (!has_viewers) {
-    if (is_copying_) batch_.clear(next_cell_);
+    if (is_copying_) clear();
     is_copying_ = false;
     return;
   }
-  if (!is_copying_) batch_.clear(next_cell_);
+  if (!is_copying_) clear();
   is_copying_ = true;
+  flushColumns();
   const auto now = Clock::now();
   if (now - last_attempt_ < kPause) return;
   last_attempt_ = now;
@@ -85,6 +94,7 @@ void LiveFeed::handOver(bool has_viewers, const Decoder& decoder, const Stream& 
 }
 
 LiveBatch& LiveFeed::rest(const Decoder& decoder, const Stream& stream) {
+  flushColumns();
   fillTotals(decoder, stream);
   batch_.time = Clock::now();
   return batch_;

@@ -20,12 +20,34 @@ struct LiveDelivery {
   std::size_t cells_end = 0;  ///< of its cells in LiveBatch::delivered_cells; they begin at the end of those before
 };
 
+/// Columns one after the other.
+struct LiveColumns {
+  std::vector<std::uint32_t> sizes;  ///< cells of each column
+  std::vector<Cell> cells;
+  std::vector<CellUse> uses;  ///< of the cells
+
+  void add(const PreparedColumn& column) {
+    sizes.push_back(static_cast<std::uint32_t>(column.cells.size()));
+    cells.insert(cells.end(), column.cells.begin(), column.cells.end());
+    uses.insert(uses.end(), column.uses.begin(), column.uses.end());
+  }
+  void add(const LiveColumns& columns) {
+    sizes.insert(sizes.end(), columns.sizes.begin(), columns.sizes.end());
+    cells.insert(cells.end(), columns.cells.begin(), columns.cells.end());
+    uses.insert(uses.end(), columns.uses.begin(), columns.uses.end());
+  }
+  /// Keeps the memory.
+  void clear() {
+    sizes.clear();
+    cells.clear();
+    uses.clear();
+  }
+};
+
 /// What has happened since the last hand-over. Cells are numbered from the first one of the stream.
 struct LiveBatch {
-  std::uint64_t first_cell = 0;             ///< number of the first of these cells
-  std::vector<std::uint32_t> column_sizes;  ///< cells of each column
-  std::vector<Cell> cells;
-  std::vector<CellUse> uses;
+  std::uint64_t first_cell = 0;  ///< number of the first of these cells
+  LiveColumns columns;
 
   /// The last rotation or window: labels of the cells before result_end.
   std::uint64_t result_end = 0;  ///< 0: none
@@ -48,9 +70,7 @@ struct LiveBatch {
   /// Keeps the memory.
   void clear(std::uint64_t next_cell) {
     first_cell = next_cell;
-    column_sizes.clear();
-    cells.clear();
-    uses.clear();
+    columns.clear();
     result_end = turn_end = 0;
     deliveries.clear();
     delivered_cells.clear();

@@ -47,9 +47,9 @@ void LiveScene::take(const LiveBatch& batch) {
     if (batch.turn_end > 0) endTurn(batch.turn_cells);
     has_ended = true;
   };
-  for (const std::uint32_t size : batch.column_sizes) {
+  for (const std::uint32_t size : batch.columns.sizes) {
     if (!has_ended && next() >= turn_end) end();
-    addColumn(&batch.cells[at], &batch.uses[at], size);
+    addColumn(&batch.columns.cells[at], &batch.columns.uses[at], size);
     at += size;
   }
   if (!has_ended) end();

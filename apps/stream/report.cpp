@@ -189,7 +189,7 @@ void Report::printStatistics(const PacketSource& source, const Decoder& decoder,
   shown_.clear();
   status_.clear();
   const auto rowOf = [](const char* name, const Latency& latency) {
-    return formatted("  %-9s p50 %.4f, p99 %.4f, max %.4f (%llu times)\n", name, latency.percentileMs(0.5),
+    return formatted("  %-9s p50 %.5f, p99 %.5f, max %.5f (%llu times)\n", name, latency.percentileMs(0.5),
                      latency.percentileMs(0.99), latency.maxMs(), number(latency.count()));
   };
   const Decoder::Counts& counts = decoder.counts();

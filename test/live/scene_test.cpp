@@ -80,7 +80,7 @@ class LiveSceneTest : public testing::Test {
   }
   /// \param is_slow the server's thread does not take the batch
   void handOver(bool is_slow = false) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(6));
+    std::this_thread::sleep_for(std::chrono::milliseconds(17));
     feed_.handOver(true, decoder_, *stream_);
     LiveBatch batch;
     if (!is_slow && hand_over_.take(batch)) scene_->take(batch);
@@ -216,7 +216,7 @@ TEST_F(LiveSceneTest, WithoutViewersNothingIsCopied) {
   turn(3 * kColumns);
   LiveBatch batch;
   EXPECT_FALSE(hand_over_.take(batch));
-  EXPECT_TRUE(feed_.rest(decoder_, *stream_).cells.empty());
+  EXPECT_TRUE(feed_.rest(decoder_, *stream_).columns.cells.empty());
   // A viewer comes: the rest of the turn is shown, by the clusters of the whole.
   feed_.handOver(true, decoder_, *stream_);
   if (hand_over_.take(batch)) scene_->take(batch);  // where the turns before took longer than the feed's pause
