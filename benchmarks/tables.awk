@@ -125,9 +125,9 @@ function times(   i, s, t) {
            short(ratio(mean, s, t, "pcl", "paper")), short(ratio(mean, s, t, "pcl", "grid")),
            short(ratio(mean, s, t, "pcl", "lisco"))
   }
-  printf "\nGeometric means of the ratios to PCL: octree %s, paper's Lisco %s, grid %s, Lisco %s;",
+  printf "\nGeometric means of the ratios to PCL: octree %s, paper's Lisco %s, grid %s, Lisco %s;\n",
          overall("pcl-octree"), overall("paper"), overall("grid"), overall("lisco")
-  printf " lowest: %s, %s, %s, %s.\n",
+  printf "lowest: %s, %s, %s, %s.\n",
          lowest_of("pcl-octree"), lowest_of("paper"), lowest_of("grid"), lowest_of("lisco")
 }
 function overall(baseline,   i, sum) {
