@@ -90,4 +90,7 @@ rotations() { cat "$out/$1".* | sed -n 's/, after .*//; /^rotation /p' | sort | 
   done
 } >"$out/table"
 cat "$out/table"
-[ -z "$publishes" ] || code_block <"$out/table" | replace_section "$root/doc/view.md" "live view $sensor"
+[ -z "$publishes" ] || {
+  code_block <"$out/table" | replace_section "$root/doc/view.md" "live view $sensor"
+  "$root/test/documents/figures.py" --write "$root" doc/view.md
+}
