@@ -61,6 +61,18 @@ TEST(GroundScenes, FindsARoadAndThePavementsBehindItsKerbs) {
   EXPECT_GT(share(scan, ground, isPavement), 0.97);
 }
 
+TEST(GroundScenes, FindsMostOfTheGutterBelowAKerb) {
+  // The road falls by 0.1 m to the gutter, from which the kerb rises as much; lasers 0.4 degrees apart.
+  const auto road = [](double y) { return -0.1 * std::clamp((std::fabs(y) - 7.0) / 0.8, 0.0, 1.0) - kHeight; };
+  const auto surface = [&](double, double y) { return std::fabs(y) < 8.0 ? road(y) : -kHeight; };
+  const Scan scan =
+      scanOf(88, kColumns, [&](double azimuth, double slope) { return meetsSurface(azimuth, slope, surface); });
+  const auto isGutter = [&](const lisco::Return& cell) {
+    return std::fabs(cell.y) > 7.8F && static_cast<double>(cell.z) < -kHeight - 0.09 && distanceOf(cell) < 12.0;
+  };
+  EXPECT_GT(share(scan, filterAll(scan), isGutter), 0.78);
+}
+
 TEST(GroundScenes, FindsRampsUpAndDown) {
   for (const double degrees : {-15.0, -7.0, 7.0, 11.0, 15.0}) {
     const double rise = std::tan(degrees * M_PI / 180.0);

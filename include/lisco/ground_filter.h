@@ -84,7 +84,7 @@ class LISCO_EXPORT GroundFilter {
   GroundFilter& operator=(const GroundFilter& other);
 
   /// Further columns that may have to arrive before a column's decisions are final.
-  static constexpr std::size_t kMaxDelay = 7;
+  static constexpr std::size_t kMaxDelay = 8;
 
   /// Starts anew and forgets all columns.
   /// \param lasers largest number of cells of a column

@@ -44,6 +44,8 @@ class GroundFilter::State {
   void addAll(std::size_t columns, const CellSource& cells, std::uint8_t* ground);
 
  private:
+  static constexpr std::size_t kVisitsTwice = Block::kColumns / 2;
+
   void decideWaiting();
   void visitNext(const GroundVisitor& visit);
   void decide(std::size_t first, std::size_t count, std::uint8_t* ground, std::size_t stride);
@@ -103,11 +105,13 @@ void GroundFilter::State::add(const Return* cells, std::size_t lasers, const Gro
     received_.z[i] = cell.z;
   }
   cell_counts_[waiting_++] = lasers;
-  if (waiting_ == Block::kColumns)
+  if (waiting_ == Block::kColumns) {
     decideWaiting();
-  else
-    tellMap();
-  if (ready_ < ready_end_) visitNext(visit);
+    return;
+  }
+  tellMap();
+  for (std::size_t visits = waiting_ == kVisitsTwice ? 2 : 1; visits > 0 && ready_ < ready_end_; --visits)
+    visitNext(visit);
 }
 
 void GroundFilter::State::finish(const GroundVisitor& visit) {
@@ -119,8 +123,8 @@ void GroundFilter::State::finish(const GroundVisitor& visit) {
   while (ready_ < ready_end_) visitNext(visit);
 }
 
-/// The columns decided together are visited one by one as further ones come, so that what is done with them is spread
-/// evenly.
+/// The columns decided together are visited as further ones come, so that the work is spread evenly: the last column of
+/// a block decides, the others visit one column each, and one of them two.
 void GroundFilter::State::decideWaiting() {
   ready_counts_ = cell_counts_;
   ready_ = 0;

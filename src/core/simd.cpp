@@ -32,8 +32,13 @@ const std::vector<std::int64_t>& targets() {
   return all;
 }
 
+/// Uses no better target than this one; 0: the best. Highway numbers better ones lower. Those below it serve files that
+/// are not compiled for it.
 void use(std::int64_t target) {
-  hwy::SetSupportedTargetsForTest(target);
+  std::int64_t allowed = 0;
+  for (const std::int64_t other : targets())
+    if (target != 0 && other >= target) allowed |= other;
+  hwy::SetSupportedTargetsForTest(allowed);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 

@@ -40,6 +40,8 @@ constexpr LaneInts kLaneInts{};
 
 // What is above a return.
 constexpr float kWallWidth = 0.05F, kWallGrowth = 0.003F;  // by which returns of an upright surface differ in distance
+constexpr float kKerb = 0.15F;                             // highest one
+constexpr float kKerbWidth = 0.1F, kBeyondKerb = 1.0F;     // least and most way up to the ground beyond a kerb
 constexpr float kMostAbove = 3.0F;                         // what is higher hangs over
 constexpr float kSteep = 0.6F;                             // slope of a surface that is no ground
 constexpr float kSurfaceStep = 0.2F, kSurfaceGrowth = 0.04F;  // returns of one surface are nearer to each other
@@ -110,7 +112,12 @@ HWY_INLINE Above lookUp(const FollowedRow& row, std::size_t k, Floats rho, Float
                    hn::And(hn::Gt(step, set(-0.2F)), hn::Gt(rise, hn::Mul(set(kSteep), step))));
   };
   Above above;
-  above.wall = hn::Or(isWall(is_up, up_step, up_rise), isWall(is_above, above_step, above_rise));
+  // Beyond a kerb, the ground goes on a little higher.
+  const auto beyond_kerb =
+      hn::And(hn::And(is_above, hn::Lt(above_rise, set(kKerb))),
+              hn::And(hn::Gt(above_step, hn::Add(wall_width, set(kKerbWidth))), hn::Lt(above_step, set(kBeyondKerb))));
+  above.wall =
+      hn::Or(hn::AndNot(beyond_kerb, isWall(is_up, up_step, up_rise)), isWall(is_above, above_step, above_rise));
   above.steep = hn::Or(isSteep(is_up, up_step, up_rise), isSteep(is_above, above_step, above_rise));
 
   const auto up_slope = hn::Div(up_rise, hn::Max(up_step, set(0.05F)));

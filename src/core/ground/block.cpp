@@ -5,6 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/pi.h"
+
+#include "core/ground/targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/ground/block.cpp"
 #include <hwy/foreach_target.h>  // must come before highway.h
@@ -18,7 +22,22 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// A laser's cells of a block, or a part of them.
 using RowFloats = hn::CappedTag<float, ground::Block::kColumns>;
+using RowVector = hn::Vec<RowFloats>;
 constexpr RowFloats kRow{};
+
+/// Radians, 0 to 2 pi, within 0.004.
+HWY_INLINE RowVector azimuthOf(RowVector x, RowVector y) {
+  constexpr float kOctant = static_cast<float>(kPi / 4.0);
+  const auto set = [](float value) HWY_ATTR { return hn::Set(kRow, value); };
+  const auto zero = hn::Zero(kRow);
+  const auto east = hn::Abs(x), north = hn::Abs(y);
+  const auto ratio = hn::Div(hn::Min(east, north), hn::Add(hn::Max(east, north), set(1e-30F)));
+  auto octants = hn::Mul(ratio, hn::Sub(set(1.2732F), hn::Mul(set(0.2732F), ratio)));
+  octants = hn::IfThenElse(hn::Gt(north, east), hn::Sub(set(2.0F), octants), octants);
+  octants = hn::IfThenElse(hn::Lt(x, zero), hn::Sub(set(4.0F), octants), octants);
+  octants = hn::IfThenElse(hn::Lt(y, zero), hn::Sub(set(8.0F), octants), octants);
+  return hn::Mul(octants, set(kOctant));
+}
 
 void measureRows(ground::Block& block, const ground::Columns& columns, std::size_t first, const SensorHints& sensor) {
   constexpr float kMaxCoordinate = 1e6F;  // metres; beyond, coordinates are no measurements
@@ -56,6 +75,7 @@ void measureRows(ground::Block& block, const ground::Columns& columns, std::size
       hn::StoreU(height, kRow, block.height.data() + to);
       hn::StoreU(x, kRow, block.x.data() + to);
       hn::StoreU(y, kRow, block.y.data() + to);
+      hn::StoreU(azimuthOf(x, y), kRow, block.azimuth.data() + to);
     }
     block.returns[row] = static_cast<std::uint8_t>(returns);
   }
@@ -85,7 +105,7 @@ void Columns::clear(std::size_t column, std::size_t lasers) {
 void Block::resize(std::size_t lasers) {
   size = lasers * kColumns;
   returns.resize(std::max(returns.size(), lasers));
-  for (auto* values : {&x, &y, &rho, &height}) {
+  for (auto* values : {&x, &y, &rho, &height, &azimuth}) {
     values->resize(std::max(values->size(), size + kColumns));
     std::fill_n(values->begin() + static_cast<std::ptrdiff_t>(size), kColumns, 0.0F);
   }

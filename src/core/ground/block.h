@@ -30,6 +30,7 @@ struct Block {
   std::vector<float> x, y;            ///< from the sensor, metres
   std::vector<float> rho;             ///< horizontal distance from the sensor, metres; 0: no return
   std::vector<float> height;          ///< above the sensor's horizon, metres
+  std::vector<float> azimuth;         ///< radians, 0 to 2 pi, within 0.004
   std::vector<std::uint8_t> returns;  ///< of each laser, the columns with rho > kMinRho, as bits
   std::size_t size = 0;               ///< number of elements, without those of noRow ()
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/ground/targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/ground/follow_rows.cpp"
 #include <hwy/foreach_target.h>  // must come before highway.h

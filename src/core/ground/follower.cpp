@@ -19,9 +19,13 @@ std::size_t lastOf(std::uint8_t bits) {
 
 /// A byte for each of eight bits, 0 or 1, the lowest one first.
 std::array<std::uint8_t, 8> bytesOf(std::uint8_t bits) {
-  std::array<std::uint8_t, 8> bytes;
-  for (std::size_t k = 0; k < 8; ++k) bytes[k] = bits >> k & 1;
-  return bytes;
+  static const auto table = [] {
+    std::array<std::array<std::uint8_t, 8>, 256> all;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (std::size_t k = 0; k < 8; ++k) all[i][k] = i >> k & 1;
+    return all;
+  }();
+  return table[bits];
 }
 
 /// Ground as far as it is known before the first row of a chain.
@@ -96,21 +100,29 @@ void Follower::report(const Block& block, const RowOrder& order, const Plane& pl
     const std::size_t k = lastOf(returns), cell = static_cast<std::size_t>(row.row) * Block::kColumns + k;
     const float rho = block.rho[cell], reach = before(row, i).reach[k];
     if (rho <= reach && reached == 0) continue;
-    Report report{sectors_[i], reach, rho, block.height[cell], reached != 0, true, {}};
+    // Filled in its place: a copy of fields just written waits for them.
+    reports_.emplace_back();
+    Report& report = reports_.back();
+    report.sector = sectors_[i];
+    report.seen_from = reach;
+    report.seen_to = rho;
+    report.seen_height = block.height[cell];
+    report.has_ground = reached != 0;
+    report.is_last = true;
     if (reached != 0) {
       const std::size_t last = lastOf(reached);
       const Followed& now = followed_[passed_[i].followed];
       const Followed& inwards = followed_[before(row, i).followed];
-      report.stretch = {is_first ? 0.0F : inwards.rho[last],
-                        is_first ? plane.height : inwards.height[last],
-                        now.rho[last],
-                        now.height[last],
-                        now.slope[last],
-                        (found_[i].confirmed >> last & 1) == 0};
+      Stretch& stretch = report.stretch;
+      stretch.from_rho = is_first ? 0.0F : inwards.rho[last];
+      stretch.from_height = is_first ? plane.height : inwards.height[last];
+      stretch.rho = now.rho[last];
+      stretch.height = now.height[last];
+      stretch.slope = now.slope[last];
+      stretch.is_doubted = (found_[i].confirmed >> last & 1) == 0;
       if (last_ground_[i] != RowOrder::kNone) reports_[static_cast<std::size_t>(last_ground_[i])].is_last = false;
-      last_ground_[i] = static_cast<std::int32_t>(reports_.size());
+      last_ground_[i] = static_cast<std::int32_t>(reports_.size()) - 1;
     }
-    reports_.push_back(report);
   }
 }
 

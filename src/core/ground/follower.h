@@ -41,8 +41,8 @@ class Follower {
   // By position in the order.
   std::vector<GroundMap::Sector*> sectors_;
   std::vector<std::size_t> sector_numbers_;  // a copy has a map of its own
-  std::vector<Passed> starts_;      // of rows with none below: what is known before
-  std::vector<Followed> followed_;  // then those of the starts
+  std::vector<Passed> starts_;               // of rows with none below: what is known before
+  std::vector<Followed> followed_;           // then those of the starts
   std::vector<Passed> passed_;
   std::vector<Found> found_;
   std::vector<std::int32_t> last_ground_;  // of the reports: latest one with ground, or RowOrder::kNone

@@ -9,9 +9,6 @@
 namespace lisco::ground {
 namespace {
 
-constexpr float kSectorWidth = 6.2831853F / static_cast<float>(kSectors);  // radians
-constexpr float kSectorsPerRadian = 1.0F / kSectorWidth;
-constexpr std::uint32_t kFresh = 40;   // blocks after which a sector shows the rotation before
 constexpr std::uint32_t kRecent = 16;  // blocks, of a sector beside
 constexpr std::size_t kReach = 12;     // sectors
 constexpr float kAcross = 0.06F;       // metres per metre, by which the ground may rise unseen across the sectors
@@ -35,13 +32,6 @@ const GroundMap::Values& GroundMap::middles() {
 void GroundMap::begin() {
   sectors_.resize(kSectors);
   latest_.fill(0);
-}
-
-GroundMap::Sector& GroundMap::sectorAt(float azimuth, std::uint32_t block, const Plane& plane) {
-  const std::size_t number = static_cast<std::size_t>(azimuth * kSectorsPerRadian) % kSectors;
-  if (latest_[number] == 0 || block - latest_[number] > kFresh) renew(number, block, plane);
-  latest_[number] = block;
-  return sectors_[number];
 }
 
 void GroundMap::renew(std::size_t number, std::uint32_t block, const Plane& plane) {

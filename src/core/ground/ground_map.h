@@ -52,12 +52,21 @@ class GroundMap {
 
   /// The sector of an azimuth (radians, 0 to 2 pi). If it was last seen in another rotation, it starts with what is
   /// known beside it.
-  Sector& sectorAt(float azimuth, std::uint32_t block, const Plane& plane);
+  Sector& sectorAt(float azimuth, std::uint32_t block, const Plane& plane) {
+    constexpr float kSectorsPerRadian = 1.0F / kSectorWidth;
+    const auto number = static_cast<std::size_t>(static_cast<std::uint32_t>(azimuth * kSectorsPerRadian)) % kSectors;
+    if (latest_[number] == 0 || block - latest_[number] > kFresh) renew(number, block, plane);
+    latest_[number] = block;
+    return sectors_[number];
+  }
 
   /// All kSectors sectors.
   Sector* sectors() { return sectors_.data(); }
 
  private:
+  static constexpr float kSectorWidth = 6.2831853F / static_cast<float>(kSectors);  // radians
+  static constexpr std::uint32_t kFresh = 40;  // blocks after which a sector shows the rotation before
+
   void renew(std::size_t number, std::uint32_t block, const Plane& plane);
 
   std::vector<Sector> sectors_;

@@ -51,7 +51,9 @@ inline constexpr float kLevelsPerMetre = 4.0F;  ///< of height
 
 /// Number of the level of a height, modulo 64.
 inline unsigned levelOf(float height) {
-  return static_cast<unsigned>(static_cast<std::int32_t>(std::floor(height * kLevelsPerMetre)) & 63);
+  const float levels = height * kLevelsPerMetre;
+  const auto towards_zero = static_cast<std::int32_t>(levels);
+  return static_cast<unsigned>((towards_zero - (static_cast<float>(towards_zero) > levels ? 1 : 0)) & 63);
 }
 
 /// Number of the bin of a distance.

@@ -21,17 +21,6 @@ float wrapped(float angle) {
   return angle < -0.5F * kTurn ? angle + kTurn : angle;
 }
 
-/// Azimuth of a direction, radians, 0 to 2 pi, within 0.004.
-float azimuthOfDirection(float x, float y) {
-  const float east = std::fabs(x), north = std::fabs(y);
-  const float ratio = std::min(east, north) / (std::max(east, north) + 1e-30F);
-  float octants = ratio * (1.2732F - 0.2732F * ratio);
-  if (north > east) octants = 2.0F - octants;
-  if (x < 0.0F) octants = 4.0F - octants;
-  if (y < 0.0F) octants = 8.0F - octants;
-  return octants * (kTurn / 8.0F);
-}
-
 }  // namespace
 
 void RowOrder::begin(std::size_t lasers) {
@@ -53,7 +42,7 @@ void RowOrder::update(const Block& block) {
     if (block.returns[row] == 0) continue;
     const std::size_t at = row * Block::kColumns + 31 - static_cast<std::size_t>(__builtin_clz(block.returns[row]));
     Seen& seen = seen_[row];
-    const float azimuth = azimuthOfDirection(block.x[at], block.y[at]);
+    const float azimuth = block.azimuth[at];
     if (seen.block == 0) is_new = true;
     if (seen.block != 0 && seen.block + 1 == block_) {
       turned += wrapped(azimuth - seen.azimuth);
