@@ -83,10 +83,10 @@ TEST(GroundScenes, FindsRampsUpAndDown) {
   }
 }
 
-TEST(GroundScenes, FindsTheFloorOfARoom) {
-  // 12 m x 8 m and 3.2 m high, with a table 1 m wide; the sensor is 1 m above the floor.
+/// 12 m x 8 m and 3.2 m high, with a table 1 m wide; the sensor is 1 m above the floor.
+Scan room(std::size_t lasers) {
   const auto isTable = [](double x, double y) { return std::fabs(x - 3.0) < 0.5 && std::fabs(y) < 1.0; };
-  const Scan scan = scanOf(kLasers, kColumns, [&](double azimuth, double slope) {
+  return scanOf(lasers, kColumns, [&](double azimuth, double slope) {
     const auto inside = [&](double x, double y) {
       if (std::fabs(x) > 6.0 || std::fabs(y) > 4.0) return 10.0;
       return isTable(x, y) ? -0.25 : -1.0;
@@ -94,9 +94,74 @@ TEST(GroundScenes, FindsTheFloorOfARoom) {
     const double rho = meetsSurface(azimuth, slope, inside);
     return slope > 0.0 ? std::min(rho, 2.2 / slope) : rho;
   });
+}
+
+bool isFloorOfRoom(const lisco::Return& cell) {
+  return cell.z < -0.99F;
+}
+
+TEST(GroundScenes, FindsTheFloorOfARoom) {
+  const Scan scan = room(kLasers);
   const std::vector<std::uint8_t> ground = filterAll(scan);
-  EXPECT_GT(share(scan, ground, [](const lisco::Return& cell) { return cell.z < -0.99F; }), 0.98);
+  EXPECT_GT(share(scan, ground, isFloorOfRoom), 0.98);
   EXPECT_LT(share(scan, ground, [](const lisco::Return& cell) { return cell.z > -0.8F; }), 0.005);
+}
+
+lisco::GroundParameters estimated(const Scan& scan) {
+  const auto cells = [&](std::size_t laser, std::size_t column) { return scan.cells[laser * scan.columns + column]; };
+  return lisco::estimateGround(scan.columns, scan.lasers, {0, 0, 0}, lisco::CellSource(cells));
+}
+
+TEST(GroundScenes, AreEstimatedInRooms) {
+  for (const std::size_t lasers : {16U, 32U, 64U, 128U}) {
+    const Scan scan = room(lasers);
+    const lisco::GroundParameters parameters = estimated(scan);
+    EXPECT_NEAR(parameters.sensor_height, 1.0F, 0.05F) << lasers;
+    const std::vector<std::uint8_t> ground = filterAll(scan, parameters);
+    EXPECT_GT(share(scan, ground, isFloorOfRoom), 0.98) << lasers;
+    EXPECT_LT(share(scan, ground, [](const lisco::Return& cell) { return cell.z > -0.8F; }), 0.005) << lasers;
+  }
+}
+
+/// What a sensor with two returns gives: a row for each laser's first return, then one for its last. Of each fifth ray
+/// the first return is a leaf or a thread at half the distance.
+/// \param repeats whether a ray with one return gives it twice
+Scan withTwoReturns(const Scan& last, bool repeats) {
+  std::mt19937 random(8);
+  std::uniform_int_distribution<int> one_of(0, 4);
+  Scan scan{2 * last.lasers, last.columns, std::vector<lisco::Return>(2 * last.cells.size(), lisco::kNoReturn)};
+  for (std::size_t laser = 0; laser < last.lasers; ++laser)
+    for (std::size_t column = 0; column < last.columns; ++column) {
+      const lisco::Return& cell = last.cells[laser * last.columns + column];
+      lisco::Return& first = scan.cells[2 * laser * last.columns + column];
+      lisco::Return& second = scan.cells[(2 * laser + 1) * last.columns + column];
+      if (one_of(random) == 0) {
+        first = {0.5F * cell.x, 0.5F * cell.y, 0.5F * cell.z, 0};
+        second = cell;
+      } else {
+        first = cell;
+        if (repeats) second = cell;
+      }
+    }
+  return scan;
+}
+
+TEST(GroundScenes, HaveTwoReturnsOfEachRay) {
+  for (const bool repeats : {true, false})
+    for (const std::size_t lasers : {16U, 32U, 64U}) {
+      SCOPED_TRACE(testing::Message() << lasers << " lasers, each return twice: " << repeats);
+      const Scan outside = withTwoReturns(
+          scanOf(lasers, kColumns, [](double azimuth, double slope) { return meetsPlane(azimuth, slope, kHeight); }),
+          repeats);
+      const Scan inside = withTwoReturns(room(lasers), repeats);
+      const auto isFloor = [](const lisco::Return& cell) { return cell.z < 0.01F - static_cast<float>(kHeight); };
+      EXPECT_NEAR(estimated(outside).sensor_height, kHeight, 0.05);
+      EXPECT_NEAR(estimated(inside).sensor_height, 1.0, 0.05);
+      EXPECT_GT(share(outside, filterAll(outside), isFloor), 0.95);
+      EXPECT_GT(share(outside, filterAll(outside, estimated(outside)), isFloor), 0.95);
+      EXPECT_GT(share(inside, filterAll(inside), isFloorOfRoom), 0.95);
+      EXPECT_GT(share(inside, filterAll(inside, estimated(inside)), isFloorOfRoom), 0.95);
+    }
 }
 
 TEST(GroundScenes, LeavesItsOwnVehicle) {
@@ -174,6 +239,78 @@ TEST(GroundScenes, FindsTheGroundWithoutSomeRowsColumnsAndReturns) {
       if (is_lost) scan.cells[laser * scan.columns + column] = lisco::kNoReturn;
     }
   EXPECT_GT(share(scan, filterAll(scan), all), 0.98);
+}
+
+TEST(GroundScenes, LeavesWallsFromTheirFeetOn) {
+  // A courtyard of 14 m x 9 m, whose walls the lasers meet each 6 cm to 9 cm.
+  const Scan scan = scanOf(64, kColumns, [](double azimuth, double slope) {
+    const double wall = std::min(7.0 / std::fabs(std::cos(azimuth)), 4.5 / std::fabs(std::sin(azimuth)));
+    const double rho = meetsPlane(azimuth, slope, kHeight);
+    return rho < 0.0 ? wall : std::min(rho, wall);
+  });
+  const std::vector<std::uint8_t> ground = filterAll(scan);
+  EXPECT_EQ(share(scan, ground, [](const lisco::Return& cell) { return cell.z > -1.74F && cell.z < -1.4F; }), 0.0);
+  EXPECT_EQ(share(scan, ground, [](const lisco::Return& cell) { return cell.z > -1.4F; }), 0.0);
+  EXPECT_GT(share(scan, ground, [](const lisco::Return& cell) { return cell.z < -1.799F; }), 0.98);
+}
+
+TEST(GroundScenes, RemembersTheGroundThatAVanHid) {
+  // To the left, 9 m away, a fence 1.2 m high with a van in it, 2.3 m high. Beyond, the ground is 0.5 m higher; only
+  // two lasers see it there over the fence, none over the van.
+  const Scan scan = scanOf(64, kColumns, [](double azimuth, double slope) {
+    return meetsSurface(azimuth, slope, [](double x, double y) {
+      if (y > 26.0) return 5.0;
+      if (y > 9.0 && y < 9.3 && x > 1.2 && x < 2.6) return 2.3 - kHeight;
+      if (y > 9.0 && y < 9.3 && std::fabs(x) < 4.0) return 1.2 - kHeight;
+      return 0.5 * std::clamp((y - 9.0) / 4.0, 0.0, 1.0) - kHeight;
+    });
+  });
+  const std::vector<std::uint8_t> ground = filterAll(scan);
+  const auto isBeyond = [](const lisco::Return& cell) {
+    return cell.y > 13.0F && cell.y < 25.9F && cell.z < -1.29F && std::fabs(cell.x / cell.y) < 4.0F / 9.3F;
+  };
+  EXPECT_GT(share(scan, ground, isBeyond), 0.95);
+}
+
+TEST(GroundScenes, ForgetATerraceThatRaysPassBeneath) {
+  // Up to 85 degrees, the ground rises to a terrace 1.2 m high, 18 m away. Then a wet road begins, which is seen up to
+  // 9 m only: first with a wall 32 m away, from 88 degrees on with the bed of a trailer, as high as the terrace.
+  constexpr double kBed = 1.2 - kHeight;
+  const auto degreesOf = [](double azimuth) { return azimuth * 180.0 / M_PI; };
+  const auto onTerrace = [](double x, double y) {
+    return 1.2 * std::clamp((std::hypot(x, y) - 10.0) / 8.0, 0.0, 1.0) - kHeight;
+  };
+  const Scan scan = scanOf(128, 1801, [&](double azimuth, double slope) {
+    const double degrees = degreesOf(azimuth);
+    if (degrees < 85.0) return meetsSurface(azimuth, slope, onTerrace);
+    const double road = meetsPlane(azimuth, slope, kHeight);
+    if (degrees > 112.0 || (road > 0.0 && road < 9.0)) return road;
+    if (degrees > 88.0) return slope * 18.0 > kBed && slope * 22.0 < kBed ? kBed / slope : -1.0;
+    return slope * 32.0 > -kHeight ? 32.0 : -1.0;
+  });
+  const std::vector<std::uint8_t> ground = filterAll(scan);
+  const auto isTerrace = [&](const lisco::Return& cell) {
+    return cell.x > 2.0F && cell.y > 0.0F && cell.z > -0.61F && distanceOf(cell) < 30.0;
+  };
+  const auto isBed = [&](const lisco::Return& cell) {
+    const double degrees = degreesOf(std::atan2(static_cast<double>(cell.y), static_cast<double>(cell.x)));
+    return degrees > 88.0 && degrees < 112.0 && distanceOf(cell) > 18.0 && distanceOf(cell) < 22.1;
+  };
+  EXPECT_GT(share(scan, ground, isTerrace), 0.95);
+  EXPECT_EQ(share(scan, ground, isBed), 0.0);
+}
+
+TEST(GroundScenes, FindsASlopeThatBeginsBehindABus) {
+  // It rises by 12 degrees to the right, where the sensor looks last. A bus hides what is between.
+  const double rise = -std::tan(12.0 * M_PI / 180.0), bus = 220.0 * M_PI / 180.0;
+  const Scan scan = scanOf(kLasers, kColumns, [&](double azimuth, double slope) {
+    if (std::fabs(azimuth - bus) < 20.0 * M_PI / 180.0) return 1.5 / std::cos(azimuth - bus);
+    const double descent = rise * std::sin(azimuth) - slope;
+    return descent > kHeight / 100.0 ? kHeight / descent : -1.0;
+  });
+  const std::vector<std::uint8_t> ground = filterAll(scan);
+  EXPECT_GT(share(scan, ground, [](const lisco::Return& cell) { return cell.y > 0.0F; }), 0.98);
+  EXPECT_GT(share(scan, ground, [](const lisco::Return& cell) { return cell.y < -1.8F * std::fabs(cell.x); }), 0.98);
 }
 
 TEST(GroundScenes, AreDecidedAlikeAtEachLevelOfVectorInstructions) {

@@ -9,6 +9,7 @@
 #include <random>
 #include <set>
 
+#include <pcl/PointIndices.h>
 #include <pcl/filters/lisco_ground_filter.h>
 #include <pcl/point_types.h>
 
@@ -105,6 +106,60 @@ TEST(PclGroundFilter, KeepsTheCloudOrganized) {
   EXPECT_FALSE(objects.is_dense);
   for (const auto index : *filter.getRemovedIndices()) ASSERT_TRUE(std::isnan(objects[index].x));
   for (std::size_t i = 0; i < cloud->size(); ++i) ASSERT_EQ(objects[i].intensity, (*cloud)[i].intensity);
+}
+
+TEST(PclGroundFilter, LeavesTheGroundOfIndexedPointsIfNegative) {
+  const auto cloud = scan();
+  auto given = std::make_shared<pcl::Indices>();
+  for (pcl::index_t i = 0; i < static_cast<pcl::index_t>(cloud->size()); ++i)
+    if (i % 4 != 0) given->push_back(i);
+  pcl::LiscoGroundFilter<pcl::PointXYZI> filter(true);
+  filter.setInputCloud(cloud);
+  filter.setIndices(given);
+  filter.setNegative(true);
+  pcl::Indices ground;
+  filter.filter(ground);
+  pcl::PointIndices removed;
+  filter.getRemovedIndices(removed);
+  EXPECT_GT(ground.size(), 7000U);
+  for (const auto index : ground) {
+    ASSERT_NE(index % 4, 0);
+    ASSERT_LT((*cloud)[index].z, kGround + 0.25F);
+  }
+  pcl::Indices all(ground);
+  all.insert(all.end(), removed.indices.begin(), removed.indices.end());
+  std::sort(all.begin(), all.end());
+  EXPECT_EQ(all, *given);
+  filter.setNegative(false);
+  pcl::Indices objects;
+  filter.filter(objects);
+  for (const auto index : objects)
+    ASSERT_TRUE(std::binary_search(removed.indices.begin(), removed.indices.end(), index));
+}
+
+TEST(PclGroundFilter, KeepsTheGroundOrganizedIfNegative) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "PCL's library allocates the cloud, and Eigen frees it differently in sanitized code";
+#endif
+  const auto cloud = scan();
+  pcl::LiscoGroundFilter<pcl::PointXYZI> filter(true);
+  filter.setInputCloud(cloud);
+  filter.setKeepOrganized(true);
+  filter.setUserFilterValue(-7.0F);
+  filter.setNegative(true);
+  Cloud ground;
+  filter.filter(ground);
+  ASSERT_EQ(ground.width, cloud->width);
+  ASSERT_EQ(ground.height, cloud->height);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < cloud->size(); ++i) {
+    if (ground[i].z == -7.0F) continue;
+    ++kept;
+    ASSERT_EQ(ground[i].z, (*cloud)[i].z);
+    ASSERT_LT(ground[i].z, kGround + 0.25F);
+  }
+  EXPECT_EQ(kept + filter.getRemovedIndices()->size(), cloud->size());
+  EXPECT_GT(kept, 10000U);
 }
 
 TEST(PclGroundFilter, LooksAtIndexedPointsOnly) {

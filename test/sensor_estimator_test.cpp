@@ -212,6 +212,22 @@ TEST(SensorEstimator, AcceptsEmptyEveryOtherColumn) {
 }
 
 // Runs are as short where most returns are isolated as where ranges jump.
+// Rows of second returns lie between those of the first ones, whichever of them are sampled.
+TEST(SensorEstimator, FindsTheSensorWhereFewRaysHaveTwoReturns) {
+  for (const std::size_t lasers : {16U, 20U, 32U, 40U, 64U, 128U}) {
+    Scan scan(kColumns, 2 * lasers);
+    for (std::size_t laser = 0; laser < lasers; ++laser)
+      for (std::size_t column = 0; column < kColumns; ++column) {
+        const double azimuth = 6.283185307179586 * static_cast<double>(column) / static_cast<double>(kColumns);
+        const float x = static_cast<float>(10.0 * std::cos(azimuth)), y = static_cast<float>(10.0 * std::sin(azimuth));
+        const float z = 0.1F * (static_cast<float>(laser) - 8.0F);
+        scan.set(2 * laser, column, {x, y, z});
+        if ((laser + column) % 30 == 0) scan.set(2 * laser + 1, column, {2.0F * x, 2.0F * y, 2.0F * z});
+      }
+    EXPECT_EQ(estimate(scan).steps_per_turn, static_cast<int>(kColumns)) << lasers;
+  }
+}
+
 TEST(SensorEstimator, TakesThinObjectsForRough) {
   Scan scan = rotation();
   EXPECT_LT(estimate(scan).roughness, 0.1F);

@@ -206,7 +206,8 @@ void Report::printStatistics(const PacketSource& source, const Decoder& decoder,
     table += formatted("            the sensor's clock was set %llu times\n", number(counts.clock_jumps));
   table += formatted("rotations   %llu\ncolumns     %llu\nreturns     %llu", number(totals_.turns),
                      number(totals_.columns), number(totals_.returns));
-  if (totals_.ground > 0) table += formatted(" and %llu of the ground, left out", number(totals_.ground));
+  if (totals_.ground > 0)
+    table += formatted(" and %llu of the ground, left out; --ground none keeps them", number(totals_.ground));
   table += formatted("\nclusters    %llu, of %llu returns\n", number(totals_.clusters), number(totals_.in_clusters));
   const std::optional<std::uint64_t> outliers = stream.outliers();
   if (outliers)

@@ -149,39 +149,49 @@ SensorHints estimateSensor(std::size_t columns, std::size_t lasers, const std::a
   constexpr std::size_t kSmall = 4096;  // cells, below which a range image is not worth its preparation
   constexpr std::size_t kSampledRows = 8;
   constexpr std::size_t kSamples = 128;
+  constexpr std::size_t kFew = 4;       // of the samples: 1 / kFew
   constexpr std::size_t kMinShare = 4;  // of a turn: 1 / kMinShare; less would leave the range image mostly empty
   if (lasers < 2 || columns * lasers < kSmall) return SensorHints();
   const auto valid = [](const Return& cell) { return isReturn(cell.x, cell.y, cell.z); };
 
-  SensorEstimator estimator;
-  struct BelowOne {
-    std::size_t laser;
-    Return point;
-  };
-  Sample<BelowOne> below_ones;
   const std::size_t row_step = std::max<std::size_t>(1, lasers / kSampledRows);
   const std::size_t samples_per_row = std::max<std::size_t>(1, kSamples * row_step / lasers);
   const std::size_t column_step = std::max<std::size_t>(1, columns / samples_per_row);
-  for (std::size_t laser = row_step / 2; laser < lasers; laser += row_step)
-    for (std::size_t column = column_step / 2; column < columns; column += column_step) {
-      const Return cell = cells.at(laser, column);
-      if (!valid(cell)) continue;
-      const Return right = column + 1 < columns ? cells.at(laser, column + 1) : kNoReturn;
-      const Return below = laser + 1 < lasers ? cells.at(laser + 1, column) : kNoReturn;
-      const std::size_t after = column + SensorEstimator::kDriftColumns;
-      const Return further = after < columns ? cells.at(laser, after) : kNoReturn;
-      if (valid(right))
-        estimator.addAlongRow(cell, right);
-      else
-        estimator.addAlone();
-      if (valid(further)) estimator.addFurtherAlongRow(cell, further);
-      estimator.addOfLaser(laser, cell);
-      if (!valid(below)) continue;
-      estimator.addAlongColumn(cell, below);
-      below_ones.push_back({laser + 1, below});
-    }
-  for (const BelowOne& one : below_ones) estimator.addOfLaser(one.laser, one.point);
-  SensorHints hints = estimator.estimate(declared_origin);
+  std::size_t samples = 0;
+  std::size_t returns = 0;
+  const auto estimateFrom = [&](std::size_t first_laser) {
+    SensorEstimator estimator;
+    struct BelowOne {
+      std::size_t laser;
+      Return point;
+    };
+    Sample<BelowOne> below_ones;
+    for (std::size_t laser = first_laser; laser < lasers; laser += row_step)
+      for (std::size_t column = column_step / 2; column < columns; column += column_step) {
+        ++samples;
+        const Return cell = cells.at(laser, column);
+        if (!valid(cell)) continue;
+        ++returns;
+        const Return right = column + 1 < columns ? cells.at(laser, column + 1) : kNoReturn;
+        const Return below = laser + 1 < lasers ? cells.at(laser + 1, column) : kNoReturn;
+        const std::size_t after = column + SensorEstimator::kDriftColumns;
+        const Return further = after < columns ? cells.at(laser, after) : kNoReturn;
+        if (valid(right))
+          estimator.addAlongRow(cell, right);
+        else
+          estimator.addAlone();
+        if (valid(further)) estimator.addFurtherAlongRow(cell, further);
+        estimator.addOfLaser(laser, cell);
+        if (!valid(below)) continue;
+        estimator.addAlongColumn(cell, below);
+        below_ones.push_back({laser + 1, below});
+      }
+    for (const BelowOne& one : below_ones) estimator.addOfLaser(one.laser, one.point);
+    return estimator.estimate(declared_origin);
+  };
+  SensorHints hints = estimateFrom(row_step / 2);
+  // These may be the rows of second returns, of which few rays have one.
+  if (hints.steps_per_turn == 0 && row_step > 1 && returns * kFew < samples) hints = estimateFrom(row_step / 2 - 1);
   if (static_cast<std::size_t>(hints.steps_per_turn) > kMinShare * columns) hints.steps_per_turn = 0;
   return hints;
 }

@@ -364,6 +364,22 @@ TEST_F(LiscoCompare, RemovesTheGroundOfAllOrOfOne) {
             std::string::npos);
 }
 
+TEST_F(LiscoCompare, LeavesOutReturnsByMethodRangeAndPlace) {
+  writeScan();
+  const auto returns = [&](const std::string& options) {
+    EXPECT_EQ(run("walls.pcd -t 0.3 --check-only --baselines pcl,lisco --json all.json " + options).status, 0);
+    return static_cast<int>(jsonIn("all.json")["inputs"][0]["returns"]);
+  };
+  EXPECT_EQ(returns("--ground none"), 360);
+  EXPECT_EQ(returns("--ground height:-1.5"), 180);
+  EXPECT_EQ(returns("--ground walls=height:-1.5"), 180);
+  EXPECT_EQ(returns("--min-range 8"), 180);
+  EXPECT_EQ(returns("--max-range 8"), 180);
+  EXPECT_EQ(returns("--ignore-box -20,-20,-3,20,20,-1"), 180);
+  expectSaid("  ignored   180 returns (50 %) by range or place\n",
+             run("walls.pcd -t 0.3 --check-only --min-range 8").out);
+}
+
 TEST_F(LiscoCompare, ScoresTrueObjects) {
   write("walls.pcd", threeWalls(true));
   const Outcome outcome =

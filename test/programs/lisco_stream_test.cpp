@@ -264,7 +264,8 @@ TEST_P(StreamOfCapture, LeavesOutTheGroundUnlessToldOtherwise) {
     const Outcome outcome = run("'" + capture().string() + "' --sensor " + GetParam().sensor +
                                 " --json --stats --rotations 2 --tolerance 0.4 " + options + " --mode " + mode);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    const bool has_ground = outcome.err.find("of the ground, left out") != std::string::npos;
+    const bool has_ground =
+        outcome.err.find("of the ground, left out; --ground none keeps them\n") != std::string::npos;
     for (const Json& line : linesOf(outcome.out)) {
       const bool is_rotation = mode == std::string("rotation");
       if (is_rotation && line["clusters"].empty()) continue;
