@@ -211,7 +211,6 @@ TEST(SensorEstimator, AcceptsEmptyEveryOtherColumn) {
   EXPECT_GT(hints.far_distance, 0.0F);
 }
 
-// Runs are as short where most returns are isolated as where ranges jump.
 // Rows of second returns lie between those of the first ones, whichever of them are sampled.
 TEST(SensorEstimator, FindsTheSensorWhereFewRaysHaveTwoReturns) {
   for (const std::size_t lasers : {16U, 20U, 32U, 40U, 64U, 128U}) {
@@ -228,6 +227,7 @@ TEST(SensorEstimator, FindsTheSensorWhereFewRaysHaveTwoReturns) {
   }
 }
 
+// Runs are as short where most returns are isolated as where ranges jump.
 TEST(SensorEstimator, TakesThinObjectsForRough) {
   Scan scan = rotation();
   EXPECT_LT(estimate(scan).roughness, 0.1F);
