@@ -352,9 +352,7 @@ int main(int argc, char** argv) {
     if (!parse(argc, argv, options)) return 0;
     Interruption::listen();
     ScanSource source(options.inputs, options.input, Interruption::happened);
-    std::vector<std::string> stems;
-    for (const fs::path& file : source.files()) stems.push_back(file.stem().string());
-    for (const std::string& name : options.scan.ground.namesNotIn(stems))
+    for (const std::string& name : options.scan.ground.namesNotIn(source.files()))
       std::cerr << "lisco_cluster: --ground names '" << name << "', which is no input\n";
     return Workers(options, source).run() ? 0 : 2;
   });

@@ -249,9 +249,7 @@ int compare(const Options& options) {
     checkMayWriteInto(options.plot, chartsOf(names, settings));
   }
 
-  std::vector<std::string> stems;
-  for (const fs::path& file : files) stems.push_back(file.stem().string());
-  for (const std::string& name : options.scan.ground.namesNotIn(stems))
+  for (const std::string& name : options.scan.ground.namesNotIn(files))
     std::fprintf(stderr, "lisco_compare: --ground names '%s', which is no input\n", name.c_str());
 
   std::fputs(describeRun(settings).c_str(), stdout);

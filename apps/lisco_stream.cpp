@@ -19,7 +19,7 @@
 #include <boost/algorithm/string/join.hpp>
 #include <boost/program_options.hpp>
 
-#include "io/cloud_ending.h"
+#include "io/cloud_file.h"
 #include "io/interruption.h"
 #include "io/options.h"
 #include "io/scan_options.h"
