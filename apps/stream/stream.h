@@ -72,10 +72,6 @@ struct StreamOptions {
   std::uint64_t rotations = 0;  ///< after which to end; 0: no limit
 };
 
-/// A turn ends after this many columns, which bounds its memory if the sensor does not turn: 0.01 degrees per column,
-/// the resolution of azimuths in packets.
-inline constexpr std::size_t kMaxColumns = 36000;
-
 struct FoundCluster {
   std::uint32_t id = 0;  ///< from 1
   lisco::ClusterFeatures features;
