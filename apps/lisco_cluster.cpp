@@ -315,7 +315,7 @@ class Workers {
     std::optional<LabelledScan> labelled;
     if (bag_) labelled = labelledScanOf(scan, item.time_ns, number);
     std::string viewed;
-    if (timeline_) viewed = encodeViewScan(viewScanOf(scan, scan.returns.clustered));
+    if (timeline_) viewed = encodeViewScan(viewScanOf(scan));
     const auto written = Clock::now();
 
     const std::lock_guard<std::mutex> lock(terminal_);

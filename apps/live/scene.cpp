@@ -6,19 +6,9 @@
 #include <utility>
 
 #include "io/text.h"
-#include "lisco/return.h"
 #include "lisco/sensor_hints.h"
 
 namespace lisco_apps {
-namespace {
-
-/// \param id see ViewCluster
-ViewCluster viewClusterOf(const lisco::ClusterFeatures& features, std::uint32_t id = 0) {
-  const lisco::OrientedBox& box = features.box;
-  return {features.size, box.center, box.length, box.width, box.height, box.yaw, features.nearest_range, id};
-}
-
-}  // namespace
 
 LiveScene::LiveScene(const StreamOptions& options, std::string title, std::size_t window)
     : options_(options), window_(window) {
