@@ -3,7 +3,6 @@
 //
 // Clusters scan files and writes the clusters as tables, clouds and pictures.
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -32,6 +31,7 @@
 #include "recordings/result_bag.h"
 #include "recordings/scan_source.h"
 #include "recordings/work_progress.h"
+#include "stream/latency.h"
 #include "view/clustered_view.h"
 #include "view/scan_encoder.h"
 #include "view/timeline.h"
@@ -52,10 +52,6 @@ struct Options {
   bool json = false;
   unsigned threads = 1;  ///< files clustered at the same time
 };
-
-double milliseconds(std::chrono::steady_clock::duration time) {
-  return std::chrono::duration<double, std::milli>(time).count();
-}
 
 /// \return false if --help or --version was given
 bool parse(int argc, char** argv, Options& options) {
@@ -282,7 +278,6 @@ class Workers {
   }
 
   void clusterScan(const ScanItem& item, std::size_t number, pcl::LiscoClusterExtraction<pcl::PointXYZ>& extraction) {
-    using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
     const Scan input = item.read();
     ClusteredScan scan;
@@ -322,8 +317,8 @@ class Workers {
     if (labelled) bag_->write(*labelled);
     if (timeline_) timeline_->add(number, std::move(viewed));
     progress_.clear();
-    const StepTimes times{milliseconds(read - start), milliseconds(ground - read), milliseconds(clustered - ground),
-                          milliseconds(written - clustered)};
+    const StepTimes times{millisecondsOf(read - start), millisecondsOf(ground - read),
+                          millisecondsOf(clustered - ground), millisecondsOf(written - clustered)};
     if (options_.json)
       printJson(scan, item.file, times);
     else
