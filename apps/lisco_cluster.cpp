@@ -3,7 +3,6 @@
 //
 // Clusters scan files and writes the clusters as tables, clouds and pictures.
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -32,6 +31,7 @@
 #include "recordings/result_bag.h"
 #include "recordings/scan_source.h"
 #include "recordings/work_progress.h"
+#include "stream/latency.h"
 #include "view/clustered_view.h"
 #include "view/scan_encoder.h"
 #include "view/timeline.h"
@@ -52,10 +52,6 @@ struct Options {
   bool json = false;
   unsigned threads = 1;  ///< files clustered at the same time
 };
-
-double milliseconds(std::chrono::steady_clock::duration time) {
-  return std::chrono::duration<double, std::milli>(time).count();
-}
 
 /// \return false if --help or --version was given
 bool parse(int argc, char** argv, Options& options) {
@@ -282,7 +278,6 @@ class Workers {
   }
 
   void clusterScan(const ScanItem& item, std::size_t number, pcl::LiscoClusterExtraction<pcl::PointXYZ>& extraction) {
-    using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
     const Scan input = item.read();
     ClusteredScan scan;
@@ -315,15 +310,15 @@ class Workers {
     std::optional<LabelledScan> labelled;
     if (bag_) labelled = labelledScanOf(scan, item.time_ns, number);
     std::string viewed;
-    if (timeline_) viewed = encodeViewScan(viewScanOf(scan, scan.returns.clustered));
+    if (timeline_) viewed = encodeViewScan(viewScanOf(scan));
     const auto written = Clock::now();
 
     const std::lock_guard<std::mutex> lock(terminal_);
     if (labelled) bag_->write(*labelled);
     if (timeline_) timeline_->add(number, std::move(viewed));
     progress_.clear();
-    const StepTimes times{milliseconds(read - start), milliseconds(ground - read), milliseconds(clustered - ground),
-                          milliseconds(written - clustered)};
+    const StepTimes times{millisecondsOf(read - start), millisecondsOf(ground - read),
+                          millisecondsOf(clustered - ground), millisecondsOf(written - clustered)};
     if (options_.json)
       printJson(scan, item.file, times);
     else
@@ -352,9 +347,7 @@ int main(int argc, char** argv) {
     if (!parse(argc, argv, options)) return 0;
     Interruption::listen();
     ScanSource source(options.inputs, options.input, Interruption::happened);
-    std::vector<std::string> stems;
-    for (const fs::path& file : source.files()) stems.push_back(file.stem().string());
-    for (const std::string& name : options.scan.ground.namesNotIn(stems))
+    for (const std::string& name : options.scan.ground.namesNotIn(source.files()))
       std::cerr << "lisco_cluster: --ground names '" << name << "', which is no input\n";
     return Workers(options, source).run() ? 0 : 2;
   });

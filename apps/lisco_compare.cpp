@@ -28,8 +28,8 @@
 #include "io/terminal_line.h"
 #include "io/text.h"
 #include "recordings/scan_source.h"
-#include "view/compared_view.h"
 #include "view/page.h"
+#include "view/rows.h"
 #include "view/scan_encoder.h"
 
 namespace {
@@ -136,13 +136,13 @@ bool parse(int argc, char** argv, Options& options) {
     if (given.count("must-agree") != 0 && std::none_of(settings.baselines.begin(), settings.baselines.end(), is_it))
       throw std::runtime_error("--must-agree names " + baseline.key + ", which --baselines does not");
   }
-  if (!options.json.empty() && !options.csv.empty() &&
-      fs::absolute(options.json).lexically_normal() == fs::absolute(options.csv).lexically_normal())
+  const auto are_one = [](const fs::path& a, const fs::path& b) {
+    return !a.empty() && !b.empty() && fs::absolute(a).lexically_normal() == fs::absolute(b).lexically_normal();
+  };
+  if (are_one(options.json, options.csv))
     throw std::runtime_error("--json and --csv are one file: " + options.json.string());
-  for (const fs::path* other : {&options.json, &options.csv})
-    if (!options.view.empty() && !other->empty() &&
-        fs::absolute(options.view).lexically_normal() == fs::absolute(*other).lexically_normal())
-      throw std::runtime_error("--view and another option name one file: " + options.view.string());
+  if (are_one(options.view, options.json) || are_one(options.view, options.csv))
+    throw std::runtime_error("--view and another option name one file: " + options.view.string());
   if (check_only && !options.plot.empty())
     throw std::runtime_error("--plot needs times, which --check-only leaves out");
   return true;
@@ -191,7 +191,11 @@ InputResult compareScan(const ScanItem& item, const std::string& name, const Opt
   std::fputs(describe(returns, input.ground).c_str(), stdout);
   if (!settings.unorganized && read.arranged) std::printf("  %s\n", read.note.c_str());
   ViewScan view;
-  if (!options.view.empty()) view = viewScanOf(*scan.cloud, name);
+  if (!options.view.empty()) {
+    view.name = name;
+    for (const ComparedPoint& point : *scan.cloud) view.points.push_back({point.x, point.y, point.z});
+    view.ring = rowsOf(scan.cloud->width, scan.cloud->height);
+  }
   const double cases = static_cast<double>(settings.tolerances.size());
   for (const double tolerance : settings.tolerances) {
     const double cases_before = static_cast<double>(input.cases.size());
@@ -202,7 +206,9 @@ InputResult compareScan(const ScanItem& item, const std::string& name, const Opt
                         formatted("%s at %g m: %s", name.c_str(), tolerance, what.c_str()));
         },
         [&](const Baseline& baseline, const Clusters& clusters) {
-          if (!options.view.empty()) addLabelling(view, baseline, tolerance, clusters);
+          if (options.view.empty()) return;
+          const std::string labelling = formatted("%s, %g m", baseline.title.c_str(), tolerance);
+          view.labellings.push_back({labelling, tolerance, labelsOf(clusters, view.points.size()), {}});
         }));
     progress.clear();
     std::fputs(tableOf(input.cases.back()).c_str(), stdout);
@@ -249,9 +255,7 @@ int compare(const Options& options) {
     checkMayWriteInto(options.plot, chartsOf(names, settings));
   }
 
-  std::vector<std::string> stems;
-  for (const fs::path& file : files) stems.push_back(file.stem().string());
-  for (const std::string& name : options.scan.ground.namesNotIn(stems))
+  for (const std::string& name : options.scan.ground.namesNotIn(files))
     std::fprintf(stderr, "lisco_compare: --ground names '%s', which is no input\n", name.c_str());
 
   std::fputs(describeRun(settings).c_str(), stdout);

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -197,8 +196,7 @@ bool parse(int argc, char** argv, Options& options) {
   if (worlds == 0) throw std::runtime_error("--scene, --case or --terrain is missing; see --help");
   if (worlds > 1) throw std::runtime_error("--scene, --case and --terrain exclude each other");
   if (given.count("case") != 0) checkKnown(options.worst_case, caseNames(), "case");
-  if (options.gap < kMinGap || options.gap > kMaxGap)
-    throw std::runtime_error(formatted("--gap must be from 0.001 to 100 metres, not %g", options.gap));
+  checkRange("--gap", options.gap, kMinGap, kMaxGap, "metres");
   if (options.vehicle && (options.scene < 1 || options.scene > 4))
     throw std::runtime_error("--vehicle needs a street: --scene 1, 2, 3 or 4");
   if (given.count("gap") != 0 && (given.count("case") == 0 || !caseHasGap(options.worst_case)))
@@ -355,7 +353,6 @@ int simulate(const Options& options) {
 int main(int argc, char** argv) {
   return runProgram("lisco_simulate", [&] {
     Options options;
-    if (!parse(argc, argv, options)) return 0;
-    return simulate(options);
+    return parse(argc, argv, options) ? simulate(options) : 0;
   });
 }

@@ -19,7 +19,7 @@
 #include <boost/algorithm/string/join.hpp>
 #include <boost/program_options.hpp>
 
-#include "io/cloud_ending.h"
+#include "io/cloud_file.h"
 #include "io/interruption.h"
 #include "io/options.h"
 #include "io/scan_options.h"
@@ -239,6 +239,11 @@ std::string nameOf(const fs::path& path) {
   return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
+Input inputOf(std::unique_ptr<PacketSource> source, std::unique_ptr<CloudColumns> columns) {
+  CloudColumns* const clouds = columns.get();
+  return {std::move(source), std::move(columns), nullptr, clouds};
+}
+
 /// The clouds of a recording, if its topic holds clouds.
 std::optional<Input> openClouds(const Options& options, Report& report) {
   if (!isRecording(options.capture)) return std::nullopt;
@@ -248,13 +253,8 @@ std::optional<Input> openClouds(const Options& options, Report& report) {
   const Topic topic = recording->topics()[index];
   if (kindOf(topic) != TopicKind::kClouds) return std::nullopt;
   report.warn(options.capture.string() + ": topic " + topic.name);
-  auto reader = std::make_unique<TopicReader>(std::move(recording), index, part.span);
-  Input input;
-  input.source = std::make_unique<RawMessages>(std::move(reader), part.every);
-  auto columns = std::make_unique<CloudColumns>(topic);
-  input.clouds = columns.get();
-  input.decoder = std::move(columns);
-  return input;
+  auto reader = std::make_unique<TopicReader>(std::move(recording), index, part.span, part.every);
+  return inputOf(std::make_unique<RawMessages>(std::move(reader)), std::make_unique<CloudColumns>(topic));
 }
 
 /// The clouds of a file, or of the files in a folder.
@@ -266,12 +266,8 @@ std::optional<Input> openCloudFiles(const Options& options, Report& report) {
   if (scans.files().empty()) throw std::runtime_error(scans.takeFailures().front());
   auto clouds = std::make_unique<CloudFiles>(scans.files(), options.recording.every, options.files,
                                              [&report](const std::string& note) { report.warn(note); });
-  Input input;
   auto columns = std::make_unique<CloudColumns>([from = clouds.get()](const Packet&) { return from->take(); });
-  input.clouds = columns.get();
-  input.decoder = std::move(columns);
-  input.source = std::move(clouds);
-  return input;
+  return inputOf(std::move(clouds), std::move(columns));
 }
 
 Input openFile(const Options& options, Report& report) {
@@ -364,12 +360,6 @@ std::unique_ptr<Stream> makeStream(const Options& options, const Decoder& decode
   return std::make_unique<RotationStream>(options.stream, decoder, report);
 }
 
-/// Waits until the page has as many viewers, or for a signal.
-void waitForViewers(const LiveView& live, unsigned viewers) {
-  while (live.viewers() < viewers && !Interruption::happened())
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-}
-
 int run(const Options& options) {
   Interruption::listen();
   std::optional<LabelledClouds> clouds;
@@ -397,7 +387,8 @@ int run(const Options& options) {
       makeStream(options, decoder, live ? live->listener() : static_cast<Listener&>(report));
 
   OtherSensors others;
-  if (live) waitForViewers(*live, options.viewers);
+  while (live && live->viewers() < options.viewers && !Interruption::happened())
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
   takePackets(input, decoder, others, *stream, report, live.get());
   stream->finish();
   report.flush();

@@ -33,10 +33,6 @@ std::string bytesOf(const Scan& scan) {
   return {reinterpret_cast<const char*>(scan.cells.data()), scan.cells.size() * sizeof(Cell)};
 }
 
-Vector placeOf(const Cell& cell) {
-  return {static_cast<double>(cell.x), static_cast<double>(cell.y), static_cast<double>(cell.z)};
-}
-
 /// A sensor that does everything at once.
 Motion restlessMotion() {
   Motion motion;

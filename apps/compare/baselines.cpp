@@ -12,7 +12,6 @@
 #include <pcl/search/octree.h>
 #include <pcl/segmentation/extract_clusters.h>
 #include <pcl/segmentation/lisco_cluster_extraction.h>
-#include <pcl/segmentation/lisco_cluster_writer.h>
 
 #include "compare/components.h"
 #include "compare/kd_tree_baselines.h"
@@ -118,14 +117,6 @@ class ByThePaper {
   ComponentsToClusters output_;
 };
 
-class ByLisco {
- public:
-  void operator()(const Problem& problem, Clusters& clusters) { extractBy(extraction_, problem, clusters); }
-
- private:
-  pcl::LiscoClusterExtraction<ComparedPoint> extraction_;
-};
-
 }  // namespace
 
 lisco_reference::NominalSensor nominalSensor(const ComparedCloud& cloud) {
@@ -157,6 +148,10 @@ std::vector<Baseline> allBaselines() {
     checkOctreeHolds(problem);
     return std::make_shared<pcl::search::Octree<ComparedPoint>>(std::fabs(problem.tolerance));
   };
+  const auto by_lisco = [extraction = pcl::LiscoClusterExtraction<ComparedPoint>()](const Problem& problem,
+                                                                                    Clusters& clusters) mutable {
+    extractBy(extraction, problem, clusters);
+  };
   // Okabe and Ito's colours, distinct with colour blindness.
   std::vector<Baseline> all{referenceBaseline(),
                             {"pcl-tutorial", "PCL, KdTree as in its tutorial", byPcl(sorted_tree), 0x999999},
@@ -165,7 +160,7 @@ std::vector<Baseline> allBaselines() {
                              byPcl([](const Problem&) { return Search::Ptr(); }), 0xF0E442, false},
                             {"grid", "voxel grid", ByVoxelGrid(), 0x0072B2},
                             {"paper", "Lisco as in the paper", ByThePaper(), 0xE69F00, true, true},
-                            {"lisco", "Lisco for PCL", ByLisco(), 0xD55E00}};
+                            {"lisco", "Lisco for PCL", by_lisco, 0xD55E00}};
   std::vector<Baseline> trees = kdTreeBaselines();
   all.insert(all.begin() + 4, std::make_move_iterator(trees.begin()), std::make_move_iterator(trees.end()));
   return all;

@@ -48,11 +48,6 @@ std::string verdictOn(const BaselineResult& result) {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// JSON has no NaN.
-nlohmann::ordered_json finiteOrNull(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
 nlohmann::ordered_json jsonOf(const CaseResult& result, const BaselineResult& entry, const CompareSettings& settings) {
   nlohmann::ordered_json json{{"baseline", entry.baseline->key},
                               {"title", entry.baseline->title},
@@ -72,11 +67,11 @@ nlohmann::ordered_json jsonOf(const CaseResult& result, const BaselineResult& en
   if (!entry.times) return json;
   json["runs"] = entry.times->runs.size();
   json["mean_ms"] = entry.times->mean();
-  json["confidence99_ms"] = finiteOrNull(entry.times->confidence99());
+  json["confidence99_ms"] = entry.times->confidence99();  // NaN and infinity are written as null, here and below
   json["median_ms"] = median(entry.times->runs);
   json["lower_quartile_ms"] = quantile(entry.times->runs, 0.25);
   json["upper_quartile_ms"] = quantile(entry.times->runs, 0.75);
-  json["ratio"] = finiteOrNull(result.ratio(entry).value_or(kNan));
+  json["ratio"] = result.ratio(entry).value_or(kNan);
   json["cold_median_ms"] = median(entry.times->cold);
   json["times_ms"] = entry.times->runs;
   return json;
@@ -238,7 +233,7 @@ std::string jsonOf(const std::vector<InputResult>& inputs, const CompareSettings
                               {"returns", input.returns},
                               {"ground", input.left_out},
                               {"ground_method", nameOf(input.ground)},
-                              {"ground_z", finiteOrNull(static_cast<double>(input.ground.height))},
+                              {"ground_z", input.ground.height},
                               {"cases", std::move(cases)}});
   }
   // Replaces bytes of file names that are not UTF-8.

@@ -122,18 +122,11 @@ PointMap rangeImageOf(const ClusteredScan& scan) {
 void drawRangeImage(const ClusteredScan& scan, const PointMap& map, const ScanColors& colors, const fs::path& png) {
   const bool organized = scan.cloud->height > 1;
   const auto scale_x = static_cast<int>(map.cell_width);
-  const auto scale_y = static_cast<int>(map.cell_height);
   const int width = map.columns * scale_x;
-  const int height = map.rows * scale_y;
+  const int height = map.rows * static_cast<int>(map.cell_height);
   Canvas canvas(width + 2 * kMargin, height + kHeaderHeight + kMargin);
 
-  canvas.beginPixels();
-  for (int row = 0; row < map.rows; ++row)
-    for (int column = 0; column < map.columns; ++column)
-      if (const std::int64_t point = map.points[map.cellAt(row, column)]; point != PointMap::kNoPoint)
-        canvas.fillPixels(kMargin + column * scale_x, kHeaderHeight + row * scale_y, scale_x, scale_y,
-                          colors.shaded[static_cast<std::size_t>(point)]);
-  canvas.endPixels();
+  paintCells(canvas, map, kMargin, colors.shaded);
   drawIds(canvas, scan, map, colors);
 
   canvas.setColor(kLine);

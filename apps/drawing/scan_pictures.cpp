@@ -67,6 +67,17 @@ void IdLabels::add(Canvas& canvas, std::size_t cluster, double x, double y, cons
   canvas.label(x, y, kSize, id, color);
 }
 
+void paintCells(Canvas& canvas, const PointMap& map, int left, const std::vector<std::uint32_t>& color_of_point) {
+  const auto width = static_cast<int>(map.cell_width), height = static_cast<int>(map.cell_height);
+  canvas.beginPixels();
+  for (int row = 0; row < map.rows; ++row)
+    for (int column = 0; column < map.columns; ++column)
+      if (const std::int64_t point = map.points[map.cellAt(row, column)]; point != PointMap::kNoPoint)
+        canvas.fillPixels(left + column * width, kHeaderHeight + row * height, width, height,
+                          color_of_point[static_cast<std::size_t>(point)]);
+  canvas.endPixels();
+}
+
 void drawHeader(Canvas& canvas, const ClusteredScan& scan, double left, double right) {
   canvas.setColor(kText);
   canvas.text(left, kHeaderBaseline, kTitleSize,

@@ -58,6 +58,9 @@ void drawRangeImage(const ClusteredScan& scan, const PointMap& map, const ScanCo
 PointMap topViewOf(const ClusteredScan& scan);
 void drawTopView(const ClusteredScan& scan, const PointMap& map, const ScanColors& colors, const fs::path& png);
 
+/// Fills the cells of a map with the colours of their points. \param left of its first column; it is below the header
+void paintCells(Canvas& canvas, const PointMap& map, int left, const std::vector<std::uint32_t>& color_of_point);
+
 /// Writes the title at the left of the header and the meaning of the colours at its right.
 /// \param left, right ends of the header
 void drawHeader(Canvas& canvas, const ClusteredScan& scan, double left, double right);

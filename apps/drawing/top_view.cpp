@@ -65,7 +65,6 @@ class View {
   explicit View(const ClusteredScan& scan)
       : cloud_(*scan.cloud), is_camera_(seenByCamera(cloud_)), window_(windowAround(scan.returns.clustered)) {}
 
-  bool isCamera() const { return is_camera_; }
   const Window& window() const { return window_; }
   /// \return false outside of the picture
   bool find(std::size_t point, int& x, int& y) const {
@@ -169,12 +168,7 @@ void drawTopView(const ClusteredScan& scan, const PointMap& map, const ScanColor
   canvas.setColor(kLine);
   for (int i = 1; i <= kRings; ++i) canvas.circle(sensor_x, sensor_y, i * ring_pixels, 1);
 
-  canvas.beginPixels();
-  for (int row = 0; row < map.rows; ++row)
-    for (int column = 0; column < map.columns; ++column)
-      if (const std::int64_t point = map.points[map.cellAt(row, column)]; point != PointMap::kNoPoint)
-        canvas.fillPixels(column, kHeaderHeight + row, 1, 1, colors.of_point[static_cast<std::size_t>(point)]);
-  canvas.endPixels();
+  paintCells(canvas, map, 0, colors.of_point);
   drawBoxes(canvas, scan, view, colors);
 
   canvas.setColor(kText, 0.75);

@@ -6,13 +6,11 @@
 #include <array>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <new>
 #include <set>
 
 #include <boost/algorithm/string/case_conv.hpp>
 
-#include "io/cloud_ending.h"
 #include "io/formats.h"
 #include "io/output_file.h"
 #include "io/point_geometry.h"
@@ -37,17 +35,6 @@ const Format* formatOf(const std::string& ending) {
       std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& format) { return format.ending == ending; });
   return found == kFormats.end() ? nullptr : found;
 }
-
-}  // namespace
-
-std::string wholeContentOf(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream) fail(file, "cannot be read");
-  return content;
-}
-
-namespace {
 
 Cloud::Ptr readFile(const fs::path& file, const ReadOptions& options, ReadExtras& extras) {
   std::error_code error;

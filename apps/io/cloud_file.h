@@ -27,6 +27,9 @@ Cloud::Ptr readCloudFile(const fs::path& file, std::vector<std::uint32_t>* objec
 /// The field `label` (uint32) per point, as simulated and annotated scans have it; empty if there is none.
 std::vector<std::uint32_t> labelsIn(const pcl::PCLPointCloud2& fields);
 
+/// Whether a file's name has an ending of readCloudFile ().
+bool isCloudFile(const fs::path& file);
+
 /// The files in a folder that have an ending of readCloudFile, sorted by name, without results written there by
 /// lisco_cluster. Not recursive.
 /// \throws std::runtime_error if the folder cannot be read

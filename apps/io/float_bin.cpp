@@ -3,7 +3,6 @@
 //
 // Clouds of little-endian floats without a header, a fixed number of them a point, x y z first: KITTI has 4 (x y z
 // intensity, laser by laser), nuScenes 5 (x y z intensity ring, firing by firing), others more.
-#include <algorithm>
 #include <cstring>
 
 #include "io/float_table.h"

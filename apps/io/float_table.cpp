@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <set>
 #include <string>
 
 #include "io/point_geometry.h"
@@ -164,18 +163,9 @@ Cloud::Ptr cloudOf(const FloatTable& table, bool is_guessed, ReadExtras& extras)
   // The fields after the fourth have no usual names.
   for (std::size_t i = 0; i < table.fields; ++i) {
     constexpr const char* kNames[] = {"x", "y", "z", "intensity"};
-    pcl::PCLPointField field;
-    field.name = i < 4 ? kNames[i] : "field_" + std::to_string(i + 1);
-    field.offset = static_cast<std::uint32_t>(i * sizeof(float));
-    field.datatype = pcl::PCLPointField::FLOAT32;
-    field.count = 1;
-    extras.fields.fields.push_back(field);
+    addField(extras.fields, i < 4 ? kNames[i] : "field_" + std::to_string(i + 1), pcl::PCLPointField::FLOAT32);
   }
-  extras.fields.width = cloud->width;
-  extras.fields.height = 1;
-  extras.fields.point_step = static_cast<std::uint32_t>(table.fields * sizeof(float));
-  extras.fields.row_step = extras.fields.point_step * extras.fields.width;
-  extras.fields.data.resize(cloud->size() * extras.fields.point_step);
+  allocate(extras.fields, cloud->width, 1);
   std::memcpy(extras.fields.data.data(), table.values.data(), extras.fields.data.size());
 
   extras.note = std::to_string(table.fields) + " floats a point" + (is_guessed ? " (by their looks)" : "");

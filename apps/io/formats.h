@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include <pcl/PCLPointCloud2.h>
 
@@ -36,12 +35,12 @@ Cloud::Ptr readAuthorsCsv(const fs::path& file, const ReadOptions& options, Read
 
 Cloud::Ptr readNpy(const fs::path& file, const ReadOptions& options, ReadExtras& extras);
 
-/// Whether a message has a field `ring`.
-bool hasRing(const pcl::PCLPointCloud2& message);
+/// Appends a field of one value. \param datatype of pcl::PCLPointField
+void addField(pcl::PCLPointCloud2& cloud, const std::string& name, std::uint8_t datatype);
+/// Makes room for points of these fields.
+void allocate(pcl::PCLPointCloud2& cloud, std::uint32_t width, std::uint32_t height);
 /// The points of a cloud with their rings.
 pcl::PCLPointCloud2 messageOf(const Cloud& cloud, const std::vector<std::uint16_t>& rings);
-
-std::string wholeContentOf(const fs::path& file);
 
 // --- PCD and PLY, which PCL parses once their header has been checked ----------------------------------------------
 

@@ -12,6 +12,8 @@
 #include <pcl/conversions.h>
 #include <pcl/io/pcd_io.h>
 
+#include "io/formats.h"
+
 namespace lisco_apps {
 namespace {
 
@@ -41,20 +43,10 @@ pcl::PCLPointCloud2 withLabelField(const pcl::PCLPointCloud2& input) {
     output.point_step += bytesOf(field);
     output.fields.push_back(field);
   }
-  pcl::PCLPointField label;
-  label.name = "label";
-  label.offset = output.point_step;
-  label.datatype = pcl::PCLPointField::UINT32;
-  label.count = 1;
-  output.fields.push_back(label);
-  output.point_step += sizeof(std::uint32_t);
-
-  output.width = input.width;
-  output.height = input.height;
+  addField(output, "label", pcl::PCLPointField::UINT32);
   output.is_dense = input.is_dense;
-  output.row_step = output.point_step * output.width;
+  allocate(output, input.width, input.height);
   const std::size_t points = static_cast<std::size_t>(input.width) * input.height;
-  output.data.resize(points * output.point_step);
   for (std::size_t field = 0; field < kept.size(); ++field)
     for (std::size_t i = 0; i < points; ++i)
       std::memcpy(&output.data[i * output.point_step + output.fields[field].offset],

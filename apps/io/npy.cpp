@@ -3,12 +3,8 @@
 //
 // NumPy's arrays: a magic, a version, the length of a header, the header (a Python dictionary of descr, fortran_order
 // and shape), and the values. Clouds are N x 3 or more (x y z first), or rows x columns x 3 or more.
-#include <algorithm>
-#include <array>
 #include <cstring>
-#include <limits>
 #include <regex>
-#include <type_traits>
 
 #include <boost/endian/conversion.hpp>
 

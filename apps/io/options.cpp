@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "io/options.h"
 
-#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <stdexcept>

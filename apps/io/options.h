@@ -91,11 +91,13 @@ class PerInput {
     return otherwise_;
   }
 
-  /// The names given that are none of these.
-  std::vector<std::string> namesNotIn(const std::vector<std::string>& names) const {
+  /// The names given that are those of no input.
+  std::vector<std::string> namesNotIn(const std::vector<fs::path>& inputs) const {
     std::vector<std::string> unknown;
-    for (const auto& [name, value] : of_name_)
-      if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) unknown.push_back(name);
+    for (const auto& item : of_name_) {
+      const auto is_named = [&item](const fs::path& input) { return input.stem().string() == item.first; };
+      if (!item.first.empty() && std::none_of(inputs.begin(), inputs.end(), is_named)) unknown.push_back(item.first);
+    }
     return unknown;
   }
 

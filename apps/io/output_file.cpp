@@ -63,21 +63,45 @@ void checkMayWrite(const fs::path& file, const std::string& signature) {
     fail(file, "exists and was not written by this program; choose another name");
 }
 
-void writeOwnFile(const fs::path& file, const std::string& content, const std::string& signature) {
+OwnFile::OwnFile(const fs::path& file, const std::string& signature)
+    : file_(file), aside_(file.string() + kFilePartial + std::to_string(getpid())) {
   checkMayWrite(file, signature);
-  const fs::path aside = file.string() + kFilePartial + std::to_string(getpid());
   removeAbandoned(fs::absolute(file).parent_path(), file.filename().string() + kFilePartial);
   errno = 0;
-  std::ofstream stream(aside, std::ios::binary);
-  stream << content;
-  stream.close();
-  std::error_code error(stream ? 0 : errno, std::generic_category());
-  if (stream) fs::rename(aside, file, error);
-  if (!stream || error) {
-    std::error_code ignored;
-    fs::remove(aside, ignored);
-    fail(file, "cannot be written" + (error ? ": " + error.message() : ""));
-  }
+  stream_.open(aside_, std::ios::binary);
+  if (!stream_) refuse();
+}
+
+OwnFile::~OwnFile() {
+  if (aside_.empty()) return;
+  stream_.close();
+  std::error_code ignored;
+  fs::remove(aside_, ignored);
+}
+
+void OwnFile::refuse() const {
+  fail(file_, "cannot be written" + (errno != 0 ? ": " + std::generic_category().message(errno) : ""));
+}
+
+void OwnFile::write(std::string_view content) {
+  errno = 0;
+  if (!stream_.write(content.data(), static_cast<std::streamsize>(content.size()))) refuse();
+}
+
+void OwnFile::finish() {
+  errno = 0;
+  stream_.close();
+  if (!stream_) refuse();
+  std::error_code error;
+  fs::rename(aside_, file_, error);
+  if (error) fail(file_, "cannot be written: " + error.message());
+  aside_.clear();
+}
+
+void writeOwnFile(const fs::path& file, const std::string& content, const std::string& signature) {
+  OwnFile own(file, signature);
+  own.write(content);
+  own.finish();
 }
 
 void checkMayWriteInto(const fs::path& folder, const std::vector<std::string>& names) {

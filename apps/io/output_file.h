@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <fstream>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/text.h"
@@ -20,10 +22,29 @@ inline constexpr const char* kResultMarker = ".lisco_results";
 /// \throws std::runtime_error with one line: why not
 void checkMayWrite(const fs::path& file, const std::string& signature);
 
-/// Writes a file, all or nothing: beside its place first, then moved there. Checks as checkMayWrite () does. Makes no
-/// folders.
+/// Writes a file, all or nothing: beside its place first, moved there by finish (). Makes no folders. All functions
+/// throw std::runtime_error with one line if the file cannot be written.
+class OwnFile {
+ public:
+  /// Checks as checkMayWrite () does.
+  OwnFile(const fs::path& file, const std::string& signature);
+  /// Removes the file, if finish () has not been called.
+  ~OwnFile();
+  OwnFile(const OwnFile&) = delete;
+  OwnFile& operator=(const OwnFile&) = delete;
+
+  void write(std::string_view content);
+  void finish();
+
+ private:
+  [[noreturn]] void refuse() const;
+
+  fs::path file_, aside_;
+  std::ofstream stream_;
+};
+
+/// Writes an OwnFile at once.
 /// \param content must hold `signature` within its first kilobyte
-/// \throws std::runtime_error with one line: why it cannot be written
 void writeOwnFile(const fs::path& file, const std::string& content, const std::string& signature);
 
 /// Checks that files of these names may be written into a folder: these programs have written there before, or the

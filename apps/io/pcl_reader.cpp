@@ -15,6 +15,7 @@
 #include <sstream>
 
 #include <pcl/PCLPointCloud2.h>
+#include <pcl/common/io.h>
 #include <pcl/console/print.h>
 #include <pcl/io/file_io.h>
 
@@ -84,32 +85,30 @@ void copyField(const pcl::PCLPointCloud2& blob, const fs::path& file, std::size_
   }
 }
 
-/// Appends a field of one value.
-void addField(pcl::PCLPointCloud2& message, const char* name, std::uint8_t datatype, std::uint32_t bytes) {
-  pcl::PCLPointField field;
-  field.name = name;
-  field.offset = message.point_step;
-  field.datatype = datatype;
-  field.count = 1;
-  message.fields.push_back(field);
-  message.point_step += bytes;
-}
-
 }  // namespace
 
-bool hasRing(const pcl::PCLPointCloud2& message) {
-  return std::any_of(message.fields.begin(), message.fields.end(),
-                     [](const pcl::PCLPointField& field) { return field.name == "ring"; });
+void addField(pcl::PCLPointCloud2& cloud, const std::string& name, std::uint8_t datatype) {
+  pcl::PCLPointField field;
+  field.name = name;
+  field.offset = cloud.point_step;
+  field.datatype = datatype;
+  field.count = 1;
+  cloud.fields.push_back(field);
+  cloud.point_step += static_cast<std::uint32_t>(pcl::getFieldSize(datatype));
+}
+
+void allocate(pcl::PCLPointCloud2& cloud, std::uint32_t width, std::uint32_t height) {
+  cloud.width = width;
+  cloud.height = height;
+  cloud.row_step = cloud.point_step * width;
+  cloud.data.resize(std::size_t{cloud.point_step} * width * height);
 }
 
 pcl::PCLPointCloud2 messageOf(const Cloud& cloud, const std::vector<std::uint16_t>& rings) {
   pcl::PCLPointCloud2 message;
-  for (const char* const name : {"x", "y", "z"}) addField(message, name, pcl::PCLPointField::FLOAT32, sizeof(float));
-  addField(message, "ring", pcl::PCLPointField::UINT16, sizeof(std::uint16_t));
-  message.height = 1;
-  message.width = static_cast<std::uint32_t>(cloud.size());
-  message.row_step = message.point_step * message.width;
-  message.data.resize(cloud.size() * message.point_step);
+  for (const char* const name : {"x", "y", "z"}) addField(message, name, pcl::PCLPointField::FLOAT32);
+  addField(message, "ring", pcl::PCLPointField::UINT16);
+  allocate(message, static_cast<std::uint32_t>(cloud.size()), 1);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     std::uint8_t* const point = message.data.data() + i * message.point_step;
     std::memcpy(point, cloud[i].data, 3 * sizeof(float));
@@ -159,7 +158,7 @@ Cloud::Ptr readByPcl(pcl::FileReader& reader, const fs::path& file, const std::s
   cloud->sensor_origin_ = origin;
   cloud->sensor_orientation_ = orientation;
   for (std::size_t axis = 0; axis < 3; ++axis) copyField(blob, file, axis, *cloud);
-  if (blob.height == 1 && hasRing(blob)) extras.message = blob;
+  if (blob.height == 1 && pcl::getFieldIndex(blob, "ring") >= 0) extras.message = blob;
   extras.fields = std::move(blob);
   return cloud;
 }

@@ -3,7 +3,6 @@
 #include "io/result_files.h"
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 #include <stdexcept>
 #include <string>
@@ -13,7 +12,6 @@
 #include <pcl/common/io.h>
 #include <pcl/io/pcd_io.h>
 #include <boost/algorithm/string/join.hpp>
-#include <nlohmann/json.hpp>
 
 #include "drawing/scan_pictures.h"
 #include "io/cluster_json.h"
@@ -22,6 +20,8 @@
 #include "io/output_file.h"
 #include "io/text.h"
 #include "view/clustered_view.h"
+#include "view/page.h"
+#include "view/scan_encoder.h"
 
 namespace lisco_apps {
 namespace {
@@ -121,7 +121,7 @@ void writeResults(const ClusteredScan& scan, const fs::path& folder, const Resul
           if (kinds.labels) writeLabelledPcd(scan, aside / "labels.pcd");
           if (kinds.table) writeText(aside / "clusters.csv", tableOf(scan));
           if (kinds.pictures) drawPictures(scan, aside / "range_image.png", aside / "top_view.png");
-          if (kinds.view) writeView(scan, scan.returns.clustered, aside / "view.html");
+          if (kinds.view) writeText(aside / "view.html", viewPage(scan.name, {encodeViewScan(viewScanOf(scan))}));
           if (kinds.clouds) writeClusterClouds(scan, aside / kClouds);
           if (kinds.json) writeText(aside / "clusters.json", lineOf(jsonOf(scan)) + "\n");
           if (kinds.semantickitti) writeSemanticKitti(scan, aside / "labels.label");

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include <pcl/common/io.h>
 #include <pcl/io/lisco_point_cloud2.h>
 
 #include "io/formats.h"
@@ -28,7 +29,7 @@ void Scan::toInputOrder(std::vector<pcl::PointIndices>& clusters) const {
 }
 
 void arrange(const pcl::PCLPointCloud2& message, Scan& scan) {
-  if (message.height != 1 || !hasRing(message)) return;
+  if (message.height != 1 || pcl::getFieldIndex(message, "ring") < 0) return;
   auto arranged = std::make_shared<Cloud>();
   pcl::Indices point_of_cell;
   if (!pcl::organizeLiscoCloud(message, *arranged, point_of_cell) || arranged->height < 2) return;

@@ -5,9 +5,10 @@
 #include <cstdarg>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 namespace lisco_apps {
 
@@ -16,6 +17,14 @@ namespace fs = std::filesystem;
 /// Throws the one-line error of a file or folder.
 [[noreturn]] inline void fail(const fs::path& file, const std::string& what) {
   throw std::runtime_error(file.string() + ": " + what);
+}
+
+/// \throws std::runtime_error with one line if the file cannot be read
+inline std::string wholeContentOf(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream) fail(file, "cannot be read");
+  return content;
 }
 
 /// printf to a string.

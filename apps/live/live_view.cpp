@@ -7,8 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
+#include "io/cluster_json.h"
 #include "live/request.h"
 #include "view/page.h"
 #include "view/scan_encoder.h"
@@ -16,14 +15,9 @@
 namespace lisco_apps {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::chrono::milliseconds kSamplePeriod{250};
 constexpr std::size_t kMaxSamples = 240;  ///< a minute
-
-double thousandths(double value) {
-  return std::round(value * 1e3) / 1e3;
-}
+constexpr double kPerMillisecond = 1e3;
 
 }  // namespace
 
@@ -57,11 +51,7 @@ HttpServer::Frame LiveView::nextFrame() {
   if (!has_ended && (!has_news_ || start < next_due_)) return nullptr;
   has_news_ = false;
   is_last_made_ = has_ended;
-  const std::string text = status(has_ended);
-  std::string bytes;
-  for (unsigned shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<char>(text.size() >> shift));
-  bytes += text;
-  bytes += encodeViewScan(scene_.show(), PointOrder::kAsGiven);
+  std::string bytes = withSize(status(has_ended)) + encodeViewScan(scene_.show(), PointOrder::kAsGiven);
   ++frames_;
   const auto took = Clock::now() - start;
   next_due_ = start + std::max<Clock::duration>(2 * took, std::chrono::microseconds(1000000 / kMaxRate));
@@ -92,26 +82,27 @@ std::string LiveView::status(bool has_ended) const {
   const Report::Totals& totals = batch_.totals;
   Json samples = Json::array();
   for (const Sample& sample : samples_)
-    samples.push_back({thousandths(sample.worst_latency_ms), std::round(sample.columns_per_s), sample.lost});
-  return Json{
-      {"state", has_ended ? "ended" : "running"},
-      {"frame", frames_ + 1},
-      {"result", scene_.resultNumber()},
-      {"whole", scene_.isWhole()},
-      {"unit", unit_},
-      {"rotations", totals.turns},
-      {"columns", totals.columns},
-      {"returns", totals.returns},
-      {"ground", totals.ground},
-      {"clusters", totals.clusters},
-      {"in_clusters", totals.in_clusters},
-      {"packets", batch_.packets.data},
-      {"lost", batch_.packets.missing},
-      {"late", batch_.packets.late},
-      {"latency_ms",
-       {thousandths(batch_.latency_p50_ms), thousandths(batch_.latency_p99_ms), thousandths(batch_.latency_max_ms)}},
-      {"sample_s", std::chrono::duration<double>(kSamplePeriod).count()},
-      {"samples", std::move(samples)}}
+    samples.push_back(
+        {rounded(sample.worst_latency_ms, kPerMillisecond), std::round(sample.columns_per_s), sample.lost});
+  return Json{{"state", has_ended ? "ended" : "running"},
+              {"frame", frames_ + 1},
+              {"result", scene_.resultNumber()},
+              {"whole", scene_.isWhole()},
+              {"unit", unit_},
+              {"rotations", totals.turns},
+              {"columns", totals.columns},
+              {"returns", totals.returns},
+              {"ground", totals.ground},
+              {"clusters", totals.clusters},
+              {"in_clusters", totals.in_clusters},
+              {"packets", batch_.packets.data},
+              {"lost", batch_.packets.missing},
+              {"late", batch_.packets.late},
+              {"latency_ms",
+               {rounded(batch_.latency_p50_ms, kPerMillisecond), rounded(batch_.latency_p99_ms, kPerMillisecond),
+                rounded(batch_.latency_max_ms, kPerMillisecond)}},
+              {"sample_s", std::chrono::duration<double>(kSamplePeriod).count()},
+              {"samples", std::move(samples)}}
       .dump();
 }
 

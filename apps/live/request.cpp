@@ -2,19 +2,13 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "live/request.h"
 
-#include <algorithm>
-#include <cctype>
 #include <string>
+
+#include <boost/algorithm/string/case_conv.hpp>
+#include <boost/algorithm/string/predicate.hpp>
 
 namespace lisco_apps {
 namespace {
-
-std::string lowerCase(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
 
 /// A Host without its port.
 std::string_view nameOf(std::string_view host) {
@@ -22,20 +16,16 @@ std::string_view nameOf(std::string_view host) {
   return host.substr(0, host.find(':', bracket == std::string_view::npos ? 0 : bracket));
 }
 
-bool endsWith(std::string_view text, std::string_view end) {
-  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
-}
-
 /// Whether a name is this machine's for itself: localhost, [::1], or 127 and three numbers.
 bool isLoopbackName(const std::string& name) {
-  if (name == "localhost" || endsWith(name, ".localhost") || name == "[::1]") return true;
-  return name.rfind("127.", 0) == 0 && name.find_first_not_of("0123456789.") == std::string::npos;
+  if (name == "localhost" || boost::ends_with(name, ".localhost") || name == "[::1]") return true;
+  return boost::starts_with(name, "127.") && name.find_first_not_of("0123456789.") == std::string::npos;
 }
 
 }  // namespace
 
 Verdict verdictOn(const RequestHead& request, bool is_loopback) {
-  const std::string host = lowerCase(request.host);
+  const std::string host = boost::to_lower_copy(std::string(request.host));
   if (host.empty() || request.has_body)
     return request.method == "GET" ? Verdict::kBadRequest : Verdict::kMethodNotAllowed;
   if (is_loopback && !isLoopbackName(std::string(nameOf(host)))) return Verdict::kForbidden;
@@ -44,7 +34,7 @@ Verdict verdictOn(const RequestHead& request, bool is_loopback) {
   if (request.method != "GET") return Verdict::kMethodNotAllowed;
   if (path == "/") return Verdict::kPage;
   if (!request.upgrades) return Verdict::kUpgradeRequired;
-  const std::string origin = lowerCase(request.origin);
+  const std::string origin = boost::to_lower_copy(std::string(request.origin));
   const bool is_own = origin.empty() || origin == "http://" + host || origin == "https://" + host;
   return is_own ? Verdict::kLive : Verdict::kForbidden;
 }

@@ -6,19 +6,9 @@
 #include <utility>
 
 #include "io/text.h"
-#include "lisco/return.h"
 #include "lisco/sensor_hints.h"
 
 namespace lisco_apps {
-namespace {
-
-/// \param id see ViewCluster
-ViewCluster viewClusterOf(const lisco::ClusterFeatures& features, std::uint32_t id = 0) {
-  const lisco::OrientedBox& box = features.box;
-  return {features.size, box.center, box.length, box.width, box.height, box.yaw, features.nearest_range, id};
-}
-
-}  // namespace
 
 LiveScene::LiveScene(const StreamOptions& options, std::string title, std::size_t window)
     : options_(options), window_(window) {
@@ -63,9 +53,7 @@ void LiveScene::addColumn(const Cell* cells, const CellUse* uses, std::uint32_t 
   }
   returns_.resize(count);
   const auto index = static_cast<std::uint32_t>(next() - preview_from_);
-  for (std::uint32_t i = 0; i < count; ++i)
-    returns_[i] = uses[i] == CellUse::kClustered ? lisco::Return{cells[i].x, cells[i].y, cells[i].z, index + i}
-                                                 : lisco::kNoReturn;
+  for (std::uint32_t i = 0; i < count; ++i) returns_[i] = returnOf(cells[i], uses[i], index + i);
   preview_.addColumn(returns_.data(), count);
   held_.cells.insert(held_.cells.end(), cells, cells + count);
   held_.uses.insert(held_.uses.end(), uses, uses + count);
@@ -132,8 +120,7 @@ void LiveScene::beginPreview() {
     const std::size_t from = shown_from_ - first_;
     const auto cell_at = [&](std::size_t laser, std::size_t column) {
       const std::size_t at = from + column * lasers + laser;
-      const Cell& cell = held_.cells[at];
-      return held_.uses[at] == CellUse::kClustered ? lisco::Return{cell.x, cell.y, cell.z, 0} : lisco::kNoReturn;
+      return returnOf(held_.cells[at], held_.uses[at], 0);
     };
     const lisco::SensorHints estimated = lisco::estimateSensor(columns_.size(), lasers, {}, lisco::CellSource(cell_at));
     if (estimated.steps_per_turn > 0) parameters.sensor = estimated;

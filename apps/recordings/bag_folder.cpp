@@ -5,12 +5,10 @@
 // without it, of the numbers at the ends of their names.
 #include <algorithm>
 #include <fstream>
-#include <map>
 
 #include <boost/algorithm/string.hpp>
 
 #include "recordings/recording.h"
-#include "recordings/topic_table.h"
 
 namespace lisco_apps {
 namespace {
@@ -77,7 +75,7 @@ class BagFolder : public Recording {
         std::vector<std::size_t> topics;
         std::uint64_t messages = 0;
         for (const Topic& topic : split->topics()) {
-          topics.push_back(table_.indexOf({topic.name, topic.type, topic.serialization, 0}));
+          topics.push_back(indexOf({topic.name, topic.type, topic.serialization, 0}));
           topics_[topics.back()].messages += topic.messages;
           messages += topic.messages;
         }
@@ -95,8 +93,6 @@ class BagFolder : public Recording {
     if (splits_.empty()) throw std::runtime_error(first_error_);
     for (const Split& split : splits_) all_ += split.weight;
   }
-
-  void select(const std::vector<std::size_t>& topics) override { table_.select(topics); }
 
   bool next(Message& message) override {
     while (error_.empty() && at_ < splits_.size()) {
@@ -128,7 +124,7 @@ class BagFolder : public Recording {
     open_ = openRecording(split.file);
     std::vector<std::size_t> selected;
     for (std::size_t i = 0; i < split.topics.size(); ++i)
-      if (table_.isSelected(split.topics[i])) selected.push_back(i);
+      if (isSelected(split.topics[i])) selected.push_back(i);
     open_->select(selected);
   }
 
@@ -137,7 +133,6 @@ class BagFolder : public Recording {
   std::size_t at_ = 0;
   std::unique_ptr<Recording> open_;
   double done_ = 0, all_ = 0;  ///< weights
-  TopicTable table_{topics_};
 };
 
 }  // namespace

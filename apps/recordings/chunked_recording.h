@@ -8,15 +8,12 @@
 
 #include "recordings/bytes.h"
 #include "recordings/recording.h"
-#include "recordings/topic_table.h"
 
 namespace lisco_apps {
 
 /// A file of records, some of them chunks: compressed records.
 class ChunkedRecording : public Recording {
  public:
-  void select(const std::vector<std::size_t>& topics) override { table_.select(topics); }
-
   bool next(Message& message) override {
     while (error_.empty() && !ended_) {
       try {
@@ -59,7 +56,7 @@ class ChunkedRecording : public Recording {
   void scan() {
     topics_.clear();
     rewind();
-    start_ns_ = countMessages(*this, topics_);
+    countMessages();
   }
 
   BinaryFile file_;
@@ -68,7 +65,6 @@ class ChunkedRecording : public Recording {
   bool ended_ = false;
   std::vector<std::uint8_t> buffer_, decompressed_;
   std::optional<ByteCursor> chunk_;  ///< what is left of the current one
-  TopicTable table_{topics_};
 
  private:
   std::uint64_t first_record_;

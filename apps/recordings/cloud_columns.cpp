@@ -12,14 +12,13 @@ namespace lisco_apps {
 
 PacketSource::Arrival RawMessages::next(Packet& packet) {
   Message message;
-  while (reader_->next(message)) {
-    if (taken_++ % every_ != 0) continue;
-    packet = {message.data, message.size, message.time_ns / 1000};
-    ++packets_;
-    return Arrival::kPacket;
+  if (!reader_->next(message)) {
+    error_ = reader_->error();
+    return Arrival::kEnd;
   }
-  error_ = reader_->error();
-  return Arrival::kEnd;
+  packet = {message.data, message.size, message.time_ns / 1000};
+  ++packets_;
+  return Arrival::kPacket;
 }
 
 CloudColumns::CloudColumns(std::function<Scan(const Packet&)> read)

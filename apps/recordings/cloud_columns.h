@@ -19,16 +19,13 @@ namespace lisco_apps {
 /// The messages of a topic, each as one packet.
 class RawMessages : public PacketSource {
  public:
-  /// \param every takes the first of so many messages
-  RawMessages(std::unique_ptr<TopicReader> reader, unsigned every) : reader_(std::move(reader)), every_(every) {}
+  explicit RawMessages(std::unique_ptr<TopicReader> reader) : reader_(std::move(reader)) {}
 
   Arrival next(Packet& packet) override;
   double share() const override { return reader_->share(); }
 
  private:
   std::unique_ptr<TopicReader> reader_;
-  unsigned every_;
-  std::uint64_t taken_ = 0;
 };
 
 /// Takes clouds for packets, and gives the columns of each: a rotation begins with each cloud. The frame is the
@@ -45,13 +42,6 @@ class CloudColumns : public Decoder {
 
   /// The clouds that were left out since they are malformed, or since they have no rows: a line each; empty if none.
   std::vector<std::string> leftOut() const;
-
-  // Unknown: a message says nothing about the sensor.
-  double columnsPerTurn() const override { return 0; }
-  double turnUs() const override { return 0; }
-  double packetPeriodUs() const override { return 0; }
-  double gapUs() const override { return 0; }
-  double usualGapUs() const override { return 0; }
 
  private:
   std::function<Scan(const Packet&)> read_;

@@ -4,10 +4,8 @@
 // MCAP (https://mcap.dev/spec): a magic, then records of a byte of kind, their length (8 bytes) and content. Messages
 // stand among the records of the file, or in chunks, which are records of compressed records. A summary at the end,
 // which a truncated file lacks, repeats the channels and counts their messages.
-#include <algorithm>
 #include <array>
 #include <cstring>
-#include <limits>
 #include <map>
 
 #include "recordings/bytes.h"
@@ -106,7 +104,7 @@ class Mcap : public ChunkedRecording {
       content.bytes(8);  // time of publishing
       const auto found = channels_.find(channel);
       if (found == channels_.end()) throw Broken("a message of an unknown channel");
-      if (!table_.isSelected(found->second)) return false;
+      if (!isSelected(found->second)) return false;
       message = {found->second, static_cast<std::int64_t>(time), content.data(), content.left()};
       return true;
     }
@@ -125,7 +123,7 @@ class Mcap : public ChunkedRecording {
     const std::string encoding = content.text();
     const auto found = schemas_.find(schema);
     const std::string type = found == schemas_.end() ? "" : plainType(found->second);
-    channels_[id] = table_.indexOf({topic, type, serializationOf(encoding), 0});
+    channels_[id] = indexOf({topic, type, serializationOf(encoding), 0});
   }
 
   /// The topics by the summary. \return false if the file has none

@@ -2,16 +2,12 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "recordings/mcap_writer.h"
 
-#include <unistd.h>
 #include <zstd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <numeric>
-#include <system_error>
 #include <utility>
 
-#include "io/output_file.h"
 #include "lisco/version.h"
 #include "recordings/little_endian.h"
 
@@ -20,6 +16,7 @@ namespace {
 
 constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 constexpr const char* kCompression = "zstd";
+const std::string_view kMagic{reinterpret_cast<const char*>(mcap::kMagic.data()), mcap::kMagic.size()};
 
 std::string recordOf(mcap::Kind kind, const std::string& content) {
   std::string record;
@@ -64,42 +61,25 @@ std::uint64_t unsignedOf(std::int64_t time_ns) {
 }  // namespace
 
 McapWriter::McapWriter(const fs::path& file, const std::string& program, std::vector<Channel> channels)
-    : file_(file),
-      aside_(file.string() + ".partial" + std::to_string(getpid())),
+    : file_(file, "made by " + program + " "),
       channels_(std::move(channels)),
       entries_(channels_.size()),
       messages_(channels_.size(), 0) {
-  const std::string signature = "made by " + program + " ";
-  checkMayWrite(file_, signature);
-  errno = 0;
-  stream_.open(aside_, std::ios::binary);
-  if (!stream_) refuse();
-  stream_.write(reinterpret_cast<const char*>(mcap::kMagic.data()), mcap::kMagic.size());
-  written_ = mcap::kMagic.size();
+  put(kMagic);
   std::string header;
   putText(header, "ros2");
-  putText(header, signature + LISCO_VERSION);
+  putText(header, "made by " + program + " " + LISCO_VERSION);
   put(mcap::Kind::kHeader, header);
   chunk_ = descriptionsOf(channels_);
 }
 
-McapWriter::~McapWriter() {
-  if (aside_.empty()) return;
-  stream_.close();
-  std::error_code ignored;
-  fs::remove(aside_, ignored);
-}
-
-void McapWriter::refuse() const {
-  const std::error_code error(errno, std::generic_category());
-  fail(file_, "cannot be written" + (error ? ": " + error.message() : ""));
+void McapWriter::put(std::string_view bytes) {
+  file_.write(bytes);
+  written_ += bytes.size();
 }
 
 void McapWriter::put(mcap::Kind kind, const std::string& content) {
-  const std::string record = recordOf(kind, content);
-  errno = 0;
-  if (!stream_.write(record.data(), static_cast<std::streamsize>(record.size()))) refuse();
-  written_ += record.size();
+  put(recordOf(kind, content));
 }
 
 void McapWriter::write(std::size_t channel, std::int64_t time_ns, const std::string& data) {
@@ -169,10 +149,7 @@ void McapWriter::finish() {
   put(mcap::Kind::kDataEnd, std::string(sizeof(std::uint32_t), '\0'));  // no checksum
 
   const std::uint64_t summary_at = written_;
-  const std::string descriptions = descriptionsOf(channels_);
-  errno = 0;
-  if (!stream_.write(descriptions.data(), static_cast<std::streamsize>(descriptions.size()))) refuse();
-  written_ += descriptions.size();
+  put(descriptionsOf(channels_));
   std::string statistics;
   putNumber(statistics, std::accumulate(messages_.begin(), messages_.end(), std::uint64_t{0}));
   putNumber(statistics, static_cast<std::uint16_t>(channels_.size()));
@@ -213,14 +190,8 @@ void McapWriter::finish() {
   putNumber(footer, std::uint64_t{0});  // no offsets of the summary
   putNumber(footer, std::uint32_t{0});  // no checksum
   put(mcap::Kind::kFooter, footer);
-  errno = 0;
-  stream_.write(reinterpret_cast<const char*>(mcap::kMagic.data()), mcap::kMagic.size());
-  stream_.close();
-  if (!stream_) refuse();
-  std::error_code error;
-  fs::rename(aside_, file_, error);
-  if (error) fail(file_, "cannot be written: " + error.message());
-  aside_.clear();
+  put(kMagic);
+  file_.finish();
 }
 
 }  // namespace lisco_apps

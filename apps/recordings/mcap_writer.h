@@ -3,18 +3,17 @@
 #pragma once
 
 #include <cstdint>
-#include <fstream>
-#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "io/text.h"
+#include "io/output_file.h"
 #include "recordings/mcap_format.h"
 
 namespace lisco_apps {
 
 /// Writes an MCAP file of CDR messages (profile ros2, chunks compressed by zstd, with summary and index), all or
-/// nothing: beside its place first, moved there by finish ().
+/// nothing: see OwnFile.
 class McapWriter {
  public:
   struct Channel {
@@ -26,11 +25,6 @@ class McapWriter {
   /// \param program stands in the file, for checkMayWrite ()
   /// \throws std::runtime_error with one line if the file cannot be written, or is another program's
   McapWriter(const fs::path& file, const std::string& program, std::vector<Channel> channels);
-  /// Removes the file, if finish () has not been called.
-  ~McapWriter();
-  McapWriter(const McapWriter&) = delete;
-  McapWriter& operator=(const McapWriter&) = delete;
-
   /// \param channel index in the channels
   /// \throws std::runtime_error with one line if the file cannot be written
   void write(std::size_t channel, std::int64_t time_ns, const std::string& data);
@@ -49,12 +43,11 @@ class McapWriter {
     std::uint64_t stored, content;        ///< bytes with and without compression
   };
 
+  void put(std::string_view bytes);
   void put(mcap::Kind kind, const std::string& content);
   void putChunk();
-  [[noreturn]] void refuse() const;
 
-  fs::path file_, aside_;
-  std::ofstream stream_;
+  OwnFile file_;
   std::uint64_t written_ = 0;
   std::vector<Channel> channels_;
   std::string chunk_;

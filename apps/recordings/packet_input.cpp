@@ -100,13 +100,6 @@ MetadataBeside metadataBeside(const fs::path& input) {
   return beside;
 }
 
-/// " (beside it are A, B)"; empty if there are none.
-std::string listOf(const std::vector<fs::path>& files) {
-  std::vector<std::string> names;
-  for (const fs::path& file : files) names.push_back(file.filename().string());
-  return names.empty() ? "" : " (beside it are " + boost::join(names, ", ") + ")";
-}
-
 bool isPipe(const fs::path& input) {
   std::error_code unknown;
   const fs::file_type type = fs::status(input, unknown).type();
@@ -175,6 +168,12 @@ bool isCapture(const fs::path& input) {
   return ending == ".pcap" || ending == ".pcapng" || ending == ".cap";
 }
 
+std::string listOf(const std::vector<fs::path>& files) {
+  std::vector<std::string> names;
+  for (const fs::path& file : files) names.push_back(file.filename().string());
+  return boost::join(names, ", ");
+}
+
 PacketInput openPackets(const fs::path& input, const RecordingOptions& options, DecoderOptions decoder,
                         std::optional<std::uint16_t> port, const std::function<bool()>& is_interrupted) {
   PacketInput packets;
@@ -212,8 +211,11 @@ PacketInput openPackets(const fs::path& input, const RecordingOptions& options, 
     findMetadata(input, decoder, packets.notes, open_again);
   if (decoder.sensor.empty())
     findSensor(input, decoder, packets.notes, open_again, options.areGiven() || port.has_value());
-  if (decoder.sensor == kOuster && decoder.metadata.empty() && decoder.metadata_json.empty())
-    fail(input, "needs --metadata FILE, the JSON file of the Ouster sensor" + listOf(metadataBeside(input).all));
+  if (decoder.sensor == kOuster && decoder.metadata.empty() && decoder.metadata_json.empty()) {
+    const std::string beside = listOf(metadataBeside(input).all);
+    fail(input, "needs --metadata FILE, the JSON file of the Ouster sensor" +
+                    (beside.empty() ? "" : " (beside it are " + beside + ")"));
+  }
   findCalibration(input, decoder, packets.notes);
   if (decoder.sensor == "hdl64e" && decoder.calibration.empty())
     fail(input,

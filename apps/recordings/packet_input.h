@@ -18,6 +18,9 @@ namespace lisco_apps {
 /// Whether an input is a capture of packets (pcap, pcapng), by its ending.
 bool isCapture(const fs::path& input);
 
+/// "A, B": files without their folders.
+std::string listOf(const std::vector<fs::path>& files);
+
 /// Packets on file and the sensor they are from.
 struct PacketInput {
   std::unique_ptr<PacketSource> source;

@@ -2,8 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <cstdint>
-
 #include <pcl/PCLPointCloud2.h>
 
 #include "io/scan_file.h"

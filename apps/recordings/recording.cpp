@@ -9,8 +9,6 @@
 
 #include <boost/algorithm/string/case_conv.hpp>
 
-#include "recordings/topic_table.h"
-
 namespace lisco_apps {
 namespace {
 
@@ -76,7 +74,7 @@ Serialization serializationOf(const std::string& encoding) {
   return encoding == "ros1" || encoding == "rosmsg_v2" ? Serialization::kRos1 : Serialization::kOther;
 }
 
-std::size_t TopicTable::indexOf(const Topic& topic) {
+std::size_t Recording::indexOf(const Topic& topic) {
   const auto found = std::find_if(topics_.begin(), topics_.end(), [&](const Topic& known) {
     return known.name == topic.name && known.type == topic.type && known.serialization == topic.serialization;
   });
@@ -85,26 +83,20 @@ std::size_t TopicTable::indexOf(const Topic& topic) {
   return topics_.size() - 1;
 }
 
-void TopicTable::select(const std::vector<std::size_t>& topics) {
-  all_ = false;
-  selected_ = topics;
+bool Recording::isSelected(std::size_t topic) const {
+  return !selected_ || std::find(selected_->begin(), selected_->end(), topic) != selected_->end();
 }
 
-bool TopicTable::isSelected(std::size_t topic) const {
-  return all_ || std::find(selected_.begin(), selected_.end(), topic) != selected_.end();
-}
-
-std::int64_t countMessages(Recording& recording, std::vector<Topic>& topics) {
+void Recording::countMessages() {
   Message message;
-  std::int64_t start = 0;
+  start_ns_ = 0;
   bool is_first = true;
-  while (recording.next(message)) {
-    ++topics[message.topic].messages;
-    start = is_first ? message.time_ns : std::min(start, message.time_ns);
+  while (next(message)) {
+    ++topics_[message.topic].messages;
+    start_ns_ = is_first ? message.time_ns : std::min(start_ns_, message.time_ns);
     is_first = false;
   }
-  if (is_first && !recording.error().empty()) throw std::runtime_error(recording.error());
-  return start;
+  if (is_first && !error_.empty()) throw std::runtime_error(error_);
 }
 
 }  // namespace lisco_apps

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,7 +47,7 @@ class Recording {
   std::int64_t startNs() const { return start_ns_; }
 
   /// Restricts next () to these topics, indices in topics ().
-  virtual void select(const std::vector<std::size_t>& topics) = 0;
+  virtual void select(const std::vector<std::size_t>& topics) { selected_ = topics; }
 
   /// Reads the next message of the selected topics; of all before select (). \return false at the end
   virtual bool next(Message& message) = 0;
@@ -58,9 +59,19 @@ class Recording {
   const std::string& error() const { return error_; }
 
  protected:
+  /// The index of a topic, by its name, type and serialization; adds it if it is new.
+  std::size_t indexOf(const Topic& topic);
+  bool isSelected(std::size_t topic) const;
+  /// Counts the messages of a recording without an index, by reading it to its end, and finds its start.
+  /// \throws std::runtime_error with one line if it breaks off before the first one
+  void countMessages();
+
   std::vector<Topic> topics_;
   std::int64_t start_ns_ = 0;
   std::string error_;
+
+ private:
+  std::optional<std::vector<std::size_t>> selected_;  ///< nullopt: all
 };
 
 /// Whether openRecording () is the reader for an input: a file ending in .db3, .mcap or .bag, or a folder with

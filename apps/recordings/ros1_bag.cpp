@@ -127,7 +127,7 @@ class Ros1Bag : public ChunkedRecording {
     } else if (op == Op::kMessage) {
       const auto found = connections_.find(header.number<std::uint32_t>("conn"));
       if (found == connections_.end()) throw Broken("a message of an unknown connection");
-      if (!table_.isSelected(found->second)) return false;
+      if (!isSelected(found->second)) return false;
       message = {found->second, header.timeNs("time"), data.data(), data.left()};
       return true;
     }
@@ -137,7 +137,7 @@ class Ros1Bag : public ChunkedRecording {
   void addConnection(const Header& header, ByteCursor data) {
     const Header about(data);
     connections_[header.number<std::uint32_t>("conn")] =
-        table_.indexOf({header.text("topic"), about.text("type"), Serialization::kRos1, 0});
+        indexOf({header.text("topic"), about.text("type"), Serialization::kRos1, 0});
   }
 
   /// The topics by the index. \return false if the bag has none

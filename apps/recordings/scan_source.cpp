@@ -3,17 +3,16 @@
 #include "recordings/scan_source.h"
 
 #include <algorithm>
+#include <deque>
 #include <stdexcept>
 #include <utility>
-
-#include <boost/algorithm/string/join.hpp>
 
 #include "io/options.h"
 #include "recordings/bytes.h"
 #include "recordings/packet_input.h"
 #include "recordings/point_cloud2.h"
-#include "recordings/rotations.h"
 #include "recordings/topic_choice.h"
+#include "sensors/rotation_cutter.h"
 
 namespace lisco_apps {
 namespace {
@@ -25,12 +24,6 @@ std::vector<fs::path> recordingsIn(const fs::path& folder) {
     if (isRecording(entry->path()) || isCapture(entry->path())) found.push_back(entry->path());
   std::sort(found.begin(), found.end());
   return found;
-}
-
-std::string namesOfAll(const std::vector<fs::path>& files) {
-  std::vector<std::string> names;
-  for (const fs::path& file : files) names.push_back(file.filename().string());
-  return boost::algorithm::join(names, ", ");
 }
 
 /// An item that reports a failure.
@@ -69,75 +62,119 @@ class ScanSource::Sequence {
 /// Each message of a topic of clouds.
 class ScanSource::Messages : public Sequence {
  public:
-  Messages(fs::path file, std::unique_ptr<TopicReader> reader, unsigned every)
-      : file_(std::move(file)), reader_(std::move(reader)), every_(every) {}
+  Messages(fs::path file, std::unique_ptr<TopicReader> reader) : file_(std::move(file)), reader_(std::move(reader)) {}
 
   std::optional<ScanItem> next() override {
+    const Topic& topic = reader_->topic();
     Message message;
-    while (reader_->next(message)) {
-      if (taken_++ % every_ != 0) continue;
-      ScanItem item = itemOf(file_, reader_->number(), message.time_ns);
-      const std::string name =
-          file_.string() +
-          formatted(": message %llu of %s is malformed: ", static_cast<unsigned long long>(reader_->number()),
-                    reader_->topic().name.c_str());
-      try {
-        auto cloud = std::make_shared<pcl::PCLPointCloud2>(pointCloud2In(message, reader_->topic()));
-        item.read = [cloud = std::move(cloud), name] {
-          try {
-            return scanOf(*cloud);
-          } catch (const Broken& why) {
-            throw std::runtime_error(name + why.what());
-          }
-        };
-      } catch (const Broken& why) {
-        return failureOf(file_, name + why.what());
-      }
-      return item;
+    if (!reader_->next(message)) {
+      if (!reader_->error().empty()) throw std::runtime_error(reader_->error());
+      if (!has_begun_) fail(file_, "topic " + topic.name + " has no message, or none between --from and --to");
+      return std::nullopt;
     }
-    if (!reader_->error().empty()) throw std::runtime_error(reader_->error());
-    if (taken_ == 0) fail(file_, "topic " + reader_->topic().name + " has no message, or none between --from and --to");
-    return std::nullopt;
+    has_begun_ = true;
+    ScanItem item = itemOf(file_, reader_->number(), message.time_ns);
+    const std::string malformed =
+        file_.string() +
+        formatted(": message %llu of %s is malformed: ", static_cast<unsigned long long>(reader_->number()),
+                  topic.name.c_str());
+    try {
+      const auto cloud = std::make_shared<const pcl::PCLPointCloud2>(pointCloud2In(message, topic));
+      item.read = [cloud, malformed] {
+        try {
+          return scanOf(*cloud);
+        } catch (const Broken& why) {
+          throw std::runtime_error(malformed + why.what());
+        }
+      };
+    } catch (const Broken& why) {
+      return failureOf(file_, malformed + why.what());
+    }
+    return item;
   }
   double share() const override { return reader_->share(); }
 
  private:
   fs::path file_;
   std::unique_ptr<TopicReader> reader_;
-  unsigned every_;
-  std::uint64_t taken_ = 0;
+  bool has_begun_ = false;
 };
 
-/// Each rotation of a sensor's packets.
+/// Each rotation of a sensor's packets, cut as lisco_stream does it: a row per laser, from top to bottom, a column per
+/// firing. Holds one or two rotations at a time.
 class ScanSource::Turns : public Sequence {
  public:
   Turns(fs::path file, PacketInput input, unsigned every)
-      : file_(std::move(file)), rotations_(std::move(input)), every_(every) {}
+      : file_(std::move(file)), input_(std::move(input)), every_(every), cutter_(input_.decoder->rotationStart()) {}
 
   std::optional<ScanItem> next() override {
-    while (std::optional<Rotation> rotation = rotations_.next()) {
-      if (taken_++ % every_ != 0) continue;
-      ScanItem item = itemOf(file_, rotation->number, 1000 * rotation->time_us);
-      item.of_packets = true;
-      item.read = [cloud = rotation->cloud] {
-        Scan scan;
-        scan.cloud = cloud;
-        return scan;
-      };
-      return item;
+    const Decoder::Visitor visit = [this](const Column& column) { add(column); };
+    Packet packet;
+    while (ended_.empty() && !is_over_) {
+      const PacketSource::Arrival arrival = input_.source->next(packet);
+      if (arrival == PacketSource::Arrival::kPacket) {
+        packet_time_us_ = packet.time_us;
+        input_.decoder->decode(packet, visit);
+      } else if (arrival == PacketSource::Arrival::kEnd) {
+        is_over_ = true;
+        input_.decoder->flush(visit);
+        end();
+      }
     }
-    const PacketInput& input = rotations_.input();
-    if (!input.source->error().empty()) throw std::runtime_error(input.source->error());
-    if (taken_ == 0) fail(file_, "holds no data packet of the sensor (" + input.decoder->name() + ")");
-    return std::nullopt;
+    if (ended_.empty()) {
+      if (!input_.source->error().empty()) throw std::runtime_error(input_.source->error());
+      if (rotations_ == 0) fail(file_, "holds no data packet of the sensor (" + input_.decoder->name() + ")");
+      return std::nullopt;
+    }
+    ScanItem item = std::move(ended_.front());
+    ended_.pop_front();
+    return item;
   }
-  double share() const override { return rotations_.input().source->share(); }
+  double share() const override { return input_.source->share(); }
 
  private:
+  void add(const Column& column) {
+    const bool is_full = rows_ != 0 && cells_.size() / rows_ == kMaxColumns;
+    if (cutter_.startsRotation(column.azimuth, column.after_break) || is_full || column.cells.size() != rows_) {
+      end();
+      rows_ = column.cells.size();
+    }
+    cells_.insert(cells_.end(), column.cells.begin(), column.cells.end());
+    time_us_ = packet_time_us_;
+  }
+
+  void end() {
+    if (cells_.empty()) return;
+    if (rotations_++ % every_ == 0) ended_.push_back(rotation());
+    cells_.clear();
+  }
+
+  ScanItem rotation() const {
+    const std::size_t columns = cells_.size() / rows_;
+    Scan scan;
+    scan.cloud = std::make_shared<Cloud>(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows_));
+    scan.cloud->is_dense = false;
+    for (std::size_t column = 0; column < columns; ++column)
+      for (std::size_t row = 0; row < rows_; ++row) {
+        const Cell& cell = cells_[column * rows_ + row];
+        (*scan.cloud)[row * columns + column] = pcl::PointXYZ(cell.x, cell.y, cell.z);
+      }
+    ScanItem item = itemOf(file_, rotations_, 1000 * time_us_);
+    item.of_packets = true;
+    item.read = [scan = std::move(scan)] { return scan; };
+    return item;
+  }
+
   fs::path file_;
-  Rotations rotations_;
+  PacketInput input_;
   unsigned every_;
-  std::uint64_t taken_ = 0;
+  RotationCutter cutter_;
+  bool is_over_ = false;
+  std::uint64_t rotations_ = 0;  ///< that have ended
+  std::vector<Cell> cells_;      ///< of the rotation that has begun, column by column
+  std::size_t rows_ = 0;
+  std::int64_t time_us_ = 0, packet_time_us_ = 0;  ///< of the last column, and of the last packet
+  std::deque<ScanItem> ended_;
 };
 
 void addFileOptions(boost::program_options::options_description& shown, ReadOptions& files) {
@@ -175,7 +212,7 @@ ScanSource::ScanSource(const std::vector<std::string>& inputs, const InputOption
     std::vector<std::string> failures;
     const std::vector<fs::path> found = expandInputs({input}, failures);
     if (found.empty() && !recordings.empty())
-      failures = {input + ": holds no scans, but recordings, to be given by name: " + namesOfAll(recordings)};
+      failures = {input + ": holds no scans, but recordings, to be given by name: " + listOf(recordings)};
     failures_.insert(failures_.end(), failures.begin(), failures.end());
     files_.insert(files_.end(), found.begin(), found.end());
   }
@@ -196,8 +233,8 @@ std::unique_ptr<ScanSource::Sequence> ScanSource::open(const fs::path& file) {
     const std::size_t topic = chooseTopic(*recording, file, part.topic, !options_.decoder.sensor.empty());
     if (kindOf(recording->topics()[topic]) == TopicKind::kClouds) {
       note_(file.string() + ": topic " + recording->topics()[topic].name);
-      return std::make_unique<Messages>(file, std::make_unique<TopicReader>(std::move(recording), topic, part.span),
-                                        part.every);
+      return std::make_unique<Messages>(
+          file, std::make_unique<TopicReader>(std::move(recording), topic, part.span, part.every));
     }
   }
   PacketInput packets = openPackets(file, part, options_.decoder, options_.port, is_interrupted_);

@@ -15,7 +15,6 @@
 #include "recordings/compression.h"
 #include "recordings/recording.h"
 #include "recordings/sqlite_rows.h"
-#include "recordings/topic_table.h"
 
 namespace lisco_apps {
 namespace {
@@ -98,7 +97,7 @@ class SqliteBag : public Recording {
   }
 
   void select(const std::vector<std::size_t>& topics) override {
-    table_.select(topics);
+    Recording::select(topics);
     query_.reset();
   }
 
@@ -110,7 +109,7 @@ class SqliteBag : public Recording {
       while (query_->next()) {
         const auto topic = topic_of_id_.find(query_->number(0));
         ++rows_;
-        if (topic == topic_of_id_.end() || !table_.isSelected(topic->second)) continue;
+        if (topic == topic_of_id_.end() || !isSelected(topic->second)) continue;
         message = {topic->second, query_->number(1), query_->blob(2), query_->size(2)};
         decompressIfNeeded(message);
         return true;
@@ -149,7 +148,7 @@ class SqliteBag : public Recording {
           found == topic_of_id_.end())
         continue;
       ++rows_;
-      if (!table_.isSelected(found->second)) continue;
+      if (!isSelected(found->second)) continue;
       message = {found->second, time.number, data.data, data.size};
       try {
         decompressIfNeeded(message);
@@ -216,7 +215,7 @@ class SqliteBag : public Recording {
       } catch (const Broken& why) {
         fail(file_, std::string("is no ROS 2 bag: ") + why.what());
       }
-      start_ns_ = countMessages(*this, topics_);
+      countMessages();
       if (rows_of_pages_) rows_of_pages_.emplace(bytes_);
       ended_ = false;
       rows_ = 0;
@@ -231,7 +230,7 @@ class SqliteBag : public Recording {
     Query topics(database_.get(), "SELECT id, name, type, serialization_format FROM topics ORDER BY id");
     while (topics.next())
       topic_of_id_[topics.number(0)] =
-          table_.indexOf({topics.text(1), plainType(topics.text(2)), serializationOf(topics.text(3)), 0});
+          indexOf({topics.text(1), plainType(topics.text(2)), serializationOf(topics.text(3)), 0});
   }
 
   void countTopics() {
@@ -254,7 +253,7 @@ class SqliteBag : public Recording {
     std::string ids;
     selected_rows_ = 0;
     for (const auto& [id, topic] : topic_of_id_) {
-      if (!table_.isSelected(topic)) continue;
+      if (!isSelected(topic)) continue;
       ids += (ids.empty() ? "" : ",") + std::to_string(id);
       selected_rows_ += topics_[topic].messages;
     }
@@ -275,7 +274,6 @@ class SqliteBag : public Recording {
   std::array<std::size_t, 3> columns_{};     ///< of the topic, the time and the data in a row
   std::vector<SqliteValue> row_;
   std::vector<std::uint8_t> decompressed_;
-  TopicTable table_{topics_};
 };
 
 }  // namespace

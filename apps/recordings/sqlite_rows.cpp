@@ -99,8 +99,7 @@ bool SqliteRows::next(std::vector<SqliteValue>& row) {
     try {
       readCell(at, row);
       return true;
-    } catch (const Broken&) {
-      ++left_out_;
+    } catch (const Broken&) {  // malformed, or beyond the end of the file
     }
   }
   return false;

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "recordings/bytes.h"
@@ -34,8 +33,6 @@ class SqliteRows {
   /// Reads the next row that is whole. \return false at the end of the file
   bool next(std::vector<SqliteValue>& row);
 
-  /// Rows that were left out, since they are malformed or reach beyond the end of the file.
-  std::uint64_t leftOut() const { return left_out_; }
   /// Bytes read.
   std::uint64_t at() const { return page_ * page_bytes_; }
 
@@ -51,7 +48,6 @@ class SqliteRows {
   std::vector<std::uint8_t> leaf_;  ///< the current page
   std::vector<std::size_t> cells_;  ///< of the page, places that are left, in reverse
   std::vector<std::uint8_t> payload_;
-  std::uint64_t left_out_ = 0;
 };
 
 }  // namespace lisco_apps

@@ -22,8 +22,9 @@ struct TimeSpan {
 /// The messages of one topic, within a time span.
 class TopicReader {
  public:
-  TopicReader(std::unique_ptr<Recording> recording, std::size_t topic, const TimeSpan& span = {})
-      : recording_(std::move(recording)), topic_(topic), span_(span) {
+  /// \param every gives the first of so many messages
+  TopicReader(std::unique_ptr<Recording> recording, std::size_t topic, const TimeSpan& span = {}, unsigned every = 1)
+      : recording_(std::move(recording)), topic_(topic), span_(span), every_(every) {
     recording_->select({topic_});
   }
 
@@ -38,7 +39,7 @@ class TopicReader {
     while (recording_->next(message)) {
       ++number_;
       const double seconds = 1e-9 * static_cast<double>(message.time_ns - recording_->startNs());
-      if (span_.holds(seconds)) return true;
+      if (span_.holds(seconds) && in_span_++ % every_ == 0) return true;
       if (seconds > span_.to + kMaxDisorder) return false;
     }
     return false;
@@ -50,7 +51,8 @@ class TopicReader {
   std::unique_ptr<Recording> recording_;
   std::size_t topic_;
   TimeSpan span_;
-  std::uint64_t number_ = 0;
+  unsigned every_;
+  std::uint64_t number_ = 0, in_span_ = 0;  ///< messages so far
 };
 
 }  // namespace lisco_apps

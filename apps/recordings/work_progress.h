@@ -8,7 +8,6 @@
 
 #include "io/terminal_line.h"
 #include "io/text.h"
-#include "io/time_left.h"
 
 namespace lisco_apps {
 

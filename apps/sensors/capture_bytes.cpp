@@ -27,7 +27,7 @@ Bytes captureRecord(const Frame& frame, bool nanoseconds) {
 Bytes broadcastFrame(const Bytes& payload, std::uint16_t port) {
   constexpr std::size_t kEthernet = 14, kIp = 20, kUdp = 8;
   Bytes frame(6, 0xFF);
-  for (const unsigned byte : {0x60U, 0x76U, 0x88U, 0U, 0U, 1U}) frame.push_back(static_cast<std::uint8_t>(byte));
+  frame.insert(frame.end(), {0x60, 0x76, 0x88, 0, 0, 1});
   addBig(frame, 0x0800);
   addBig(frame, 0x4500);
   addBig(frame, kIp + kUdp + payload.size());
@@ -35,8 +35,7 @@ Bytes broadcastFrame(const Bytes& payload, std::uint16_t port) {
   addBig(frame, 0x4000);  // not to be fragmented
   addBig(frame, 0x4011);  // 64 hops, UDP
   addBig(frame, 0);       // the checksum
-  for (const unsigned byte : {192U, 168U, 1U, 201U, 255U, 255U, 255U, 255U})
-    frame.push_back(static_cast<std::uint8_t>(byte));
+  frame.insert(frame.end(), {192, 168, 1, 201, 255, 255, 255, 255});
   std::size_t sum = 0;
   for (std::size_t i = kEthernet; i < kEthernet + kIp; i += 2)
     sum += static_cast<std::size_t>(frame[i]) << 8U | frame[i + 1];

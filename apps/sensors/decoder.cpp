@@ -43,12 +43,11 @@ std::vector<std::string> sensorNames() {
 
 std::vector<std::string> sensorsThatSend(const Packet& packet) {
   std::vector<std::string> sensors;
-  const auto try_one = [&](const std::string& name, Decoder&& decoder) {
-    if (decoder.decode(packet, [](const Column&) {}) == Decoder::Kind::kData) sensors.push_back(name);
-  };
   for (const std::string& name : velodyneModelNames())
     if (VelodyneDecoder(velodynePackets(name)).isData(packet)) sensors.push_back(name);
-  for (const std::string& name : hesaiModelNames()) try_one(name, HesaiDecoder(hesaiLayout(name)));
+  for (const std::string& name : hesaiModelNames())
+    if (HesaiDecoder(hesaiLayout(name)).decode(packet, [](const Column&) {}) == Decoder::Kind::kData)
+      sensors.push_back(name);
   if (OusterDecoder::isFromAny(packet)) sensors.emplace_back(kOuster);
   return sensors;
 }

@@ -102,16 +102,16 @@ class Decoder {
 
   /// The azimuth at which the sensor's own frames begin, degrees clockwise from +x; nullopt if it has none.
   virtual std::optional<double> rotationStart() const { return std::nullopt; }
-  /// Columns and microseconds of a full turn; 0 if unknown, or if the sensor does not turn.
-  virtual double columnsPerTurn() const = 0;
-  virtual double turnUs() const = 0;
+  // Times are 0 if they are unknown, as those of clouds are.
+  /// Columns and microseconds of a full turn; 0 if the sensor does not turn, too.
+  virtual double columnsPerTurn() const { return 0; }
+  virtual double turnUs() const { return 0; }
   /// Microseconds from packet to packet, of this sensor in the mode of the last packet.
-  virtual double packetPeriodUs() const = 0;
-  /// Microseconds between the last two packets that were not late; 0 if unknown.
-  virtual double gapUs() const = 0;
-  /// Median time between the first packets, microseconds; 0 before it is known. Far from packetPeriodUs (), the packets
-  /// are another sensor's.
-  virtual double usualGapUs() const = 0;
+  virtual double packetPeriodUs() const { return 0; }
+  /// Microseconds between the last two packets that were not late.
+  virtual double gapUs() const { return 0; }
+  /// Median time between the first packets, microseconds. Far from packetPeriodUs (), the packets are another sensor's.
+  virtual double usualGapUs() const { return 0; }
 
  protected:
   Decoder(std::string name, std::vector<double> elevations, double stagger)

@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "hesai_decoder.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <boost/endian/conversion.hpp>

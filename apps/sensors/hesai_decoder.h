@@ -33,7 +33,6 @@ class HesaiDecoder : public Decoder {
   double turnUs() const override { return columnsPerTurn() * model_.firing_period_us; }
   double packetPeriodUs() const override;
   double gapUs() const override { return gap_us_; }
-  double usualGapUs() const override { return 0; }
 
  private:
   struct Row {

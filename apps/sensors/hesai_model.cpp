@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "hesai_model.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -10,7 +9,6 @@
 #include <stdexcept>
 #include <system_error>
 
-#include <boost/algorithm/string/join.hpp>
 #include <boost/algorithm/string/split.hpp>
 #include <boost/algorithm/string/trim.hpp>
 #include <boost/lexical_cast/try_lexical_convert.hpp>
@@ -72,32 +70,22 @@ constexpr std::array<double, 6> kPandar64Offsets{1.042, 3.125, 5.208, -5.208, -3
 template <std::size_t kLasers, std::size_t kTurns>
 std::vector<Laser> lasersInTurns(const std::array<double, kLasers>& elevations,
                                  const std::array<double, kTurns>& offsets, std::size_t first, std::size_t count) {
-  std::vector<Laser> lasers(kLasers);
-  for (std::size_t i = 0; i < kLasers; ++i) {
-    lasers[i].number = i;
-    lasers[i].elevation = elevations[i];
-    lasers[i].azimuth_offset = i >= first && i < first + count ? offsets[(i - first) % kTurns] : kStraight;
-  }
+  std::vector<Laser> lasers;
+  for (std::size_t i = 0; i < kLasers; ++i)
+    lasers.push_back({i, elevations[i], i >= first && i < first + count ? offsets[(i - first) % kTurns] : kStraight});
   return lasers;
 }
 
 std::vector<Laser> evenLasers(std::size_t count, double top, double step) {
-  std::vector<Laser> lasers(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    lasers[i].number = i;
-    lasers[i].elevation = top - step * static_cast<double>(i);
-  }
+  std::vector<Laser> lasers;
+  for (std::size_t i = 0; i < count; ++i) lasers.push_back({i, top - step * static_cast<double>(i)});
   return lasers;
 }
 
 template <std::size_t kCount>
 std::vector<Laser> lasersAt(const std::array<double, kCount>& elevations, const std::array<double, kCount>& offsets) {
-  std::vector<Laser> lasers(kCount);
-  for (std::size_t i = 0; i < kCount; ++i) {
-    lasers[i].number = i;
-    lasers[i].elevation = elevations[i];
-    lasers[i].azimuth_offset = offsets[i];
-  }
+  std::vector<Laser> lasers;
+  for (std::size_t i = 0; i < kCount; ++i) lasers.push_back({i, elevations[i], offsets[i]});
   return lasers;
 }
 
@@ -105,11 +93,8 @@ std::vector<Laser> qt128Lasers() {
   constexpr std::size_t kLasers = 128;
   std::vector<Laser> lasers = lasersAt(kQt128Elevations, kQt128Offsets);
   for (std::size_t i = lasers.size(); i < kLasers; ++i) {
-    Laser laser = lasers[kLasers - 1 - i];
-    laser.number = i;
-    laser.elevation = -laser.elevation;
-    laser.azimuth_offset = -laser.azimuth_offset;
-    lasers.push_back(laser);
+    const Laser& mirrored = lasers[kLasers - 1 - i];
+    lasers.push_back({i, -mirrored.elevation, -mirrored.azimuth_offset});
   }
   return lasers;
 }
@@ -191,18 +176,10 @@ std::vector<Laser> readHesaiCalibration(const fs::path& file, std::size_t lasers
     const bool is_angle =
         read(fields[1], elevation) && std::fabs(elevation) <= 90 && read(fields[2], offset) && std::fabs(offset) <= 180;
     if (!is_angle) fail(file, "the angles of laser " + fields[0] + " are not two numbers of degrees");
-    Laser laser;
-    laser.number = static_cast<std::size_t>(number) - 1;
-    laser.elevation = elevation;
-    laser.azimuth_offset = offset;
-    found[laser.number] = laser;
+    const auto index = static_cast<std::size_t>(number) - 1;
+    found[index] = Laser{index, elevation, offset};
   }
-  std::vector<Laser> all;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (!found[i]) fail(file, "does not describe laser " + std::to_string(i + 1));
-    all.push_back(*found[i]);
-  }
-  return all;
+  return allOf(found, file, 1);
 }
 
 }  // namespace lisco_apps

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "io/text.h"
 #include "pi.h"
 
 namespace lisco_apps {
@@ -28,6 +31,19 @@ struct Laser {
 inline void sortByElevation(std::vector<Laser>& lasers) {
   std::stable_sort(lasers.begin(), lasers.end(),
                    [](const Laser& a, const Laser& b) { return a.elevation > b.elevation; });
+}
+
+/// The lasers that a calibration file describes, by their numbers.
+/// \param first number of the first laser in the file
+/// \throws std::runtime_error with one line if one is missing
+inline std::vector<Laser> allOf(const std::vector<std::optional<Laser>>& found, const fs::path& file,
+                                std::size_t first) {
+  std::vector<Laser> all;
+  for (const std::optional<Laser>& laser : found) {
+    if (!laser) fail(file, "does not describe laser " + std::to_string(first + all.size()));
+    all.push_back(*laser);
+  }
+  return all;
 }
 
 inline std::vector<double> elevationsOf(const std::vector<Laser>& lasers) {

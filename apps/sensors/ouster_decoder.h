@@ -35,7 +35,6 @@ class OusterDecoder : public Decoder {
   double turnUs() const override { return 1e6 / metadata_.frames_per_second; }
   double packetPeriodUs() const override;
   double gapUs() const override { return gap_us_; }
-  double usualGapUs() const override { return 0; }
 
  private:
   static constexpr std::size_t kMaxHeld = 3;  ///< packets that wait for one before them

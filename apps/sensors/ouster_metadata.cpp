@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <initializer_list>
-#include <iterator>
 #include <map>
 #include <system_error>
 
@@ -192,10 +190,7 @@ OusterMetadata parseOusterMetadata(const std::string& json, const fs::path& sour
 OusterMetadata readOusterMetadata(const fs::path& file) {
   std::error_code unknown;
   if (fs::is_directory(file, unknown)) fail(file, "is no metadata of an Ouster sensor: it is a folder");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) fail(file, "cannot be read");
-  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  return parseOusterMetadata(text, file);
+  return parseOusterMetadata(wholeContentOf(file), file);
 }
 
 }  // namespace lisco_apps

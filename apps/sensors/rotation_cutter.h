@@ -2,10 +2,15 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
 namespace lisco_apps {
+
+/// A turn ends after this many columns, which bounds its memory if the sensor does not turn: 0.01 degrees per column,
+/// the resolution of azimuths in packets.
+inline constexpr std::size_t kMaxColumns = 36000;
 
 /// Cuts a stream of columns into rotations of at most a full turn (and a step back). The sensor may turn either way;
 /// columns may step back a little, and any number of them may be missing.

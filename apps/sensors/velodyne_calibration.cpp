@@ -130,12 +130,7 @@ std::vector<Laser> readCalibration(const fs::path& file, std::size_t lasers) {
     const Laser laser = laserOf(file, values, is_yaml ? kYaml : kXml, lasers);
     found[laser.number] = laser;
   }
-  std::vector<Laser> all;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (!found[i]) fail(file, "does not describe laser " + std::to_string(i));
-    all.push_back(*found[i]);
-  }
-  return all;
+  return allOf(found, file, 0);
 }
 
 }  // namespace lisco_apps

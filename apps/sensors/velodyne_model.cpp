@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "velodyne_model.h"
 
-#include <algorithm>
 #include <array>
 #include <stdexcept>
 
@@ -45,12 +44,9 @@ constexpr std::array kVls128Directions{6.354, 4.548, 2.732, 0.911, -0.911, -2.73
 /// \param laser_period_us from one laser of a column to the next
 template <std::size_t kCount>
 std::vector<Laser> lasersAt(const std::array<double, kCount>& elevations, double laser_period_us) {
-  std::vector<Laser> lasers(kCount);
-  for (std::size_t i = 0; i < kCount; ++i) {
-    lasers[i].number = i;
-    lasers[i].elevation = elevations[i];
-    lasers[i].delay_us = static_cast<double>(i) * laser_period_us;
-  }
+  std::vector<Laser> lasers;
+  for (std::size_t i = 0; i < kCount; ++i)
+    lasers.push_back({i, elevations[i], 0, static_cast<double>(i) * laser_period_us});
   return lasers;
 }
 

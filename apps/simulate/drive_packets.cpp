@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "drive_packets.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <stdexcept>
@@ -34,9 +35,9 @@ std::vector<std::string> packetSensorNames() {
 }
 
 Sensor packetSensor(const std::string& name, std::size_t steps) {
-  bool is_known = false;
-  for (const std::string& known : packetSensorNames()) is_known = is_known || known == name;
-  if (!is_known) throw std::runtime_error("--pcap is for --sensor " + boost::join(packetSensorNames(), ", ") + " only");
+  const std::vector<std::string> known = packetSensorNames();
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    throw std::runtime_error("--pcap is for --sensor " + boost::join(known, ", ") + " only");
   const VelodyneModel model = makeVelodyneModel(name);
   Sensor sensor;
   sensor.name = name;
@@ -89,8 +90,7 @@ void PacketWriter::add(const Scan& scan) {
     for (std::size_t laser = 0; laser < firing.size(); ++laser) {
       const Cell& cell = scan.at(row_of_[laser], step);
       if (std::isnan(cell.x)) continue;
-      const double range = length(lisco_simulation::Vector{static_cast<double>(cell.x), static_cast<double>(cell.y),
-                                                           static_cast<double>(cell.z)});
+      const double range = length(placeOf(cell));
       firing[laser] = {static_cast<std::uint16_t>(std::lround(range / distance_unit_)), kIntensity};
     }
     waiting_.push_back(std::move(firing));

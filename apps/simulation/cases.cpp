@@ -126,7 +126,7 @@ class Apart {
         for (std::int64_t z = -1; z <= 1; ++z) {
           const auto [first, last] = positions_.equal_range({cube[0] + x, cube[1] + y, cube[2] + z});
           for (auto other = first; other != last; ++other)
-            if (distance(other->second, cell) <= gap_) return false;
+            if (length(placeOf(other->second) - placeOf(cell)) <= gap_) return false;
         }
     positions_.emplace(cube, cell);
     return true;
@@ -137,11 +137,6 @@ class Apart {
 
   std::int64_t along(float value) const {
     return static_cast<std::int64_t>(std::floor(static_cast<double>(value) / gap_));
-  }
-  static double distance(const Cell& a, const Cell& b) {
-    return length({static_cast<double>(a.x) - static_cast<double>(b.x),
-                   static_cast<double>(a.y) - static_cast<double>(b.y),
-                   static_cast<double>(a.z) - static_cast<double>(b.z)});
   }
 
   double gap_;

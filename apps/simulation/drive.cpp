@@ -151,9 +151,7 @@ Scan scanInMotion(const Scene& scene, const Sensor& sensor, const Disturbance& d
     const Rotation toWorld(pose);
     for (std::size_t laser = 0; laser < scan.lasers; ++laser) {
       Cell& cell = scan.cells[laser * columns + column];
-      cell = cellAt(
-          toWorld({static_cast<double>(cell.x), static_cast<double>(cell.y), static_cast<double>(cell.z)}) + pose.place,
-          cell.object);
+      cell = cellAt(toWorld(placeOf(cell)) + pose.place, cell.object);
     }
   }
   return scan;

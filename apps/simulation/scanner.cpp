@@ -22,9 +22,8 @@ std::size_t Scan::returnsAbove(float ground_z) const {
 }
 
 std::size_t Scan::returnsWithin(double range) const {
-  return static_cast<std::size_t>(std::count_if(cells.begin(), cells.end(), [range](const Cell& cell) {
-    return length({static_cast<double>(cell.x), static_cast<double>(cell.y), static_cast<double>(cell.z)}) < range;
-  }));
+  return static_cast<std::size_t>(
+      std::count_if(cells.begin(), cells.end(), [range](const Cell& cell) { return length(placeOf(cell)) < range; }));
 }
 
 Scan emptyScan(std::size_t lasers, std::size_t steps) {

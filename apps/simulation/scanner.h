@@ -59,6 +59,9 @@ struct Scan {
 /// A scan without returns.
 Scan emptyScan(std::size_t lasers, std::size_t steps);
 Cell cellAt(const Vector& place, std::uint32_t object);
+inline Vector placeOf(const Cell& cell) {
+  return {static_cast<double>(cell.x), static_cast<double>(cell.y), static_cast<double>(cell.z)};
+}
 
 /// Casts one ray per cell to the first object it meets.
 Scan scan(const Scene& scene, const Sensor& sensor, const Disturbance& disturbance);

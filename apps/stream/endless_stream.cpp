@@ -33,7 +33,8 @@ bool EndlessStream::take(const PreparedColumn& column) {
   OpenTurn& open = turns_.back();
   open.last_position = column.position;
   marks_.push_back({column.position, column.origin.received});
-  open.turn.add(column, static_cast<std::uint32_t>(next_cell_), returns_);
+  open.turn.add(column);
+  column.fill(static_cast<std::uint32_t>(next_cell_), returns_);
   next_cell_ += column.cells.size();
   clusterer_.addColumn(returns_.data(), returns_.size(), column.position);
   if (marks_.size() >= 2 * kBlock) marks_.erase(marks_.begin(), marks_.end() - kBlock);

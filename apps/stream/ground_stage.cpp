@@ -2,8 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "ground_stage.h"
 
-#include "lisco/return.h"
-
 namespace lisco_apps {
 
 /// All but the slope.

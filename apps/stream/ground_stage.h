@@ -10,6 +10,7 @@
 #include "io/scan_options.h"
 #include "latency.h"
 #include "lisco/ground_filter.h"
+#include "lisco/return.h"
 #include "sensors/decoder.h"
 
 namespace lisco_apps {
@@ -23,6 +24,11 @@ struct Origin {
 /// What becomes of a cell.
 enum class CellUse : std::uint8_t { kNothing, kClustered, kGround };
 
+/// A cell for a clusterer: no return unless it is clustered.
+inline lisco::Return returnOf(const Cell& cell, CellUse use, std::uint32_t source_index) {
+  return use == CellUse::kClustered ? lisco::Return{cell.x, cell.y, cell.z, source_index} : lisco::kNoReturn;
+}
+
 /// A column on its way to the clusterer.
 struct PreparedColumn {
   std::vector<Cell> cells;
@@ -31,6 +37,13 @@ struct PreparedColumn {
   double position = 0;        ///< turns, in endless streams
   bool starts_turn = false;
   Origin origin;
+
+  /// \param first_index source index of the first cell; the others follow
+  /// \param returns receives the cells for a clusterer
+  void fill(std::uint32_t first_index, std::vector<lisco::Return>& returns) const {
+    returns.resize(cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) returns[i] = returnOf(cells[i], uses[i], first_index++);
+  }
 };
 
 /// Tells the ground from the other returns, column by column. By slope, a column comes out once its decisions are

@@ -4,29 +4,20 @@
 
 #include <signal.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <utility>
 
 namespace lisco_apps {
-namespace {
-
-/// Starts a thread that leaves signals to the others.
-std::thread startWithoutSignals(void (*run)(void*), void* what) {
-  sigset_t all, before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);
-  std::thread thread(run, what);
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  return thread;
-}
-
-}  // namespace
 
 PacketQueue::PacketQueue(std::unique_ptr<PacketSource> source)
     : source_(std::move(source)), bytes_(new std::uint8_t[kMaxBytes]), slots_(kMaxPackets) {
-  thread_ = startWithoutSignals([](void* queue) { static_cast<PacketQueue*>(queue)->receive(); }, this);
+  // The thread leaves signals to the others.
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  thread_ = std::thread([this] { receive(); });
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
 PacketQueue::~PacketQueue() {

@@ -2,8 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "report.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -12,7 +10,6 @@
 #include "io/cluster_json.h"
 #include "io/point_geometry.h"
 #include "io/text.h"
-#include "io/time_left.h"
 #include "sensors/laser.h"
 
 namespace lisco_apps {

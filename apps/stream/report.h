@@ -4,7 +4,6 @@
 
 #include <unistd.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -31,7 +30,7 @@ class Report : public Listener {
     std::uint64_t cut = 0, continued = 0;         ///< clusters of an endless stream
   };
 
-  explicit Report(Format format, const LabelledClouds* clouds = nullptr) : format_(format), clouds_(clouds) {}
+  explicit Report(Format format) : format_(format) {}
   /// Writes labelled clouds from now on.
   void writeTo(const LabelledClouds& clouds) { clouds_ = &clouds; }
   /// Called with each rotation or window from now on.
@@ -67,7 +66,7 @@ class Report : public Listener {
   void print(const std::string& line);
 
   Format format_;
-  const LabelledClouds* clouds_;
+  const LabelledClouds* clouds_ = nullptr;
   OnFound on_found_;
   TerminalLine status_;
   const bool shares_terminal_ = isatty(STDOUT_FILENO) != 0;  ///< stdout and the status line

@@ -35,7 +35,8 @@ bool RotationStream::take(const PreparedColumn& column) {
     begin(column);
   }
   listener_.column(column);
-  turn_.add(column, static_cast<std::uint32_t>(turn_.cells.size()), returns_);
+  column.fill(static_cast<std::uint32_t>(turn_.cells.size()), returns_);
+  turn_.add(column);
   clusterer_.addColumn(returns_.data(), returns_.size());
   return true;
 }
@@ -58,8 +59,7 @@ lisco::Parameters RotationStream::parametersFor(const PreparedColumn& first) con
     // Measured on the last rotation: ranges of returns, and how the sensor turns.
     const auto cell_at = [this](std::size_t laser, std::size_t column) {
       const std::size_t at = column * turn_.lasers + laser;
-      const Cell& cell = turn_.cells[at];
-      return turn_.uses[at] == CellUse::kClustered ? lisco::Return{cell.x, cell.y, cell.z, 0} : lisco::kNoReturn;
+      return returnOf(turn_.cells[at], turn_.uses[at], 0);
     };
     const lisco::SensorHints estimated =
         lisco::estimateSensor(turn_.columns(), turn_.lasers, {}, lisco::CellSource(cell_at));

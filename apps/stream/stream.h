@@ -42,21 +42,13 @@ struct Turn {
     *this = {new_number, new_lasers, std::move(cells), std::move(uses), std::move(labels), new_azimuth, 0, 0, 0, 0};
   }
 
-  /// Adds a column.
-  /// \param first_index source index of the column's first cell; the others follow
-  /// \param to_cluster receives the column without the ground
-  void add(const PreparedColumn& column, std::uint32_t first_index, std::vector<lisco::Return>& to_cluster) {
+  void add(const PreparedColumn& column) {
     cells.insert(cells.end(), column.cells.begin(), column.cells.end());
     uses.insert(uses.end(), column.uses.begin(), column.uses.end());
     labels.resize(cells.size(), 0);
-    to_cluster.resize(column.cells.size());
-    for (std::size_t i = 0; i < column.cells.size(); ++i) {
-      const Cell& cell = column.cells[i];
-      const bool is_clustered = column.uses[i] == CellUse::kClustered;
-      to_cluster[i] = is_clustered ? lisco::Return{cell.x, cell.y, cell.z, first_index + static_cast<std::uint32_t>(i)}
-                                   : lisco::kNoReturn;
-      returns += is_clustered ? 1 : 0;
-      ground += column.uses[i] == CellUse::kGround ? 1 : 0;
+    for (const CellUse use : column.uses) {
+      returns += use == CellUse::kClustered ? 1 : 0;
+      ground += use == CellUse::kGround ? 1 : 0;
     }
     time_us = column.origin.time_us;
   }
@@ -71,10 +63,6 @@ struct StreamOptions {
   Region region;
   std::uint64_t rotations = 0;  ///< after which to end; 0: no limit
 };
-
-/// A turn ends after this many columns, which bounds its memory if the sensor does not turn: 0.01 degrees per column,
-/// the resolution of azimuths in packets.
-inline constexpr std::size_t kMaxColumns = 36000;
 
 struct FoundCluster {
   std::uint32_t id = 0;  ///< from 1

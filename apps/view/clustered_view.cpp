@@ -4,18 +4,15 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
 #include <utility>
 
 #include "drawing/scan_pictures.h"
-#include "view/page.h"
 #include "view/point_fields.h"
 #include "view/rows.h"
-#include "view/scan_encoder.h"
 
 namespace lisco_apps {
 
-ViewScan viewScanOf(const ClusteredScan& scan, const pcl::Indices& clustered) {
+ViewScan viewScanOf(const ClusteredScan& scan) {
   const Cloud& cloud = *scan.cloud;
   ViewScan view;
   view.name = scan.name;
@@ -23,27 +20,16 @@ ViewScan viewScanOf(const ClusteredScan& scan, const pcl::Indices& clustered) {
   view.points.reserve(cloud.size());
   for (const auto& point : cloud) view.points.push_back({point.x, point.y, point.z});
   view.is_ground.assign(cloud.size(), 1);
-  for (const auto index : clustered) view.is_ground[static_cast<std::size_t>(index)] = 0;
+  for (const auto index : scan.returns.clustered) view.is_ground[static_cast<std::size_t>(index)] = 0;
   for (const double value : numbersOf(scan.fields, {"intensity", "reflectivity"}, cloud.size()))
     view.intensity.push_back(static_cast<float>(value));
   for (const double value : numbersOf(scan.fields, {"ring", "channel"}, cloud.size()))
     view.ring.push_back(static_cast<std::uint16_t>(value >= 0 ? std::min(value, 65535.0) : 0));
   if (view.ring.empty()) view.ring = rowsOf(cloud.width, cloud.height);
   ViewLabelling labelling{"clusters", scan.tolerance, labelsOf(scan.clusters, cloud.size()), {}};
-  for (const lisco::ClusterFeatures& features : scan.features) {
-    const lisco::OrientedBox& box = features.box;
-    labelling.clusters.push_back(
-        {features.size, box.center, box.length, box.width, box.height, box.yaw, features.nearest_range});
-  }
+  for (const lisco::ClusterFeatures& features : scan.features) labelling.clusters.push_back(viewClusterOf(features));
   view.labellings.push_back(std::move(labelling));
   return view;
-}
-
-void writeView(const ClusteredScan& scan, const pcl::Indices& clustered, const fs::path& file) {
-  std::ofstream stream(file, std::ios::binary);
-  stream << viewPage(scan.name, {encodeViewScan(viewScanOf(scan, clustered))});
-  stream.close();
-  if (!stream) fail(file, "cannot be written");
 }
 
 }  // namespace lisco_apps

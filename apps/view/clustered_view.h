@@ -8,11 +8,7 @@
 namespace lisco_apps {
 
 /// A scan and its clusters as the page shows them. Without a field of rings, rows of an organized scan are rings.
-/// \param clustered the points that were clustered; other returns are ground
-ViewScan viewScanOf(const ClusteredScan& scan, const pcl::Indices& clustered);
-
-/// Writes a page that shows a scan and its clusters.
-/// \throws std::runtime_error with one line if it cannot be written
-void writeView(const ClusteredScan& scan, const pcl::Indices& clustered, const fs::path& file);
+/// Returns that were not clustered are ground.
+ViewScan viewScanOf(const ClusteredScan& scan);
 
 }  // namespace lisco_apps

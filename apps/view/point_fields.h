@@ -28,34 +28,15 @@ inline std::vector<double> numbersOf(const pcl::PCLPointCloud2& cloud, const std
           numbers.push_back(static_cast<double>(value));
         }
       };
-      switch (field.datatype) {
-        case pcl::PCLPointField::INT8:
-          read(std::int8_t{});
-          break;
-        case pcl::PCLPointField::UINT8:
-          read(std::uint8_t{});
-          break;
-        case pcl::PCLPointField::INT16:
-          read(std::int16_t{});
-          break;
-        case pcl::PCLPointField::UINT16:
-          read(std::uint16_t{});
-          break;
-        case pcl::PCLPointField::INT32:
-          read(std::int32_t{});
-          break;
-        case pcl::PCLPointField::UINT32:
-          read(std::uint32_t{});
-          break;
-        case pcl::PCLPointField::FLOAT32:
-          read(float{});
-          break;
-        case pcl::PCLPointField::FLOAT64:
-          read(double{});
-          break;
-        default:
-          break;
-      }
+      const auto type = field.datatype;
+      if (type == pcl::PCLPointField::INT8) read(std::int8_t{});
+      if (type == pcl::PCLPointField::UINT8) read(std::uint8_t{});
+      if (type == pcl::PCLPointField::INT16) read(std::int16_t{});
+      if (type == pcl::PCLPointField::UINT16) read(std::uint16_t{});
+      if (type == pcl::PCLPointField::INT32) read(std::int32_t{});
+      if (type == pcl::PCLPointField::UINT32) read(std::uint32_t{});
+      if (type == pcl::PCLPointField::FLOAT32) read(float{});
+      if (type == pcl::PCLPointField::FLOAT64) read(double{});
       if (!numbers.empty()) return numbers;
     }
   }

@@ -3,8 +3,8 @@
 #include "view/scan_encoder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -177,6 +177,12 @@ void encodeLabels(const ViewScan& scan, const ViewLabelling& labelling, const Sh
 
 }  // namespace
 
+std::string withSize(const std::string& text) {
+  std::string bytes;
+  for (unsigned shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<char>(text.size() >> shift));
+  return bytes + text;
+}
+
 std::string encodeViewScan(const ViewScan& scan, PointOrder order) {
   Shown shown = shownOf(scan.points);
   std::string streams = encodedPositions(shown.positions);
@@ -213,10 +219,7 @@ std::string encodeViewScan(const ViewScan& scan, PointOrder order) {
     for (const std::uint32_t i : shown.points) writer.add(scan.ring[i]);
   }
 
-  const std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string bytes;
-  for (unsigned shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<char>(text.size() >> shift));
-  return bytes + text + streams;
+  return withSize(header.dump(-1, ' ', false, Json::error_handler_t::replace)) + streams;
 }
 
 }  // namespace lisco_apps

@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <cmath>
 #include <string>
 
 #include "view/view_scan.h"
@@ -22,6 +21,9 @@ enum class PointOrder {
   kSmallest,  ///< the scan's, or Z-order if that takes fewer bytes
   kAsGiven,   ///< the scan's, in a third of the time
 };
+
+/// A text after its size: uint32, little-endian.
+std::string withSize(const std::string& text);
 
 /// Encodes a scan for the page (see doc/view.md): the size of a JSON header (uint32, little-endian), the header, and
 /// for each property of the points a stream of bytes.

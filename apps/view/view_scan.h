@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "lisco/cluster_features.h"
+
 namespace lisco_apps {
 
 /// What the page shows of a cluster. Metres and radians; the box is upright and turned about the z axis.
@@ -19,6 +21,12 @@ struct ViewCluster {
   double nearest_range = 0;
   std::uint32_t id = 0;  ///< shown in place of its number; 0: the number. All clusters of a labelling have one, or none
 };
+
+/// \param id see ViewCluster
+inline ViewCluster viewClusterOf(const lisco::ClusterFeatures& features, std::uint32_t id = 0) {
+  const lisco::OrientedBox& box = features.box;
+  return {features.size, box.center, box.length, box.width, box.height, box.yaw, features.nearest_range, id};
+}
 
 /// Clusters of a scan's points.
 struct ViewLabelling {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -24,32 +23,18 @@ namespace {
 /// others are PCL's, some of them only of its later versions. \return the result of visit; fallback for other numbers
 template <typename Visit, typename Result>
 Result withType(std::uint8_t datatype, Visit&& visit, Result fallback) {
-  switch (datatype) {
-    case 1:
-      return visit(std::int8_t{});
-    case 2:
-      return visit(std::uint8_t{});
-    case 3:
-      return visit(std::int16_t{});
-    case 4:
-      return visit(std::uint16_t{});
-    case 5:
-      return visit(std::int32_t{});
-    case 6:
-      return visit(std::uint32_t{});
-    case 7:
-      return visit(float{});
-    case 8:
-      return visit(double{});
-    case 9:
-      return visit(std::int64_t{});
-    case 10:
-      return visit(std::uint64_t{});
-    case 11:
-      return visit(std::uint8_t{});  // bool
-    default:
-      return fallback;
-  }
+  if (datatype == 1) return visit(std::int8_t{});
+  if (datatype == 2) return visit(std::uint8_t{});
+  if (datatype == 3) return visit(std::int16_t{});
+  if (datatype == 4) return visit(std::uint16_t{});
+  if (datatype == 5) return visit(std::int32_t{});
+  if (datatype == 6) return visit(std::uint32_t{});
+  if (datatype == 7) return visit(float{});
+  if (datatype == 8) return visit(double{});
+  if (datatype == 9) return visit(std::int64_t{});
+  if (datatype == 10) return visit(std::uint64_t{});
+  if (datatype == 11) return visit(std::uint8_t{});  // bool
+  return fallback;
 }
 
 constexpr std::uint8_t kFloat32 = 7;

@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "core/near/kernels.h"
 
-#include <algorithm>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE

@@ -2,9 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "core/near/voxel_plane.h"
 
-#include <algorithm>
 #include <cstring>
-#include <limits>
 #include <utility>
 
 #include "core/near/constants.h"

@@ -3,7 +3,6 @@
 #include "core/near/voxel_sorter.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
