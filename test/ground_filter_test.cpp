@@ -315,6 +315,20 @@ TEST(LabelGround, SortsUnorganizedPoints) {
   EXPECT_EQ(lost, 0U);
 }
 
+TEST(LabelGround, FindsNothingAmongPlants) {
+  // Leaves 0.9 m to 1.4 m away hide the floor all around the sensor.
+  for (const std::size_t lasers : {16U, 32U, 64U}) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> leaf(0.9, 1.4);
+    const Scan scan = scanOf(lasers, 1024, [&](double /*azimuth*/, double /*slope*/) { return leaf(random); });
+    std::vector<std::uint8_t> ground(scan.cells.size(), 7);
+    lisco::LabelGroundParameters parameters;
+    parameters.lasers = lasers;
+    lisco::labelGround(scan.cells.data(), scan.cells.size(), sizeof scan.cells[0], parameters, ground.data());
+    EXPECT_EQ(std::count(ground.begin(), ground.end(), 0), static_cast<std::ptrdiff_t>(ground.size())) << lasers;
+  }
+}
+
 TEST(LabelGround, RejectsBadArguments) {
   float point[3] = {1.0F, 2.0F, 3.0F};
   std::uint8_t ground = 0;

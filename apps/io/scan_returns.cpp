@@ -61,6 +61,8 @@ std::vector<std::uint8_t> groundBySlope(const Cloud& cloud, const Region& region
   if (!is_rotation) {
     parameters = lisco::estimateGround(columns, lasers, origin, lisco::CellSource(cell_at));
     if (parameters.sensor.steps_per_turn == 0) return {};
+    // Where the whole scan shows no ground, that of a few columns is none.
+    if (std::isnan(parameters.sensor_height)) return ground;
   }
   lisco::GroundFilter().filter(parameters, columns, lasers, cell_at, ground.data());
   return ground;

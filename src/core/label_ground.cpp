@@ -149,8 +149,12 @@ void labelGround(const void* points, std::size_t count, std::size_t stride, cons
   const auto run = [&](std::size_t columns, std::size_t lasers, const SensorHints& sensor, const auto& cell_at,
                        std::uint8_t* decisions) {
     filter_parameters.sensor = sensor;
-    filter.filter(estimateGroundPlane(columns, lasers, filter_parameters, CellSource(cell_at)), columns, lasers,
-                  cell_at, decisions);
+    const GroundParameters estimated = estimateGroundPlane(columns, lasers, filter_parameters, CellSource(cell_at));
+    // Where the whole scan shows no ground, that of a few columns is none.
+    if (std::isnan(estimated.sensor_height))
+      std::fill_n(decisions, columns * lasers, std::uint8_t{0});
+    else
+      filter.filter(estimated, columns, lasers, cell_at, decisions);
   };
 
   const std::size_t width = count / parameters.lasers;
