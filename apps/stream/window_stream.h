@@ -19,7 +19,7 @@ class WindowStream : public Stream {
   /// \param window, hop columns; the window is a multiple of the hop
   WindowStream(const StreamOptions& options, const Decoder& decoder, Listener& listener, std::size_t window,
                std::size_t hop)
-      : Stream(options, decoder, listener), window_(window), hop_(hop), latest_(window), lost_(window) {}
+      : Stream(options, decoder, listener), window_(window), hop_(hop) {}
 
   void wait() override { finishGround(); }
   /// Columns after the last hop belong to no window.
@@ -29,12 +29,15 @@ class WindowStream : public Stream {
   bool take(const PreparedColumn& column) override;
   void turnIsOver(Clock::time_point /*start*/) override {}
   bool endsWithTurns() const override { return false; }
+  void begin(std::size_t lasers);
   void deliver(Clock::duration took);
 
   const std::size_t window_, hop_;
   lisco::WindowClusterer clusterer_;
-  std::vector<PreparedColumn> latest_;  ///< a ring: column c is at c % window
-  std::vector<std::uint64_t> lost_;     ///< packets missing before each of these
+  std::vector<Cell> cells_;          ///< of the last columns: column c is at c % capacity
+  std::vector<CellUse> uses_;        ///< of these cells
+  std::vector<double> azimuths_;     ///< of these columns
+  std::vector<std::uint64_t> lost_;  ///< packets missing before each of them
   std::size_t lasers_ = 0;
   std::uint64_t columns_ = 0;  ///< since the clusterer began
   Turn turn_;                  ///< the last window
