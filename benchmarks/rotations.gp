@@ -27,14 +27,17 @@ do for [format in "png svg"] {
   plot for [i = 1:4] data using (at("mean", word(keys, i), $3)):4:5 with yerrorlines \
     linewidth 2 pointtype int(word(marks, i)) pointsize 0.8 linecolor rgb word(colors, i) title word(titles, i)
   set title sprintf("%s: each, tolerance 0.4 m", what)
-  set xlabel "returns"
+  set xlabel "thousands of returns"
   set logscale x
+  set xtics ("5" 5e3, "7" 7e3, "10" 1e4, "15" 15e3, "20" 2e4, "25" 25e3, "30" 3e4, "35" 35e3, "40" 4e4, "50" 5e4, \
+    "70" 7e4, "100" 1e5, "150" 15e4, "200" 2e5)
   set xrange [*:*] noextend
   set offsets graph 0.03, graph 0.03
   set key at screen 0.85,0.005 bottom horizontal maxrows 1 samplen 1.5
   plot for [i = 1:4] data using (at("each", word(keys, i), $3)):4 with points \
     pointtype int(word(marks, i)) pointsize 0.7 linecolor rgb word(colors, i) title word(titles, i)
   unset key
+  set xtics autofreq
   unset multiplot
   unset output
 }
