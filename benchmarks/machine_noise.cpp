@@ -22,7 +22,7 @@ using namespace lisco_apps;
 
 struct Options {
   unsigned seconds = 60;
-  double limit = 10;  ///< percent; an idle virtual machine has 4 to 8, one with other work 20 and more
+  double limit = 10;  ///< percent; an idle virtual machine has 3 to 10, one with a busy thread 80
 };
 
 /// \return false if there is nothing to do but to print help or version, which has been done
