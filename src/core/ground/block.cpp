@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/pi.h"
-
 #include "core/ground/targets.h"
+#include "core/pi.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/ground/block.cpp"

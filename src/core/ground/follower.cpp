@@ -19,8 +19,8 @@ std::size_t lastOf(std::uint8_t bits) {
 
 /// A byte for each of eight bits, 0 or 1, the lowest one first.
 std::array<std::uint8_t, 8> bytesOf(std::uint8_t bits) {
-  static const auto table = [] {
-    std::array<std::array<std::uint8_t, 8>, 256> all;
+  static constexpr auto table = [] {
+    std::array<std::array<std::uint8_t, 8>, 256> all{};
     for (std::size_t i = 0; i < all.size(); ++i)
       for (std::size_t k = 0; k < 8; ++k) all[i][k] = i >> k & 1;
     return all;
