@@ -278,10 +278,10 @@ void ColumnClusterer::Rotation::stopCollecting() {
 void ColumnClusterer::Rotation::numberSubclusters() {
   sizes_.clear();
   for (std::size_t i = 0; i < partition_count_; ++i) {
-    const auto subclusterOf = [&](std::uint32_t root) {
+    const auto subclusterOf = [&](std::uint32_t parent) {
       std::size_t owner = i;
-      while (root < partitions_[owner].first_element) --owner;
-      return runsOf(owner).runs[root - partitions_[owner].first_element].subcluster;
+      while (parent < partitions_[owner].first_element) --owner;
+      return runsOf(owner).runs[parent - partitions_[owner].first_element].subcluster;
     };
     std::uint32_t element = partitions_[i].first_element;
     for (Run& run : partitions_[i].runs.runs)

@@ -26,6 +26,9 @@ class DisjointSets {
   /// createH: makes an element a set of its own, whatever it was before.
   void create(std::uint32_t element) { parents_[element] = element; }
 
+  /// The element itself if it is a root, else a lower one of its set.
+  std::uint32_t parentOf(std::uint32_t element) const { return __atomic_load_n(&parents_[element], __ATOMIC_RELAXED); }
+
   /// getH: the root of the set that holds the element.
   std::uint32_t find(std::uint32_t element) {
     std::uint32_t parent = parentOf(element);
@@ -76,26 +79,24 @@ class DisjointSets {
   void logTo(std::vector<Merge>* log) { log_ = log; }
 
  private:
-  std::uint32_t parentOf(std::uint32_t element) const { return __atomic_load_n(&parents_[element], __ATOMIC_RELAXED); }
-
   GrowingArray<std::uint32_t> parents_;
   bool is_shared_ = false;
   std::vector<Merge>* log_ = nullptr;
 };
 
 /// Returns the number of an element's set, and adds to the size of that. Sets are numbered in the order of their roots.
-/// Elements come ascending: a root, the lowest element of its set, before the others.
+/// Elements come ascending: a parent, lower than its children, before these.
 /// \param sizes of the sets numbered so far
-/// \param number_of callable as std::uint32_t (std::uint32_t root): the number returned for it
+/// \param number_of callable as std::uint32_t (std::uint32_t parent): the number returned for it
 template <typename NumberOf>
-std::uint32_t numberElement(std::uint32_t element, std::uint32_t size, DisjointSets& sets,
+std::uint32_t numberElement(std::uint32_t element, std::uint32_t size, const DisjointSets& sets,
                             std::vector<std::uint32_t>& sizes, NumberOf&& number_of) {
-  const std::uint32_t root = sets.find(element);
-  if (root == element) {
+  const std::uint32_t parent = sets.parentOf(element);
+  if (parent == element) {
     sizes.push_back(size);
     return static_cast<std::uint32_t>(sizes.size() - 1);
   }
-  const std::uint32_t number = number_of(root);
+  const std::uint32_t number = number_of(parent);
   sizes[number] += size;
   return number;
 }

@@ -24,19 +24,18 @@ void Runs::add(const RingBlock& block, RingBlockInfo& info, std::size_t laser, s
   runs.resize(end_run);
   source_index.insert(source_index.end(), block.source_index, block.source_index + columns);
   returns += countBits(info.returns);
+  for (std::uint32_t number = first_run; number < end_run; ++number) subclusters.create(first_element + number);
   std::uint32_t number = first_run;
   if (info.starts == info.returns) {  // runs of one return, as in unordered clouds
-    forEachBit(info.returns, [&](std::size_t i) {
-      const std::uint32_t element = first_element + number;
-      subclusters.create(element);
-      info.run[i] = element;
-      runs[number++] = {first_cell + static_cast<std::uint32_t>(i), 1, 0};
+    forEachChain(info.returns & ~(info.returns << 1), info.returns, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i, ++number) {
+        info.run[i] = first_element + number;
+        runs[number] = {first_cell + static_cast<std::uint32_t>(i), 1, 0};
+      }
     });
   } else {
     forEachChain(info.starts, info.returns, [&](std::size_t begin, std::size_t end) {
-      const std::uint32_t element = first_element + number;
-      subclusters.create(element);
-      std::fill(info.run + begin, info.run + end, element);
+      std::fill(info.run + begin, info.run + end, first_element + number);
       runs[number++] = {first_cell + static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin), 0};
     });
   }

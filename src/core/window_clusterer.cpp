@@ -133,7 +133,7 @@ void WindowClusterer::Window::numberWithin(Pane& pane) {
   pane.subcluster.clear();
   for (std::uint32_t run = 0; run < runs.size(); ++run)
     pane.subcluster.push_back(numberElement(run, runs[run].count, pane.subclusters, pane.sizes,
-                                            [&](std::uint32_t root) { return pane.subcluster[root]; }));
+                                            [&](std::uint32_t parent) { return pane.subcluster[parent]; }));
 }
 
 /// Makes each subcluster of the window's panes an element of its forest.
@@ -203,7 +203,7 @@ void WindowClusterer::Window::numberSubclusters() {
     for (std::uint32_t i = 0; i < own.sizes.size(); ++i)
       subcluster_of_element_[own.first_in_window + i] =
           numberElement(own.first_in_window + i, own.sizes[i], window_, sizes_,
-                        [&](std::uint32_t root) { return subcluster_of_element_[root]; });
+                        [&](std::uint32_t parent) { return subcluster_of_element_[parent]; });
   }
 }
 
