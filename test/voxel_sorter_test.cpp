@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/disjoint_sets.h"
+#include "core/near/constants.h"
 #include "core/near/near_returns.h"
 #include "core/neighbour.h"
 #include "engine.h"
@@ -84,9 +85,10 @@ std::vector<lisco::NearReturns> partsOf(const Cloud& cloud) {
   for (const std::size_t end : cloud.part_ends) {
     lisco::NearReturns& part = parts.emplace_back();
     part.count = end - begin;
-    const std::size_t behind = (begin + end) % 3 == 0 || begin == end ? 0 : 70;
+    const std::size_t behind = (begin + end) % 3 == 0 || begin == end ? lisco::kNearStep : 70;
     part.returns.grow(part.count + behind);
     for (std::size_t i = 0; i < part.returns.size(); ++i) {
+      if (part.count == 0) break;
       const std::size_t point = begin + i % part.count;
       part.returns[i] = {cloud.points[point].x, cloud.points[point].y, cloud.points[point].z, cloud.elements[point]};
     }
@@ -419,6 +421,9 @@ TEST(VoxelSorter, JoinsOnlyBelowTheTolerance) {
       for (const Point& by : {Point{distance, 0, 0}, Point{0, distance, 0}, Point{0, 0, distance}})
         for (const Point& third : {by, Point{9, 0, 0}, Point{0, -9, 0}, Point{0, 0, 9}})  // decides the major axis
           EXPECT_TRUE(expectTrueSets(sorter, cloudOf({{0, 0, 0}, by, third}, 0.5F, part_ends)));
+    // Along a voxel's diagonal, from the corner where numbers begin.
+    for (const float side : {0.5F * 0.9999F / static_cast<float>(kSqrt3), 0.5F * 1.0001F / static_cast<float>(kSqrt3)})
+      EXPECT_TRUE(expectTrueSets(sorter, cloudOf({{0, 0, 0}, {side, side, side}, {9, 9, 9}}, 0.5F, part_ends)));
   };
   for (const std::string& name : levels()) {
     const SimdLevel level(name);
@@ -504,7 +509,7 @@ TEST(VoxelSorter, LosesNoJoinOfAnotherThread) {
     std::vector<lisco::NearReturns> parts(count);
     for (std::size_t pair = 0; pair < kSets; ++pair) {
       lisco::NearReturns& part = parts[pair % count];
-      part.returns.grow(part.count + 2);
+      part.returns.grow(part.count + 2 + lisco::kNearStep);
       const auto a = static_cast<std::uint32_t>(random.below(kSets));
       const auto b = static_cast<std::uint32_t>(random.below(kSets));
       part.returns[part.count++] = {0, 3 * static_cast<float>(pair), 0, a};

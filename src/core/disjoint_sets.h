@@ -25,6 +25,11 @@ class DisjointSets {
 
   /// createH: makes an element a set of its own, whatever it was before.
   void create(std::uint32_t element) { parents_[element] = element; }
+  /// The same for consecutive ones.
+  void create(std::uint32_t first, std::uint32_t end) {
+    std::uint32_t* const parents = parents_.data();
+    for (std::uint32_t element = first; element < end; ++element) parents[element] = element;
+  }
 
   /// The element itself if it is a root, else a lower one of its set.
   std::uint32_t parentOf(std::uint32_t element) const { return __atomic_load_n(&parents_[element], __ATOMIC_RELAXED); }

@@ -13,9 +13,11 @@ namespace lisco {
 /// What one laser measured in up to 64 consecutive columns; sets of its columns are bits of a machine word.
 struct RingBlock {
   static constexpr std::size_t kColumns = 64;
-  static constexpr std::size_t kMargin = 16;  ///< floats before the first column's, so that vectors may begin there
+  /// Floats before the first column's and behind the last, where vectors may begin and end.
+  static constexpr std::size_t kMargin = 16;
+  static constexpr std::size_t kSize = kMargin + kColumns + kMargin;
 
-  float x[kMargin + kColumns], y[kMargin + kColumns], z[kMargin + kColumns];
+  float x[kSize], y[kSize], z[kSize];
   std::uint32_t source_index[kColumns];
 
   /// Copies cells of one laser, from the block's column `at` on.
@@ -27,13 +29,14 @@ struct RingBlock {
 
 /// What is measured on a ring block, as seen from the sensor.
 struct RingBlockInfo {
-  std::uint64_t returns;                   ///< columns with a return
-  std::uint64_t starts;                    ///< of these, those that are no neighbour of a return in the column before
-  std::uint64_t far;                       ///< horizontal distance within [FarRange::min_range, FarRange::max_range)
-  std::uint64_t interior;                  ///< of these, those whose neighbours are all far
-  float lowest, highest;                   ///< slope of the far ones; lowest > highest if there are none
-  float rho[RingBlock::kColumns];          ///< horizontal distance, metres
-  std::uint32_t run[RingBlock::kColumns];  ///< the run of each return; set by Runs::add
+  std::uint64_t returns;           ///< columns with a return
+  std::uint64_t starts;            ///< of these, those that are no neighbour of a return in the column before
+  std::uint64_t far;               ///< horizontal distance within [FarRange::min_range, FarRange::max_range)
+  std::uint64_t interior;          ///< of these, those whose neighbours are all far
+  float lowest, highest;           ///< slope of the far ones; lowest > highest if there are none
+  float rho[RingBlock::kColumns];  ///< horizontal distance, metres
+  static constexpr std::size_t kFillStep = 16;  ///< in which runs are written, and may end behind the last column
+  std::uint32_t run[RingBlock::kColumns + kFillStep];  ///< the run of each return; set by Runs::add
 };
 
 /// Which returns are far, by their horizontal distance from the sensor, metres.

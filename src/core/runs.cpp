@@ -3,6 +3,7 @@
 #include "core/runs.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/bits.h"
 
@@ -19,23 +20,29 @@ void Runs::add(const RingBlock& block, RingBlockInfo& info, std::size_t laser, s
                std::size_t columns, std::uint32_t first_element, DisjointSets& subclusters) {
   const auto first_run = static_cast<std::uint32_t>(runs.size());
   const auto first_cell = static_cast<std::uint32_t>(source_index.size());
-  const std::size_t end_run = first_run + countBits(info.starts);
+  const std::uint32_t end_run = first_run + countBits(info.starts);
   subclusters.grow(first_element + end_run);
   runs.resize(end_run);
   source_index.insert(source_index.end(), block.source_index, block.source_index + columns);
   returns += countBits(info.returns);
-  for (std::uint32_t number = first_run; number < end_run; ++number) subclusters.create(first_element + number);
   std::uint32_t number = first_run;
   if (info.starts == info.returns) {  // runs of one return, as in unordered clouds
+    subclusters.create(first_element + first_run, first_element + end_run);
     forEachChain(info.returns & ~(info.returns << 1), info.returns, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i, ++number) {
-        info.run[i] = first_element + number;
-        runs[number] = {first_cell + static_cast<std::uint32_t>(i), 1, 0};
-      }
+      const auto count = static_cast<std::uint32_t>(end - begin);
+      const auto cell = first_cell + static_cast<std::uint32_t>(begin);
+      std::iota(info.run + begin, info.run + end, first_element + number);
+      Run* const chain = runs.data() + number;
+      for (std::uint32_t i = 0; i < count; ++i) chain[i] = {cell + i, 1, 0};
+      number += count;
     });
   } else {
     forEachChain(info.starts, info.returns, [&](std::size_t begin, std::size_t end) {
-      std::fill(info.run + begin, info.run + end, first_element + number);
+      const std::uint32_t element = first_element + number;
+      subclusters.create(element);
+      // Most runs are shorter than that, and the next one overwrites what is too much.
+      for (std::size_t i = begin; i < end; i += RingBlockInfo::kFillStep)
+        std::fill_n(info.run + i, RingBlockInfo::kFillStep, element);
       runs[number++] = {first_cell + static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin), 0};
     });
   }

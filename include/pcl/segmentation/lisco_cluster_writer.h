@@ -44,16 +44,33 @@ class LiscoClusterWriter {
 
   /** \brief Appends points to the cluster of a subcluster, if its size is accepted. In all, as many points are appended
    * as its size says.
-   * \param[in] point_at callable as index_t (std::size_t i), i below \a count
+   * \param[in] count at least 1
+   * \param[in] point_at callable as index_t (std::size_t i), i below \a count; called twice for some
    */
   template <typename SizeOf, typename PointAt>
   void append(std::uint32_t subcluster, SizeOf&& size_of, std::size_t count, PointAt&& point_at) {
     if (!place(subcluster, size_of)) return;
     index_t*& next = next_index_[subcluster];
-    for (std::size_t i = 0; i < count; ++i) *next++ = point_at(i);
+    copy(next, count, point_at);
+    next += count;
   }
 
  private:
+  /** \brief Writes four points at a time, the last four again if need be: a branch for each point costs more. */
+  template <typename PointAt>
+  static void copy(index_t* to, std::size_t count, PointAt&& point_at) {
+    constexpr std::size_t kStep = 4;
+    if (count < kStep) {
+      for (const std::size_t i : {std::size_t{0}, count / 2, count - 1}) to[i] = point_at(i);
+      return;
+    }
+    const auto copy_some = [&](std::size_t first) {
+      for (std::size_t i = first; i < first + kStep; ++i) to[i] = point_at(i);
+    };
+    for (std::size_t first = 0; first + kStep < count; first += kStep) copy_some(first);
+    copy_some(count - kStep);
+  }
+
   index_t* begin(std::uint32_t size) {
     static_assert(std::is_nothrow_move_constructible<PointIndices>::value, "clusters that move keep their indices");
     if (size < min_size_ || size > max_size_) return (&ignored_);

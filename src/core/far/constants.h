@@ -70,8 +70,6 @@ inline constexpr std::uint32_t kWorkOfRealigning = 8;  ///< of placing a return 
 inline constexpr std::uint32_t kWorkOfUnplaced = 200;
 /// Segments that exceed their laser's nearest one by this factor get a mask of their own.
 inline constexpr float kWorthNarrowing = 1.25F;
-/// Returns of a segment from which on its bounds are computed in vectors.
-inline constexpr std::uint32_t kWorthVectors = 6;
 
 /// An upper bound on asin (ratio), 0 <= ratio < 1.
 inline float asinBound(float ratio) {

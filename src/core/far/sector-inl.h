@@ -61,7 +61,7 @@ void cutSector(const RangeImage& image, std::int64_t number, float later, const 
       float farthest = rho[first];
       float lowest = image.cells.z[cell + first];
       float highest = lowest;
-      if (end - first > kWorthVectors) {
+      if (end - first > 1) {
         FloatVector low_rho = hn::Set(kFloats, nearest);
         FloatVector high_rho = low_rho;
         FloatVector low_z = hn::Set(kFloats, lowest);
@@ -80,13 +80,6 @@ void cutSector(const RangeImage& image, std::int64_t number, float later, const 
         farthest = hn::GetLane(hn::MaxOfLanes(kFloats, high_rho));
         lowest = hn::GetLane(hn::MinOfLanes(kFloats, low_z));
         highest = hn::GetLane(hn::MaxOfLanes(kFloats, high_z));
-      } else {
-        for (std::uint32_t i = first + 1; i < end; ++i) {
-          nearest = std::min(nearest, rho[i]);
-          farthest = std::max(farthest, rho[i]);
-          lowest = std::min(lowest, image.cells.z[cell + i]);
-          highest = std::max(highest, image.cells.z[cell + i]);
-        }
       }
       sector.nearest[count] = nearest;
       sector.farthest[count] = farthest;

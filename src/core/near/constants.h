@@ -21,6 +21,9 @@ inline constexpr double kMaxDoubleNumber = 2251799813685248.0;
 /// Floats that are read behind the last point, by vectors.
 inline constexpr std::size_t kReadBehind = 16;
 
+/// Returns of a run that are copied together, though some of the last may be too many: a branch for each costs more.
+inline constexpr std::size_t kNearStep = 4;
+
 // --- Sorting --------------------------------------------------------------------------------------------------------
 
 /// Metres: between these, squares in float neither vanish nor overflow.
@@ -30,6 +33,8 @@ inline constexpr double kMaxSortedTolerance = 1e18;
 inline constexpr double kMaxVoxelNumber = 2147480000.0;
 /// Of the radix sort: a histogram of 8 KiB fits into the first-level cache.
 inline constexpr unsigned kDigitBits = 11;
+/// Returns of a fragment, on average, up to which it is not worth copying several together: shuffled clouds have 1.1.
+inline constexpr double kShortFragments = 1.25;
 /// Fragments between a prefetch and its use: measured on shuffled clouds, flat from 16 to 64.
 inline constexpr std::size_t kPrefetch = 32;
 

@@ -4,15 +4,22 @@
 
 #include <algorithm>
 
+#include "core/near/constants.h"
+
 namespace lisco {
 
 void NearReturns::add(const RingBlock& block, const RingBlockInfo& info, ColumnBits which) {
-  if (returns.size() < count + RingBlock::kColumns) returns.grow(count + std::max(count / 4, 4 * RingBlock::kColumns));
+  if (returns.size() < count + RingBlock::kColumns + kNearStep)
+    returns.grow(count + std::max(count / 4, 4 * RingBlock::kColumns));
   const float* const x = block.x + RingBlock::kMargin;
   const float* const y = block.y + RingBlock::kMargin;
   const float* const z = block.z + RingBlock::kMargin;
   forEachChain(which & ~(which << 1), which, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) returns[count++] = {x[i], y[i], z[i], info.run[i]};
+    NearReturn* const to = returns.data() + count;
+    for (std::size_t i = 0; i < end - begin; i += kNearStep)
+      for (std::size_t k = i; k < i + kNearStep; ++k)
+        to[k] = {x[begin + k], y[begin + k], z[begin + k], info.run[begin + k]};
+    count += end - begin;
   });
 }
 

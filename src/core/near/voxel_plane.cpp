@@ -2,7 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "core/near/voxel_plane.h"
 
-#include <cstring>
+#include <algorithm>
 #include <utility>
 
 #include "core/near/constants.h"
@@ -67,17 +67,30 @@ class PlaneLinker {
       linkBricks(plane, brick, other, *near, number + static_cast<std::size_t>(near->key - key));
   }
 
-  /// Links the voxels of a brick with each other.
+  /// Links the voxels of a brick with each other: those that are joined with those that are not yet.
   void linkBrick(VoxelPlane& plane, VoxelPlane::Brick& brick) {
-    const std::uint32_t end = endOf(brick);
-    std::uint32_t voxel = brick.first_voxel;
-    for (; voxel + 1 < end; ++voxel) linkVoxel(plane, voxel, plane, voxel + 1, end);
-    brick.root = subclusters_.find(plane.root[brick.first_voxel]);
-    for (voxel = brick.first_voxel + 1; voxel < end; ++voxel)
-      if ((plane.root[voxel] = subclusters_.find(plane.root[voxel])) != brick.root) {
-        brick.root = VoxelPlane::kSeveral;
-        return;
+    const std::uint32_t first = brick.first_voxel;
+    std::uint64_t left = allOf(brick);
+    std::uint32_t root = 0;
+    std::uint32_t parts = 0;
+    for (; left != 0; ++parts) {
+      std::uint64_t joined = left & (~left + 1);
+      left -= joined;
+      root = subclusters_.find(plane.root[first + static_cast<std::uint32_t>(__builtin_ctzll(joined))]);
+      while (joined != 0 && left != 0) {
+        const auto voxel = static_cast<std::uint32_t>(__builtin_ctzll(joined));
+        const std::uint64_t more = linkVoxel(plane, first + voxel, plane, first, left, root);
+        joined = (joined & (joined - 1)) | more;
+        left &= ~more;
       }
+    }
+    brick.root = parts == 1 ? root : VoxelPlane::kSeveral;
+    if (parts == 1) std::fill_n(&plane.root[first], endOf(brick) - first, root);
+  }
+
+  /// Bit i: voxel first_voxel + i of a brick.
+  std::uint64_t allOf(const VoxelPlane::Brick& brick) const {
+    return ~std::uint64_t{0} >> (64 - (endOf(brick) - brick.first_voxel));
   }
 
   bool haveOneRoot(const VoxelPlane::Brick& a, const VoxelPlane::Brick& b) {
@@ -85,47 +98,68 @@ class PlaneLinker {
            subclusters_.find(a.root) == subclusters_.find(b.root);
   }
 
-  /// \param number of the other brick among the near ones
+  /// Links the voxels of two bricks: each of the one that has fewer with all of the other.
+  /// \param number of the other brick among those near the first
   void linkBricks(VoxelPlane& plane, VoxelPlane::Brick& brick, VoxelPlane& other, VoxelPlane::Brick& near,
                   std::size_t number) {
-    if (!(Box::squaredGap(brick.box, near.box) < layout_.squared_tolerance) || haveOneRoot(brick, near)) return;
+    if (!(BoxLanes::squaredGap(brick.box, near.box) < layout_.squared_tolerance) || haveOneRoot(brick, near)) return;
+    if (endOf(brick) - brick.first_voxel <= endOf(near) - near.first_voxel)
+      linkVoxels(plane, brick, other, near, number);
+    else
+      linkVoxels(other, near, plane, brick, kNearBricks - 1 - number);
+  }
+
+  void linkVoxels(VoxelPlane& plane, VoxelPlane::Brick& brick, VoxelPlane& other, VoxelPlane::Brick& near,
+                  std::size_t number) {
     std::uint32_t voxel = brick.first_voxel;
     for (std::uint64_t left = brick.occupied; left != 0; left &= left - 1, ++voxel) {
       if ((near.occupied & kNeighbourhood.of[__builtin_ctzll(left)][number]) == 0) continue;
-      if (linkVoxel(plane, voxel, other, near.first_voxel, endOf(near)) && haveOneRoot(brick, near)) return;
+      std::uint32_t root = subclusters_.find(plane.root[voxel]);
+      const std::uint64_t joined = linkVoxel(plane, voxel, other, near.first_voxel, allOf(near), root);
+      plane.root[voxel] = root;
+      if (joined != 0 && haveOneRoot(brick, near)) return;
     }
   }
 
-  /// Links a voxel with some consecutive ones. \return whether anything was joined
-  bool linkVoxel(VoxelPlane& plane, std::uint32_t voxel, VoxelPlane& other, std::uint32_t begin, std::uint32_t end) {
-    std::uint32_t root = subclusters_.find(plane.root[voxel]);
-    bool is_joined = false;
-    for (std::uint32_t k = begin; k < end; k += std::uint32_t{kLanes}) {
-      const auto gap = [&](std::size_t axis) {
-        const FloatVector above =
-            hn::Sub(hn::Set(kFloats, plane.lo[axis][voxel]), hn::LoadU(kFloats, &other.hi[axis][k]));
-        const FloatVector below =
-            hn::Sub(hn::LoadU(kFloats, &other.lo[axis][k]), hn::Set(kFloats, plane.hi[axis][voxel]));
-        return hn::Max(hn::Max(above, below), hn::Zero(kFloats));
-      };
-      // Box::squaredGap, lane by lane
-      const FloatMask near = areNeighbours(gap(0), gap(1), gap(2), squared_tolerance_);
-      std::uint32_t left = bitsOf(hn::And(near, differ(&other.root[k], hn::Set(kWords, root)))) & lanesBelow(end - k);
+  /// Links a voxel with some of a brick. \return those that are in its set now
+  /// \param others bit i: voxel first + i
+  /// \param root of the voxel
+  std::uint64_t linkVoxel(const VoxelPlane& plane, std::uint32_t voxel, VoxelPlane& other, std::uint32_t first,
+                          std::uint64_t others, std::uint32_t& root) {
+    std::uint64_t joined = 0;
+    for (std::uint32_t k = 0; k < 64 && others >> k != 0; k += std::uint32_t{kLanes}) {
+      const std::uint64_t unlike = bitsOf(differ(&other.root[first + k], hn::Set(kWords, root)));
+      joined |= (bitsAt(others, k) & ~unlike) << k;
+      std::uint64_t left = bitsAt(others, k) & unlike & nearBoxes(plane, voxel, other, first + k);
       for (; left != 0; left &= left - 1) {
-        const std::uint32_t candidate = k + static_cast<std::uint32_t>(__builtin_ctz(left));
-        const std::uint32_t other_root = other.root[candidate] = subclusters_.find(other.root[candidate]);
-        if (other_root == root || !haveNeighbours(plane, voxel, other, candidate)) continue;
-        other.root[candidate] = root = subclusters_.merge(root, other_root);
-        is_joined = true;
+        const std::uint32_t i = k + static_cast<std::uint32_t>(__builtin_ctzll(left));
+        const std::uint32_t other_root = other.root[first + i] = subclusters_.find(other.root[first + i]);
+        if (other_root != root) {
+          if (!haveNeighbours(plane, voxel, other, first + i)) continue;
+          other.root[first + i] = root = subclusters_.merge(root, other_root);
+        }
+        joined |= std::uint64_t{1} << i;
       }
     }
-    plane.root[voxel] = root;
-    return is_joined;
+    return joined;
   }
 
-  static Box boxOf(const VoxelPlane& plane, std::uint32_t voxel) {
-    return {{plane.lo[0][voxel], plane.lo[1][voxel], plane.lo[2][voxel]},
-            {plane.hi[0][voxel], plane.hi[1][voxel], plane.hi[2][voxel]}};
+  /// Box::squaredGap of a voxel and some consecutive ones. \return bit i: that of voxel k + i is below the tolerance's
+  std::uint32_t nearBoxes(const VoxelPlane& plane, std::size_t voxel, const VoxelPlane& other, std::size_t k) const {
+    const auto gap = [&](std::size_t axis) {
+      const FloatVector above =
+          hn::Sub(hn::Set(kFloats, plane.lo[axis][voxel]), hn::LoadU(kFloats, &other.hi[axis][k]));
+      const FloatVector below =
+          hn::Sub(hn::LoadU(kFloats, &other.lo[axis][k]), hn::Set(kFloats, plane.hi[axis][voxel]));
+      return hn::Max(hn::Max(above, below), hn::Zero(kFloats));
+    };
+    return bitsOf(areNeighbours(gap(0), gap(1), gap(2), squared_tolerance_));
+  }
+
+  static BoxLanes boxOf(const VoxelPlane& plane, std::uint32_t voxel) {
+    BoxLanes box({plane.lo[0][voxel], plane.lo[1][voxel], plane.lo[2][voxel], 0});
+    box.add({plane.hi[0][voxel], plane.hi[1][voxel], plane.hi[2][voxel], 0});
+    return box;
   }
 
   /// Whether any return of one voxel is a neighbour of any return of another, whose boxes are near enough.
@@ -136,28 +170,41 @@ class PlaneLinker {
       std::swap(few, many);
       std::swap(a, b);
     }
-    const std::uint32_t begin = many->first_point[b];
-    const std::uint32_t end = many->first_point[b + 1];
-    if (end - begin == 1) return true;  // the boxes are the returns
-    const Box box = boxOf(*many, b);
-    for (std::uint32_t i = few->first_point[a]; i < few->first_point[a + 1]; ++i) {
-      const NearReturn& point = few->points[i];
-      if (!(Box::squaredGap(Box::around(point.x, point.y, point.z), box) < layout_.squared_tolerance)) continue;
-      const FloatVector own_x = hn::Set(kFloats, point.x);
-      const FloatVector own_y = hn::Set(kFloats, point.y);
-      const FloatVector own_z = hn::Set(kFloats, point.z);
-      for (std::uint32_t k = begin; k < end; k += std::uint32_t{kLanes}) {
-        FloatVector x;
-        FloatVector y;
-        FloatVector z;
-        FloatVector elements;
-        hn::LoadInterleaved4(kFloats, &many->points[k].x, x, y, z, elements);
-        const FloatMask near =
-            areNeighbours(hn::Sub(own_x, x), hn::Sub(own_y, y), hn::Sub(own_z, z), squared_tolerance_);
-        if ((bitsOf(near) & lanesBelow(end - k)) != 0) return true;
-      }
+    const NearReturn* const own = few->points.data() + few->first_point[a];
+    const std::size_t own_count = few->first_point[a + 1] - few->first_point[a];
+    const NearReturn* const others = many->points.data() + many->first_point[b];
+    const std::size_t other_count = many->first_point[b + 1] - many->first_point[b];
+    if (other_count == 1) return true;  // the boxes are the returns
+    if (other_count <= kLanes) {
+      const Coordinates other = load(others);
+      const std::uint32_t lanes = lanesBelow(other_count);
+      for (std::size_t i = 0; i < own_count; ++i)
+        if ((neighboursOf(own[i], other) & lanes) != 0) return true;
+      return false;
+    }
+    const BoxLanes box = boxOf(*many, b);
+    for (std::size_t i = 0; i < own_count; ++i) {
+      if (!(BoxLanes::squaredGap(BoxLanes(own[i]), box) < layout_.squared_tolerance)) continue;
+      for (std::size_t k = 0; k < other_count; k += kLanes)
+        if ((neighboursOf(own[i], load(others + k)) & lanesBelow(other_count - k)) != 0) return true;
     }
     return false;
+  }
+
+  struct Coordinates {
+    FloatVector x, y, z;
+  };
+  static Coordinates load(const NearReturn* returns) {
+    Coordinates loaded;
+    FloatVector elements;
+    hn::LoadInterleaved4(kFloats, &returns->x, loaded.x, loaded.y, loaded.z, elements);
+    return loaded;
+  }
+
+  /// Bit i: return i of the others is a neighbour.
+  std::uint32_t neighboursOf(const NearReturn& one, const Coordinates& others) const {
+    return bitsOf(areNeighbours(hn::Sub(hn::Set(kFloats, one.x), others.x), hn::Sub(hn::Set(kFloats, one.y), others.y),
+                                hn::Sub(hn::Set(kFloats, one.z), others.z), squared_tolerance_));
   }
 
   const PlaneLayout& layout_;
@@ -184,43 +231,13 @@ namespace {
 HWY_EXPORT(linkWithin);
 HWY_EXPORT(linkAcross);
 
-/// The box around some returns: four lanes, of which the last, of their elements, has no meaning.
-class PointBounds {
- public:
-  explicit PointBounds(const NearReturn& near) : lo_(lanesOf(near)), hi_(lo_) {}
-  void add(const NearReturn& near) {
-    const Lanes point = lanesOf(near);
-    lo_ = point < lo_ ? point : lo_;
-    hi_ = point > hi_ ? point : hi_;
-  }
-  Box box() const { return {{lo_[0], lo_[1], lo_[2]}, {hi_[0], hi_[1], hi_[2]}}; }
-
- private:
-  using Lanes = float __attribute__((vector_size(16)));
-  static Lanes lanesOf(const NearReturn& near) {
-    Lanes lanes;
-    static_assert(sizeof lanes == sizeof near);
-    std::memcpy(&lanes, &near, sizeof lanes);
-    return lanes;
-  }
-  Lanes lo_, hi_;
-};
-
-}  // namespace
-
-void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, std::size_t following,
-               const PlaneLayout& layout, const FragmentList& fragments, DisjointSets& subclusters) {
-  const std::uint64_t number_mask = (std::uint64_t{1} << layout.number_bits) - 1;
+/// \param returnOf callable as const NearReturn* (std::uint64_t item): the first of a fragment
+/// \param sizeOf callable as std::size_t (std::uint64_t item): number of its returns
+/// \tparam kStep returns that are copied together, see kNearStep
+template <std::size_t kStep, typename ReturnOf, typename SizeOf>
+void fill(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, std::size_t following,
+          const PlaneLayout& layout, DisjointSets& subclusters, ReturnOf&& returnOf, SizeOf&& sizeOf) {
   const std::uint64_t brick_mask = (std::uint64_t{1} << layout.brick_bits) - 1;
-  const auto numberOf = [&](std::uint64_t item) { return static_cast<std::size_t>(item & number_mask); };
-  const bool is_one_part = fragments.parts.size() == 1;
-  const NearReturn* const first_part = fragments.parts.front().near->returns.data();
-  const auto returnOf = [&](std::uint64_t item) {
-    if (is_one_part) return first_part + numberOf(item);
-    const FragmentList::Part& part = fragments.partOf(numberOf(item));
-    return part.near->returns.data() + (numberOf(item) - part.first);
-  };
-  plane.reserveVoxels(count);
   VoxelPlane::Brick* brick = plane.bricks.data() - 1;
   std::uint64_t brick_key = ~std::uint64_t{0};
   std::uint32_t voxel = 0;
@@ -228,7 +245,7 @@ void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
   for (std::size_t i = 0; i < count; ++voxel) {
     const std::uint64_t key = items[i] >> layout.number_bits;
     const NearReturn* near = returnOf(items[i]);
-    PointBounds bounds(*near);
+    BoxLanes box(*near);
     std::uint32_t root = subclusters.find(near->element);
     plane.first_point[voxel] = static_cast<std::uint32_t>(points);
     do {
@@ -238,18 +255,19 @@ void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
       if (left > kPrefetch / 2) subclusters.prefetch(returnOf(items[i + kPrefetch / 2])->element);
       near = returnOf(items[i]);
       root = subclusters.add(root, near->element);
-      const std::size_t size = fragments.endOf(numberOf(items[i])) - numberOf(items[i]);
+      const std::size_t size = sizeOf(items[i]);
       plane.reservePoints(points + size);
-      for (std::size_t k = 0; k < size; ++k, ++near, ++points) {
-        plane.points[points] = *near;
-        bounds.add(*near);
-      }
+      for (std::size_t k = 0; k < size; k += kStep)
+        for (std::size_t some = k; some < k + kStep; ++some) {
+          plane.points[points + some] = near[some];
+          box.add(near[std::min(some, size - 1)]);
+        }
+      points += size;
       ++i;
     } while (i < count && items[i] >> layout.number_bits == key);
-    const Box box = bounds.box();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      plane.lo[axis][voxel] = box.lo[axis];
-      plane.hi[axis][voxel] = box.hi[axis];
+      plane.lo[axis][voxel] = box.lo(axis);
+      plane.hi[axis][voxel] = box.hi(axis);
     }
     plane.root[voxel] = root;
     if ((key >> 6 & brick_mask) != brick_key) {
@@ -260,8 +278,34 @@ void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
     brick->box.add(box);
   }
   plane.first_point[voxel] = static_cast<std::uint32_t>(points);
-  *++brick = {~std::uint64_t{0}, 0, voxel, VoxelPlane::kSeveral, {}};
+  *++brick = {~std::uint64_t{0}, 0, voxel, VoxelPlane::kSeveral, BoxLanes(NearReturn{})};
   plane.brick_count = static_cast<std::size_t>(brick - plane.bricks.data());
+}
+
+}  // namespace
+
+void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, std::size_t following,
+               const PlaneLayout& layout, const FragmentList& fragments, DisjointSets& subclusters) {
+  const std::uint64_t number_mask = (std::uint64_t{1} << layout.number_bits) - 1;
+  const auto numberOf = [&](std::uint64_t item) { return static_cast<std::size_t>(item & number_mask); };
+  const NearReturn* const first_part = fragments.parts.front().near->returns.data();
+  const auto inFirstPart = [&](std::uint64_t item) { return first_part + numberOf(item); };
+  const auto inAnyPart = [&](std::uint64_t item) {
+    const FragmentList::Part& part = fragments.partOf(numberOf(item));
+    return part.near->returns.data() + (numberOf(item) - part.first);
+  };
+  const auto sizeOf = [&](std::uint64_t item) { return fragments.endOf(numberOf(item)) - numberOf(item); };
+  plane.reserveVoxels(count);
+  const auto fillFrom = [&](auto&& returnOf) {
+    if (fragments.are_short)
+      fill<1>(plane, items, count, following, layout, subclusters, returnOf, sizeOf);
+    else
+      fill<kNearStep>(plane, items, count, following, layout, subclusters, returnOf, sizeOf);
+  };
+  if (fragments.parts.size() == 1)
+    fillFrom(inFirstPart);
+  else
+    fillFrom(inAnyPart);
 }
 
 void linkPlane(VoxelPlane& plane, const PlaneLayout& layout, DisjointSets& subclusters) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "core/disjoint_sets.h"
@@ -22,6 +23,7 @@ struct FragmentList {
   };
   std::vector<Part> parts;
   std::vector<std::uint64_t> starts;  ///< bit i: return i begins a fragment, or is the end of a part
+  bool are_short = false;             ///< most have one return, as in unordered clouds
 
   const Part& partOf(std::size_t number) const {
     std::size_t part = parts.size() - 1;
@@ -39,6 +41,43 @@ struct FragmentList {
   }
 };
 
+/// A box whose coordinates lie in the lanes of two vectors; the last lane, of elements, has no meaning.
+class BoxLanes {
+ public:
+  explicit BoxLanes(const NearReturn& near) : lo_(lanesOf(near)), hi_(lo_) {}
+  void add(const NearReturn& near) {
+    const Lanes point = lanesOf(near);
+    lo_ = point < lo_ ? point : lo_;
+    hi_ = point > hi_ ? point : hi_;
+  }
+  void add(const BoxLanes& other) {
+    lo_ = other.lo_ < lo_ ? other.lo_ : lo_;
+    hi_ = other.hi_ > hi_ ? other.hi_ : hi_;
+  }
+  float lo(std::size_t axis) const { return lo_[axis]; }
+  float hi(std::size_t axis) const { return hi_[axis]; }
+
+  /// Box::squaredGap
+  static float squaredGap(const BoxLanes& a, const BoxLanes& b) {
+    const Lanes above = a.lo_ - b.hi_;
+    const Lanes below = b.lo_ - a.hi_;
+    const Lanes none{};
+    Lanes gap = above > below ? above : below;
+    gap = gap > none ? gap : none;
+    return squaredDistance(gap[0], gap[1], gap[2]);
+  }
+
+ private:
+  using Lanes = float __attribute__((vector_size(16)));
+  static Lanes lanesOf(const NearReturn& near) {
+    Lanes lanes;
+    static_assert(sizeof lanes == sizeof near);
+    std::memcpy(&lanes, &near, sizeof lanes);
+    return lanes;
+  }
+  Lanes lo_, hi_;
+};
+
 /// The voxels of a plane of bricks, ordered by brick and voxel, each with the box around its returns.
 struct VoxelPlane {
   static constexpr std::uint32_t kSeveral = ~std::uint32_t{0};
@@ -48,7 +87,7 @@ struct VoxelPlane {
     std::uint64_t occupied;  ///< bit i: voxel i
     std::uint32_t first_voxel;
     std::uint32_t root;  ///< common to all its voxels, perhaps outdated; kSeveral if they had several
-    Box box;
+    BoxLanes box{NearReturn{}};
   };
 
   /// Ordered by key, with an end mark behind the last. These arrays are longer than what is in use.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "core/bits.h"
@@ -119,8 +120,9 @@ std::size_t cutPart(const VoxelNumbering& numbering, unsigned number_bits, const
       addToKeys(coordinates[axis], numbering.corner[axis], numbering.per_metre, brick_shifts[i], 2 * i, keys + 1);
     }
     const std::uint64_t starts_here = changes(keys + 1, elements + 1) & ~bitsFrom(size);
-    forEachBit(starts_here,
-               [&](std::size_t i) { items[count++] = keys[1 + i] << number_bits | (part.first + batch + i); });
+    std::uint64_t items_here[kBatch];
+    for (std::size_t i = 0; i < kBatch; ++i) items_here[i] = keys[1 + i] << number_bits | (part.first + batch + i);
+    forEachBit(starts_here, [&](std::size_t i) { items[count++] = items_here[i]; });
     starts[batch / kBatch] = starts_here;
   }
   const std::size_t end = part.near->count;
@@ -174,13 +176,13 @@ bool VoxelSorter::number(const Tolerance& tolerance) {
   if (tolerance.reach() < kMinSortedTolerance || tolerance.reach() > kMaxSortedTolerance) return false;
   numbering_.per_metre = 1 / (kVoxelSide * tolerance.reach());
   double bricks[3];
-  Box all{};
-  for (const FragmentList::Part& part : fragments_.parts) {
-    Box box;
-    HWY_DYNAMIC_DISPATCH(boundReturns)(part.near->returns.data(), part.near->count, box);
-    if (&part == &fragments_.parts.front()) all = box;
-    all.add(box);
-  }
+  part_boxes_.resize(fragments_.parts.size());
+  inParallel(fragments_.parts.size(), [&](std::size_t i) {
+    const NearReturns& near = *fragments_.parts[i].near;
+    HWY_DYNAMIC_DISPATCH(boundReturns)(near.returns.data(), near.count, part_boxes_[i]);
+  });
+  Box all = part_boxes_.front();
+  for (const Box& box : part_boxes_) all.add(box);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     numbering_.corner[axis] = static_cast<double>(all.lo[axis]);
     const double voxels =
@@ -217,6 +219,10 @@ void VoxelSorter::cutFragments() {
     part_sizes_[i] = HWY_DYNAMIC_DISPATCH(cutPart)(numbering_, number_bits_, part, &fragments_.starts[part.first / 64],
                                                    &items_[part.first]);
   });
+  std::size_t returns = 0;
+  for (const FragmentList::Part& part : fragments_.parts) returns += part.near->count;
+  const auto fragments = std::accumulate(part_sizes_.begin(), part_sizes_.end(), std::size_t{0});
+  fragments_.are_short = static_cast<double>(returns) < kShortFragments * static_cast<double>(fragments);
 }
 
 /// Moves the fragments of each slab of planes together: slabs of about equal work, one for each part.
@@ -265,7 +271,8 @@ void VoxelSorter::sort(const Slab& slab) {
   const unsigned digit_bits = (numbering_.bits + passes - 1) / passes;
   const std::uint64_t mask = (std::uint64_t{1} << digit_bits) - 1;
   static_assert(kMaxPasses * kDigitBits >= 64, "the longest keys fit");
-  std::uint32_t places[kMaxPasses][std::size_t{1} << kDigitBits] = {};
+  std::uint32_t places[kMaxPasses][std::size_t{1} << kDigitBits];
+  for (unsigned pass = 0; pass < passes; ++pass) std::fill_n(places[pass], mask + 1, 0);
   std::uint64_t* from = items_.data() + slab.begin;
   std::uint64_t* to = scratch_.data() + slab.begin;
   const std::size_t count = slab.end - slab.begin;

@@ -56,7 +56,8 @@ class VoxelSorter {
   unsigned plane_shift_ = 0;
   FragmentList fragments_;
   GrowingArray<std::uint64_t> items_, scratch_;  ///< a fragment's key and number
-  std::vector<std::size_t> part_sizes_;          ///< in fragments
+  std::vector<Box> part_boxes_;
+  std::vector<std::size_t> part_sizes_;  ///< in fragments
   std::vector<std::uint32_t> histogram_;
   std::vector<Slab> slabs_;
   std::vector<VoxelPlane> planes_;  ///< two for each slab
