@@ -8,6 +8,7 @@
 
 #include "core/block_scheduler.h"
 #include "core/disjoint_sets.h"
+#include "core/far_trial.h"
 #include "core/load_balancer.h"
 #include "core/near/voxel_sorter.h"
 #include "core/parallel.h"
@@ -37,9 +38,9 @@ class ColumnClusterer::Rotation {
  private:
   void divide(std::size_t columns, std::size_t lasers, const CellSource& cells);
   void receiveAtOnce(std::size_t columns, std::size_t lasers, const CellSource& cells);
-  std::size_t tryFar(std::size_t lasers, const CellSource& cells);
-  void preparePart(std::size_t i);
-  void readPart(std::size_t i, std::size_t begin, std::size_t end, std::size_t lasers, const CellSource& cells);
+  void preparePart(std::size_t i, const SensorHints& hints);
+  void readPart(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial);
+  bool readFarAndNear(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial);
   void receiveInSequence(std::size_t columns, std::size_t lasers, const CellSource& cells);
   void linkPartitions();
   void linkCollected();
@@ -86,6 +87,7 @@ constexpr std::size_t kWorthSorting = 256;
 /// Columns of these on which the work of far returns is measured. Fewer: a worse estimate; more: a later change
 /// (recordings).
 constexpr std::size_t kTriedColumns = 128;
+static_assert(kTriedColumns % RingBlock::kColumns == 0, "whole blocks are read");
 /// SensorHints::drift from which on returns leave their expected bins too often: of clouds that are motion-compensated.
 /// The first columns do not show it, as the motion grows from there. At rest 0.05, up to 0.8 in a vehicle's frame; in
 /// motion 1 to 20 (recordings).
@@ -159,65 +161,67 @@ void ColumnClusterer::Rotation::divide(std::size_t columns, std::size_t lasers, 
 }
 
 /// Each thread reads its part of the columns, and links its far returns as far as it goes without the others. Near
-/// returns are collected.
+/// returns are collected. If the columns drift, all returns are near.
 void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t lasers, const CellSource& cells) {
   if (partition_count_ == 1)
     parts_.assign(1, {0, columns});
   else
     subclusters_.reserve(lasers * columns + RingBlock::kColumns);
   near_ = Near::kCollected;
-  const std::size_t tried = tryFar(lasers, cells);
+  const bool drifts = parameters_.sensor.drift > kMaxDrift;
+  FarTrial trial;
   inParallel(partition_count_, [&](std::size_t i) {
-    if (i > 0) preparePart(i);
-    readPart(i, i == 0 ? tried : parts_[i].first, parts_[i].end, lasers, cells);
+    try {
+      if (drifts || partition_count_ > 1)
+        preparePart(i, drifts ? SensorHints() : parameters_.sensor);
+      else
+        partitions_[0].collectNear();  // prepared by usePartitions ()
+      readPart(i, lasers, cells, trial);
+    } catch (...) {
+      if (i == 0) trial.decide(true);  // the others wait for it
+      throw;
+    }
   });
   scheduler_.skipColumns(columns);
 }
 
-/// Reads the first columns. If linking far returns takes longer than sorting, or will as the columns drift, all returns
-/// of the rotation are near.
-/// \return the columns read
-std::size_t ColumnClusterer::Rotation::tryFar(std::size_t lasers, const CellSource& cells) {
-  const bool drifts = parameters_.sensor.drift > kMaxDrift;
-  if (drifts) parameters_.sensor.steps_per_turn = 0;
-  if (drifts || partition_count_ > 1)
-    preparePart(0);
-  else
-    partitions_[0].collectNear();  // prepared by usePartitions ()
-  const std::size_t tried = std::min(kTriedColumns, parts_[0].end);
-  if (!partitions_[0].hasFar()) return 0;
-  readPart(0, 0, tried, lasers, cells);
-  if (partitions_[0].isFarWorthwhile()) {
-    partitions_[0].reserveNear(tried, parts_[0].end);
-    return tried;
-  }
-  parameters_.sensor.steps_per_turn = 0;
-  preparePart(0);
-  return 0;
-}
-
-void ColumnClusterer::Rotation::preparePart(std::size_t i) {
-  partitions_[i].prepare(tolerance_, parameters_.sensor, parts_[i].end - parts_[i].first);
+void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hints) {
+  partitions_[i].prepare(tolerance_, hints, parts_[i].end - parts_[i].first);
   partitions_[i].collectNear();
 }
 
-void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t begin, std::size_t end, std::size_t lasers,
-                                         const CellSource& cells) {
+void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial) {
   Partition& partition = partitions_[i];
-  if (!partition.hasFar()) {
-    partition.readLasers(cells, begin, end, lasers, subclusters_);
-    if (partition_count_ > 1)
-      balancer_.record(begin, end - begin, (end - begin) * lasers * kWorkOfCell + partition.workDone());
-    return;
+  if (partition.hasFar()) {
+    if (readFarAndNear(i, lasers, cells, trial)) return;
+    preparePart(i, SensorHints());
   }
+  const auto [begin, end] = parts_[i];
+  partition.readLasers(cells, begin, end, lasers, subclusters_);
+  if (partition_count_ > 1)
+    balancer_.record(begin, end - begin, (end - begin) * lasers * kWorkOfCell + partition.workDone());
+}
+
+/// Reads a part block by block, and links its far returns.
+/// \return false, with part of it read, if linking the far returns of the first columns takes longer than sorting them
+bool ColumnClusterer::Rotation::readFarAndNear(std::size_t i, std::size_t lasers, const CellSource& cells,
+                                               FarTrial& trial) {
+  Partition& partition = partitions_[i];
   partition.addLasers(lasers);
+  const auto [begin, end] = parts_[i];
   for (std::size_t first = begin; first < end; first += RingBlock::kColumns) {
+    if (trial.isRefused()) return false;
     const std::size_t count = std::min(end - first, RingBlock::kColumns);
     const std::size_t before = partition.workDone();
     partition.readColumns(cells, first, count, lasers, static_cast<std::uint32_t>(first), subclusters_);
     if (partition_count_ > 1)
       balancer_.record(first, count, count * lasers * kWorkOfCell + partition.workDone() - before);
+    if (i == 0 && first + count == std::min(kTriedColumns, end)) {
+      trial.decide(partition.isFarWorthwhile());
+      partition.reserveNear(first + count, end);
+    }
   }
+  return trial.await();
 }
 
 /// Whole blocks of columns are read at once; single columns are gathered into blocks, whose work is spread.
