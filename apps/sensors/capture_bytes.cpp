@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "capture_bytes.h"
+#include "sensors/capture_bytes.h"
 
 namespace lisco_apps {
 

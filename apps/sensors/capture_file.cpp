@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "capture_file.h"
+#include "sensors/capture_file.h"
 
 #include <pcap/pcap.h>
 

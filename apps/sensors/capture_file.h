@@ -6,9 +6,9 @@
 #include <memory>
 #include <optional>
 
-#include "fragment_assembler.h"
 #include "io/text.h"
-#include "packet_source.h"
+#include "sensors/fragment_assembler.h"
+#include "sensors/packet_source.h"
 
 struct pcap;
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "decoder.h"
+#include "sensors/decoder.h"
 
 #include <algorithm>
 #include <stdexcept>
 
 #include <boost/algorithm/string/join.hpp>
 
-#include "hesai_decoder.h"
-#include "hesai_model.h"
-#include "ouster_decoder.h"
-#include "ouster_metadata.h"
-#include "velodyne_decoder.h"
-#include "velodyne_model.h"
+#include "sensors/hesai_decoder.h"
+#include "sensors/hesai_model.h"
+#include "sensors/ouster_decoder.h"
+#include "sensors/ouster_metadata.h"
+#include "sensors/velodyne_decoder.h"
+#include "sensors/velodyne_model.h"
 
 namespace lisco_apps {
 

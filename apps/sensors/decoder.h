@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "io/text.h"
-#include "packet_source.h"
+#include "sensors/packet_source.h"
 
 namespace lisco_apps {
 

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "decoder.h"
+#include "sensors/decoder.h"
 
 namespace lisco_apps {
 

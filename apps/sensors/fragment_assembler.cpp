@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "fragment_assembler.h"
+#include "sensors/fragment_assembler.h"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "hesai_decoder.h"
+#include "sensors/hesai_decoder.h"
 
 #include <cmath>
 

@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "decoder.h"
-#include "echo.h"
-#include "hesai_model.h"
-#include "packet_order.h"
+#include "sensors/decoder.h"
+#include "sensors/echo.h"
+#include "sensors/hesai_model.h"
+#include "sensors/packet_order.h"
 
 namespace lisco_apps {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "ouster_decoder.h"
+#include "sensors/ouster_decoder.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <boost/endian/conversion.hpp>
 
-#include "laser.h"
+#include "sensors/laser.h"
 
 namespace lisco_apps {
 namespace {

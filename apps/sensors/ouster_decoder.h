@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "decoder.h"
-#include "echo.h"
-#include "ouster_metadata.h"
+#include "sensors/decoder.h"
+#include "sensors/echo.h"
+#include "sensors/ouster_metadata.h"
 
 namespace lisco_apps {
 

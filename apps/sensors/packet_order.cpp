@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "packet_order.h"
+#include "sensors/packet_order.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "rotation_cutter.h"
+#include "sensors/rotation_cutter.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "udp_receiver.h"
+#include "sensors/udp_receiver.h"
 
 #include <netinet/in.h>
 #include <poll.h>

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "packet_source.h"
+#include "sensors/packet_source.h"
 
 namespace lisco_apps {
 

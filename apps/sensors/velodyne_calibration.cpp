@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "velodyne_calibration.h"
+#include "sensors/velodyne_calibration.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "velodyne_decoder.h"
+#include "sensors/velodyne_decoder.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,11 +8,11 @@
 #include <optional>
 #include <vector>
 
-#include "decoder.h"
-#include "echo.h"
-#include "packet_order.h"
-#include "packet_source.h"
-#include "velodyne_model.h"
+#include "sensors/decoder.h"
+#include "sensors/echo.h"
+#include "sensors/packet_order.h"
+#include "sensors/packet_source.h"
+#include "sensors/velodyne_model.h"
 
 namespace lisco_apps {
 

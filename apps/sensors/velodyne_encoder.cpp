@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "velodyne_encoder.h"
+#include "sensors/velodyne_encoder.h"
 
 #include <cmath>
 

@@ -7,8 +7,8 @@
 #include <functional>
 #include <string>
 
-#include "capture_bytes.h"
-#include "velodyne_model.h"
+#include "sensors/capture_bytes.h"
+#include "sensors/velodyne_model.h"
 
 namespace lisco_apps {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "velodyne_model.h"
+#include "sensors/velodyne_model.h"
 
 #include <array>
 #include <stdexcept>
@@ -8,7 +8,7 @@
 #include <boost/algorithm/string/join.hpp>
 
 #include "io/text.h"
-#include "velodyne_calibration.h"
+#include "sensors/velodyne_calibration.h"
 
 namespace lisco_apps {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "io/text.h"
-#include "laser.h"
+#include "sensors/laser.h"
 
 namespace lisco_apps {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "drive_files.h"
+#include "simulate/drive_files.h"
 
 #include <cmath>
 #include <optional>
 #include <vector>
 
-#include "drive_packets.h"
 #include "io/output_file.h"
+#include "simulate/drive_packets.h"
 
 namespace lisco_apps {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "drive_packets.h"
+#include "simulate/drive_packets.h"
 
 #include <algorithm>
 #include <cerrno>

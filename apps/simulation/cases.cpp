@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "cases.h"
+#include "simulation/cases.h"
 
 #include <algorithm>
 #include <array>
@@ -12,8 +12,8 @@
 
 #include <boost/functional/hash.hpp>
 
-#include "random.h"
-#include "solid.h"
+#include "simulation/random.h"
+#include "simulation/solid.h"
 
 namespace lisco_simulation {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "scanner.h"
-#include "sensor.h"
+#include "simulation/scanner.h"
+#include "simulation/sensor.h"
 
 namespace lisco_simulation {
 

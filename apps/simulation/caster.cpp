@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "caster.h"
+#include "simulation/caster.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "random.h"
+#include "simulation/random.h"
 
 namespace lisco_simulation {
 namespace {

@@ -8,10 +8,10 @@
 #include <optional>
 #include <vector>
 
-#include "scanner.h"
-#include "solid.h"
-#include "terrain.h"
-#include "vector.h"
+#include "simulation/scanner.h"
+#include "simulation/solid.h"
+#include "simulation/terrain.h"
+#include "simulation/vector.h"
 
 namespace lisco_simulation {
 

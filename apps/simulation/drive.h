@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "caster.h"
-#include "motion.h"
-#include "scanner.h"
-#include "sensor.h"
-#include "solid.h"
-#include "terrain.h"
+#include "simulation/caster.h"
+#include "simulation/motion.h"
+#include "simulation/scanner.h"
+#include "simulation/sensor.h"
+#include "simulation/solid.h"
+#include "simulation/terrain.h"
 
 namespace lisco_simulation {
 

@@ -2,8 +2,8 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include "terrain.h"
-#include "vector.h"
+#include "simulation/terrain.h"
+#include "simulation/vector.h"
 
 namespace lisco_simulation {
 

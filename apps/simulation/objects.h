@@ -2,8 +2,8 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include "random.h"
-#include "scanner.h"
+#include "simulation/random.h"
+#include "simulation/scanner.h"
 
 namespace lisco_simulation {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "scanner.h"
+#include "simulation/scanner.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "caster.h"
-#include "terrain.h"
+#include "simulation/caster.h"
+#include "simulation/terrain.h"
 
 namespace lisco_simulation {
 

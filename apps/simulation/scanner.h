@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "sensor.h"
-#include "solid.h"
-#include "vector.h"
+#include "simulation/sensor.h"
+#include "simulation/solid.h"
+#include "simulation/vector.h"
 
 namespace lisco_simulation {
 

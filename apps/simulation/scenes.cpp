@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "scenes.h"
+#include "simulation/scenes.h"
 
 #include <cmath>
 #include <limits>
@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "objects.h"
-#include "random.h"
+#include "simulation/objects.h"
+#include "simulation/random.h"
 
 namespace lisco_simulation {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "scanner.h"
+#include "simulation/scanner.h"
 
 namespace lisco_simulation {
 

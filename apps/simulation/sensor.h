@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "vector.h"
+#include "simulation/vector.h"
 
 namespace lisco_simulation {
 

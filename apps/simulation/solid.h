@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "vector.h"
+#include "simulation/vector.h"
 
 namespace lisco_simulation {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "street.h"
+#include "simulation/street.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "objects.h"
-#include "random.h"
+#include "simulation/objects.h"
+#include "simulation/random.h"
 
 namespace lisco_simulation {
 namespace {

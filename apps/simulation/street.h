@@ -2,9 +2,9 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include "drive.h"
-#include "motion.h"
-#include "terrain.h"
+#include "simulation/drive.h"
+#include "simulation/motion.h"
+#include "simulation/terrain.h"
 
 namespace lisco_simulation {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "vector.h"
+#include "simulation/vector.h"
 
 namespace lisco_simulation {
 

@@ -9,7 +9,7 @@
 
 #include "lisco/cluster_features.h"
 #include "lisco/cluster_order.h"
-#include "stream.h"
+#include "stream/stream.h"
 
 namespace lisco_apps {
 

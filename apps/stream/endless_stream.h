@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "lisco/endless_clusterer.h"
-#include "stream.h"
-#include "turn_position.h"
+#include "stream/stream.h"
+#include "stream/turn_position.h"
 
 namespace lisco_apps {
 

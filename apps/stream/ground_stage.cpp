@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "ground_stage.h"
+#include "stream/ground_stage.h"
 
 namespace lisco_apps {
 

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "io/scan_options.h"
-#include "latency.h"
 #include "lisco/ground_filter.h"
 #include "lisco/return.h"
 #include "sensors/decoder.h"
+#include "stream/latency.h"
 
 namespace lisco_apps {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "io/text.h"
-#include "stream.h"
+#include "stream/stream.h"
 
 namespace lisco_apps {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "other_sensors.h"
+#include "stream/other_sensors.h"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-#include "packet_queue.h"
+#include "stream/packet_queue.h"
 
 #include <signal.h>
 

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "io/terminal_line.h"
-#include "labelled_pcd.h"
 #include "sensors/decoder.h"
 #include "sensors/packet_source.h"
-#include "stream.h"
+#include "stream/labelled_pcd.h"
+#include "stream/stream.h"
 
 namespace lisco_apps {
 

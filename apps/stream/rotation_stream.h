@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "cluster_collector.h"
 #include "lisco/column_clusterer.h"
-#include "stream.h"
+#include "stream/cluster_collector.h"
+#include "stream/stream.h"
 
 namespace lisco_apps {
 

@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include "ground_stage.h"
 #include "io/scan_options.h"
-#include "latency.h"
 #include "lisco/cluster_features.h"
 #include "lisco/return.h"
 #include "sensors/decoder.h"
 #include "sensors/rotation_cutter.h"
+#include "stream/ground_stage.h"
+#include "stream/latency.h"
 
 namespace lisco_apps {
 

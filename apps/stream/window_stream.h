@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "cluster_collector.h"
 #include "lisco/window_clusterer.h"
-#include "stream.h"
+#include "stream/cluster_collector.h"
+#include "stream/stream.h"
 
 namespace lisco_apps {
 

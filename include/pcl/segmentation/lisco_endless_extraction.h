@@ -12,9 +12,10 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include <pcl/point_cloud.h>
 #include <pcl/segmentation/lisco_column_stream.h>
-#include <Eigen/Core>
 
 #include "lisco/endless_clusterer.h"
 

@@ -9,11 +9,12 @@
 #include <memory>
 #include <vector>
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
 #include <pcl/PointIndices.h>
 #include <pcl/point_cloud.h>
 #include <pcl/segmentation/lisco_column_stream.h>
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 
 namespace pcl {
 
