@@ -18,6 +18,7 @@
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 #include <boost/program_options.hpp>
 
+#include "io/clock.h"
 #include "io/cloud_file.h"
 #include "io/cluster_json.h"
 #include "io/clusters.h"
@@ -31,7 +32,6 @@
 #include "recordings/result_bag.h"
 #include "recordings/scan_source.h"
 #include "recordings/work_progress.h"
-#include "stream/latency.h"
 #include "view/clustered_view.h"
 #include "view/scan_encoder.h"
 #include "view/timeline.h"

@@ -214,7 +214,7 @@ class ColumnsTable {
       for (const Rotation& rotation : one.rotations) {
         if (!feed(rotation, clusterer, run > 0 ? &columns : nullptr, run > 0 ? &ends : nullptr, one)) return false;
         const auto timeOf = [&](const Baseline& baseline) {
-          return millisecondsOf([&] {
+          return runMs([&] {
             Clusters clusters;
             baseline.extract(rotation.problem, clusters);
           });
@@ -376,7 +376,7 @@ class TimelineTable {
       if (baseline.key != kReferenceKey && baseline.key != "grid") continue;
       std::vector<double> times;
       for (unsigned run = 0; run < runs; ++run)
-        times.push_back(millisecondsOf([&] {
+        times.push_back(runMs([&] {
           Clusters clusters;
           baseline.extract(rotation.problem, clusters);
         }));
@@ -434,7 +434,7 @@ class WindowsTable {
         hops.push_back(time);
         const ComparedCloud::Ptr cloud = windowOf(rotation, column - width, width);
         Clusters expected;
-        anew.push_back(millisecondsOf([&] {
+        anew.push_back(runMs([&] {
           extraction.setInputCloud(cloud);
           extraction.setClusterTolerance(rotation.problem.tolerance);
           extraction.setMinClusterSize(rotation.problem.min_size);

@@ -158,15 +158,15 @@ bool agree(const Result& result, const Problem& problem, const Baseline& referen
 void measure(const Problem& problem, const Options& options, const Methods& methods, PclBudget& budget,
              Result& result) {
   Clusters by_lisco, by_grid;
-  const double lisco_ms = millisecondsOf([&] { methods.lisco.extract(problem, by_lisco); });
-  const double grid_ms = millisecondsOf([&] { methods.grid.extract(problem, by_grid); });
+  const double lisco_ms = runMs([&] { methods.lisco.extract(problem, by_lisco); });
+  const double grid_ms = runMs([&] { methods.grid.extract(problem, by_grid); });
   result.clusters = by_grid.size();
   result.identical = agree(result, problem, methods.grid, by_grid, methods.lisco, by_lisco);
   if (options.pcl_runs > 0 && budget.allows(result.tolerance)) {
     std::vector<double> times;
     for (unsigned run = 0; run < options.pcl_runs; ++run) {
       Clusters by_pcl;
-      times.push_back(millisecondsOf([&] { methods.pcl.extract(problem, by_pcl); }));
+      times.push_back(runMs([&] { methods.pcl.extract(problem, by_pcl); }));
       if (run == 0)
         result.identical = agree(result, problem, methods.pcl, by_pcl, methods.lisco, by_lisco) && result.identical;
     }
@@ -182,7 +182,7 @@ void measure(const Problem& problem, const Options& options, const Methods& meth
                       tried_ms, options.runs};
   };
   const std::vector<Times> times = timeInTurn({contestant(methods.grid, grid_ms), contestant(methods.lisco, lisco_ms)},
-                                              Clock::kThread, [](std::size_t, std::size_t) {});
+                                              TimeKind::kThread, [](std::size_t, std::size_t) {});
   result.grid = times[0];
   result.lisco = times[1];
 }

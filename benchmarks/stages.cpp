@@ -275,7 +275,7 @@ class StagesTable : public Table {
         whole_.extract(one.problem, clusters);
       };
       extract();
-      wholes.push_back(millisecondsOf(extract));
+      wholes.push_back(runMs(extract));
     }
 
     std::string row = one.head();
@@ -335,7 +335,7 @@ class ThreadsTable : public Table {
                              },
                              0, runs});
     // OpenMP's threads spin for some milliseconds before they sleep.
-    const std::vector<Times> times = timeInTurn(contestants, Clock::kWall, [](std::size_t, std::size_t) {
+    const std::vector<Times> times = timeInTurn(contestants, TimeKind::kWall, [](std::size_t, std::size_t) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     });
 

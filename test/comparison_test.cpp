@@ -516,11 +516,12 @@ std::string turnsOf(const std::vector<std::size_t>& runs, double tried_ms, std::
     contestants.push_back({[&log, i] { log += static_cast<char>('A' + i); }, tried_ms, runs[i]});
   std::size_t expected_round = 0;
   const std::size_t most = runs.empty() ? 0 : *std::max_element(runs.begin(), runs.end());
-  const std::vector<Times> measured = timeInTurn(contestants, Clock::kWall, [&](std::size_t round, std::size_t rounds) {
-    EXPECT_EQ(round, expected_round++);
-    EXPECT_EQ(rounds, most);
-    log += "|";
-  });
+  const std::vector<Times> measured =
+      timeInTurn(contestants, TimeKind::kWall, [&](std::size_t round, std::size_t rounds) {
+        EXPECT_EQ(round, expected_round++);
+        EXPECT_EQ(rounds, most);
+        log += "|";
+      });
   EXPECT_EQ(measured.size(), runs.size());
   for (std::size_t i = 0; i < measured.size(); ++i) {
     EXPECT_EQ(measured[i].runs.size(), runs[i]);
@@ -560,18 +561,18 @@ TEST(Timing, CountsTheSecondOfTwoRuns) {
   const auto slow_first = [&calls] {
     if (calls++ % 2 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   };
-  const std::vector<Times> times = timeInTurn({{slow_first, 1, 3}}, Clock::kWall, [](std::size_t, std::size_t) {});
+  const std::vector<Times> times = timeInTurn({{slow_first, 1, 3}}, TimeKind::kWall, [](std::size_t, std::size_t) {});
   EXPECT_GE(*std::min_element(times[0].cold.begin(), times[0].cold.end()), 20);
   EXPECT_LT(times[0].min(), 15);
   EXPECT_EQ(calls, 6);
   // The only run of a long one counts as both.
   calls = 0;
-  const std::vector<Times> once = timeInTurn({{slow_first, 1000, 2}}, Clock::kWall, [](std::size_t, std::size_t) {});
+  const std::vector<Times> once = timeInTurn({{slow_first, 1000, 2}}, TimeKind::kWall, [](std::size_t, std::size_t) {});
   EXPECT_EQ(once[0].cold, once[0].runs);
 }
 
 TEST(Timing, MeasuresTheDurationOfACall) {
-  const double milliseconds = millisecondsOf([] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); });
+  const double milliseconds = runMs([] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); });
   EXPECT_GE(milliseconds, 20);
   EXPECT_LT(milliseconds, 2000);
 }

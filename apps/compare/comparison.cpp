@@ -90,7 +90,7 @@ CaseResult compareAt(const ComparedScan& scan, double tolerance, const CompareSe
   result.tolerance = tolerance;
   Clusters expected;
   progress(reference.title, 0);
-  const double reference_ms = millisecondsOf([&] { reference.extract(problem, expected); });
+  const double reference_ms = runMs([&] { reference.extract(problem, expected); });
   result.clusters = expected.size();
   if (!scan.object_of.empty()) result.objects = scoreObjects(problem, expected, scan.object_of);
 
@@ -111,7 +111,7 @@ CaseResult compareAt(const ComparedScan& scan, double tolerance, const CompareSe
       if (baseline.key == kReferenceKey)
         found = expected;
       else
-        tried_ms = millisecondsOf([&] { baseline.extract(problem, found); });
+        tried_ms = runMs([&] { baseline.extract(problem, found); });
     } catch (const std::exception& error) {
       entry.failure = error.what();
       continue;
@@ -133,7 +133,7 @@ CaseResult compareAt(const ComparedScan& scan, double tolerance, const CompareSe
     results.push_back(&entry);
   }
 
-  const std::vector<Times> times = timeInTurn(contestants, Clock::kWall, [&](std::size_t round, std::size_t rounds) {
+  const std::vector<Times> times = timeInTurn(contestants, TimeKind::kWall, [&](std::size_t round, std::size_t rounds) {
     progress("run " + std::to_string(round + 1) + " of " + std::to_string(rounds),
              static_cast<double>(round) / static_cast<double>(rounds));
   });

@@ -30,10 +30,10 @@ double Times::confidence99() const {
   return t * std::sqrt(squares / (n - 1) / n);
 }
 
-double millisecondsOf(const std::function<void()>& run, Clock clock) {
-  const auto now = [clock] {
+double runMs(const std::function<void()>& run, TimeKind kind) {
+  const auto now = [kind] {
     timespec time{};
-    clock_gettime(clock == Clock::kThread ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC, &time);
+    clock_gettime(kind == TimeKind::kThread ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC, &time);
     return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
   };
   const double start = now();
@@ -41,7 +41,7 @@ double millisecondsOf(const std::function<void()>& run, Clock clock) {
   return now() - start;
 }
 
-std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants, Clock clock,
+std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants, TimeKind kind,
                               const std::function<void(std::size_t, std::size_t)>& between) {
   std::size_t rounds = 0;
   for (const Contestant& contestant : contestants) rounds = std::max(rounds, contestant.runs);
@@ -51,9 +51,8 @@ std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants, Clock 
     for (std::size_t i = 0; i < contestants.size(); ++i) {
       const Contestant& contestant = contestants[i];
       if (round * contestant.runs / rounds == (round + 1) * contestant.runs / rounds) continue;
-      times[i].cold.push_back(millisecondsOf(contestant.run, clock));
-      times[i].runs.push_back(contestant.tried_ms < kMaxShort ? millisecondsOf(contestant.run, clock)
-                                                              : times[i].cold.back());
+      times[i].cold.push_back(runMs(contestant.run, kind));
+      times[i].runs.push_back(contestant.tried_ms < kMaxShort ? runMs(contestant.run, kind) : times[i].cold.back());
     }
   }
   return times;

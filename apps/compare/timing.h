@@ -30,7 +30,7 @@ struct Times {
 };
 
 /// Time that passes, or that this thread computes.
-enum class Clock { kWall, kThread };
+enum class TimeKind { kWall, kThread };
 
 /// A run that takes less is repeated at once when it is timed, milliseconds.
 inline constexpr double kMaxShort = 50;
@@ -45,13 +45,13 @@ struct Contestant {
 /// Times contestants in turn, round by round, so that disturbances of the machine are shared. Contestants with fewer
 /// runs skip rounds, evenly spread. A short run is repeated at once, and the repetition counts: the first, cold run
 /// refills the caches that the others have displaced.
-/// \param clock what is timed; kThread leaves out what other programs take from a busy machine, and other threads
+/// \param kind what is timed; kThread leaves out what other programs take from a busy machine, and other threads
 /// \param between called before each round with its number and the number of rounds
-std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants, Clock clock,
+std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants, TimeKind kind,
                               const std::function<void(std::size_t round, std::size_t rounds)>& between);
 
-/// Duration of a call, milliseconds.
-double millisecondsOf(const std::function<void()>& run, Clock clock = Clock::kWall);
+/// Duration of one run, milliseconds.
+double runMs(const std::function<void()>& run, TimeKind kind = TimeKind::kWall);
 
 /// The mean of ratios: twice as fast and half as fast cancel out.
 double geometricMean(const std::vector<double>& values);

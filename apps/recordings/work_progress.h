@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <string>
 
+#include "io/clock.h"
 #include "io/terminal_line.h"
 #include "io/text.h"
 
@@ -31,8 +32,6 @@ class WorkProgress {
   void clear() { bar_.clear(); }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   ProgressBar bar_;
   Clock::time_point start_ = Clock::now();
   double shown_at_ = 0;  ///< seconds since the start

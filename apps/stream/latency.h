@@ -9,13 +9,9 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "io/clock.h"
+
 namespace lisco_apps {
-
-using Clock = std::chrono::steady_clock;
-
-inline double millisecondsOf(Clock::duration time) {
-  return std::chrono::duration<double, std::milli>(time).count();
-}
 
 /// A histogram of durations in fixed memory: percentiles are accurate to 2%, from a nanosecond to hours.
 class Latency {
