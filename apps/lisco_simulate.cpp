@@ -55,7 +55,7 @@ struct Options {
   bool vehicle = false;
   std::string worst_case;
   double gap = 0.41;  ///< of some cases, metres
-  std::string sensor = sensorNames().front();
+  std::string sensor = simulatedSensors().front();
   std::size_t lasers = 0;  ///< 0: the sensor's own number
   std::size_t steps = 0;
   Disturbance disturbance;
@@ -145,7 +145,7 @@ bool parse(int argc, char** argv, Options& options) {
   po::options_description shown(usageText());
   const std::string cases = boost::join(caseNames(), ", ");
   const std::string terrains = boost::join(terrainNames(), ", ");
-  const std::string sensors = boost::join(sensorNames(), ", ") + " (default " + options.sensor + ")";
+  const std::string sensors = boost::join(simulatedSensors(), ", ") + " (default " + options.sensor + ")";
   const std::string pcap = "adds capture.pcap, the packets of a " + boost::join(packetSensorNames(), ", ") +
                            ", to the folder; lasers, steps (1800 unless given) and duration of a rotation are those of "
                            "the packets";
@@ -223,7 +223,7 @@ bool parse(int argc, char** argv, Options& options) {
 }
 
 Sensor sensorFor(const Options& options) {
-  if (!options.pcap) checkKnown(options.sensor, sensorNames(), "sensor");
+  if (!options.pcap) checkKnown(options.sensor, simulatedSensors(), "sensor");
   const auto check = [](std::size_t lasers, std::size_t steps) {
     if (std::max<std::size_t>(lasers, 1) > kMaxCells / std::max<std::size_t>(steps, 1))
       throw std::runtime_error("more than " + std::to_string(kMaxCells) + " cells: fewer --lasers or --steps");
@@ -275,13 +275,13 @@ std::string kindsOf(const Objects& objects) {
   return boost::join(kinds, ", ");
 }
 
-void printSensor(const Options& options, const Scan& scan) {
+void printSensor(const Options& options, const SimulatedScan& scan) {
   std::printf("  sensor    %s, %zu lasers x %zu steps = %zu cells\n", options.sensor.c_str(), scan.lasers, scan.steps,
               scan.cells.size());
   std::printf("  returns   %zu", scan.returns());
 }
 
-void printScene(const Options& options, const Sensor& sensor, const Scene& scene, const Scan& scan) {
+void printScene(const Options& options, const Sensor& sensor, const Scene& scene, const SimulatedScan& scan) {
   static constexpr const char* kDescriptions[kScenes] = {"a few objects near the sensor", "a few objects far away",
                                                          "many objects near the sensor", "many objects far away",
                                                          "a closed, crowded room"};
@@ -290,7 +290,7 @@ void printScene(const Options& options, const Sensor& sensor, const Scene& scene
   std::printf("  objects   %zu: %s\n", scene.objects.size(), kindsOf(scene.objects).c_str());
   printSensor(options, scan);
   std::printf(", %zu above the ground (z >= %g m)", scan.returnsAbove(scene.ground_z), ground_z);
-  const Sensor paper = makeSensor(sensorNames().front());
+  const Sensor paper = makeSensor(simulatedSensors().front());
   if (options.vehicle)
     std::printf("; %zu nearer than %g m", scan.returnsWithin(kVehicleRange), kVehicleRange);
   else if (sensor.name == paper.name && sensor.lasers() == paper.lasers() && sensor.steps == paper.steps)
@@ -331,7 +331,7 @@ int simulate(const Options& options) {
   comment << kSignature << LISCO_VERSION << ": " << argumentsOf(options, sensor);
   if (!options.terrain.empty()) return drive(options, sensor, comment.str());
   if (options.scene == 0) {
-    const Scan rotation = scanCase(options.worst_case, sensor, options.disturbance, options.gap);
+    const SimulatedScan rotation = scanCase(options.worst_case, sensor, options.disturbance, options.gap);
     writeOwnFile(options.output, pcdOf(rotation, comment.str()), kSignature);
     std::printf("case %s: %s (seed %u)\n", options.worst_case.c_str(), describeCase(options.worst_case).c_str(),
                 options.seed);
@@ -341,7 +341,7 @@ int simulate(const Options& options) {
   }
   Scene scene = makeScene(options.scene, options.seed);
   if (options.vehicle) addVehicle(scene, options.seed);
-  const Scan rotation = scan(scene, sensor, options.disturbance);
+  const SimulatedScan rotation = scan(scene, sensor, options.disturbance);
   comment << "; remove the ground with --ground-z " << scene.ground_z;
   writeOwnFile(options.output, pcdOf(rotation, comment.str()), kSignature);
   printScene(options, sensor, scene, rotation);

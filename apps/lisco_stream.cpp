@@ -158,7 +158,7 @@ bool parse(int argc, char** argv, Options& options) {
     options.port = static_cast<std::uint16_t>(countOf(port, "--port", 0, std::numeric_limits<std::uint16_t>::max()));
   if (options.realtime && options.capture.empty()) throw std::runtime_error("--realtime is for captures only");
   if (options.capture.empty() && options.decoder.sensor.empty())
-    throw std::runtime_error("--sensor is missing (" + boost::join(sensorNames(), ", ") + "); see --help");
+    throw std::runtime_error("--sensor is missing (" + boost::join(decodableSensors(), ", ") + "); see --help");
   options.recording.check();
   if (options.capture.empty() && options.recording.areGiven())
     throw std::runtime_error("--topic, --from, --to and --every are for recordings only");

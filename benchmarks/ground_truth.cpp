@@ -41,7 +41,7 @@ constexpr double kDegree = kPi / 180;
 
 struct Settings {
   std::vector<std::string> terrains = terrainNames();
-  std::vector<std::string> sensors = lisco_simulation::sensorNames();
+  std::vector<std::string> sensors = lisco_simulation::simulatedSensors();
   std::vector<std::string> seeds = {"1", "2", "3"};
   std::size_t rotations = 2;
   double slope = 10;    ///< degrees
@@ -52,7 +52,7 @@ struct Settings {
 
 /// A simulated drive, and what its returns lie on.
 struct Simulated {
-  std::vector<Scan> rotations;
+  std::vector<SimulatedScan> rotations;
   std::vector<std::string> kinds;          ///< of the objects, by their numbers less 1
   std::vector<std::vector<double>> above;  ///< the ground, metres, per rotation and cell; NaN: no return
 };
@@ -63,9 +63,9 @@ using Decisions = std::vector<std::uint8_t>;
 struct Counts {
   double true_ground = 0, false_ground = 0, missed_ground = 0, objects = 0;
 
-  void add(const Scan& scan, const Decisions& decided) {
+  void add(const SimulatedScan& scan, const Decisions& decided) {
     for (std::size_t i = 0; i < scan.cells.size(); ++i) {
-      const Cell& cell = scan.cells[i];
+      const SimulatedCell& cell = scan.cells[i];
       if (std::isnan(cell.x)) continue;
       const bool ground = cell.object == 0;
       if (!ground) ++objects;
@@ -86,15 +86,15 @@ struct Returns {
   Cloud::Ptr cloud = std::make_shared<Cloud>();
   std::vector<std::size_t> cells;
 
-  explicit Returns(const Scan& scan) {
+  explicit Returns(const SimulatedScan& scan) {
     for (std::size_t i = 0; i < scan.cells.size(); ++i) {
-      const Cell& cell = scan.cells[i];
+      const SimulatedCell& cell = scan.cells[i];
       if (std::isnan(cell.x)) continue;
       cloud->emplace_back(cell.x, cell.y, cell.z);
       cells.push_back(i);
     }
   }
-  Decisions decisions(const Scan& scan, const pcl::Indices& ground) const {
+  Decisions decisions(const SimulatedScan& scan, const pcl::Indices& ground) const {
     Decisions decided(scan.cells.size(), 0);
     for (const auto index : ground) decided[cells[static_cast<std::size_t>(index)]] = 1;
     return decided;
@@ -104,20 +104,21 @@ struct Returns {
 /// A filter that decides on one rotation by itself.
 struct Filter {
   const char* name;
-  std::function<Decisions(const Scan& scan, double height)> decide;
+  std::function<Decisions(const SimulatedScan& scan, double height)> decide;
 };
 
 constexpr std::size_t kBetweenDrives = 5;  // rotations
 
 constexpr double kThickness = 0.2;  // metres: how far ground may be from the height or the plane
 
-Decisions byHeight(const Scan& scan, double height) {
+Decisions byHeight(const SimulatedScan& scan, double height) {
   Decisions decided;
-  for (const Cell& cell : scan.cells) decided.push_back(static_cast<double>(cell.z) < kThickness - height ? 1 : 0);
+  for (const SimulatedCell& cell : scan.cells)
+    decided.push_back(static_cast<double>(cell.z) < kThickness - height ? 1 : 0);
   return decided;
 }
 
-Decisions byPlane(const Scan& scan, double /*height*/) {
+Decisions byPlane(const SimulatedScan& scan, double /*height*/) {
   const Returns returns(scan);
   pcl::SACSegmentation<pcl::PointXYZ> segmentation;
   segmentation.setModelType(pcl::SACMODEL_PERPENDICULAR_PLANE);  // not the largest wall
@@ -134,7 +135,7 @@ Decisions byPlane(const Scan& scan, double /*height*/) {
   return returns.decisions(scan, ground.indices);
 }
 
-Decisions byMorphology(const Scan& scan, double /*height*/) {
+Decisions byMorphology(const SimulatedScan& scan, double /*height*/) {
   const Returns returns(scan);
   pcl::ApproximateProgressiveMorphologicalFilter<pcl::PointXYZ> filter;  // with its defaults
   filter.setInputCloud(returns.cloud);
@@ -144,21 +145,21 @@ Decisions byMorphology(const Scan& scan, double /*height*/) {
 }
 
 /// Runs the filter over a whole drive, column by column.
-std::vector<Decisions> byLisco(const std::vector<Scan>& rotations) {
+std::vector<Decisions> byLisco(const std::vector<SimulatedScan>& rotations) {
   lisco::GroundFilter filter;
   filter.begin({}, rotations.front().lasers);
   std::vector<Decisions> decided;
-  for (const Scan& scan : rotations) decided.emplace_back(scan.cells.size(), std::uint8_t{0});
+  for (const SimulatedScan& scan : rotations) decided.emplace_back(scan.cells.size(), std::uint8_t{0});
   const std::size_t steps = rotations.front().steps;
   const auto visit = [&](std::size_t column, const std::uint8_t* ground, std::size_t lasers) {
     for (std::size_t laser = 0; laser < lasers; ++laser)
       decided[column / steps][laser * steps + column % steps] = ground[laser];
   };
   std::vector<lisco::Return> cells(rotations.front().lasers);
-  for (const Scan& scan : rotations)
+  for (const SimulatedScan& scan : rotations)
     for (std::size_t step = 0; step < steps; ++step) {
       for (std::size_t laser = 0; laser < scan.lasers; ++laser) {
-        const Cell& cell = scan.at(laser, step);
+        const SimulatedCell& cell = scan.at(laser, step);
         cells[laser] = {cell.x, cell.y, cell.z, 0};
       }
       filter.addColumn(cells.data(), scan.lasers, visit);
@@ -173,7 +174,7 @@ class Details {
   void add(const Simulated& drive, const std::vector<Decisions>& decided) {
     for (std::size_t i = 0; i < decided.size(); ++i)
       for (std::size_t at = 0; at < decided[i].size(); ++at) {
-        const Cell& cell = drive.rotations[i].cells[at];
+        const SimulatedCell& cell = drive.rotations[i].cells[at];
         if (std::isnan(cell.x)) continue;
         const bool is_right = (decided[i][at] != 0) == (cell.object == 0);
         if (cell.object != 0)
@@ -236,10 +237,10 @@ Simulated simulated(const Settings& settings, const std::string& terrain, const 
   for (std::size_t rotation = 0; rotation < settings.rotations; ++rotation) {
     const std::size_t first = (begin + rotation) * sensor.steps;
     result.rotations.push_back(drive.columns(first, sensor.steps));
-    const Scan& scan = result.rotations.back();
+    const SimulatedScan& scan = result.rotations.back();
     std::vector<double>& above = result.above.emplace_back();
     for (std::size_t i = 0; i < scan.cells.size(); ++i) {
-      const Cell& cell = scan.cells[i];
+      const SimulatedCell& cell = scan.cells[i];
       const Pose pose = drive.poseOf(first + i % sensor.steps);
       const Vector place =
           Rotation(pose)({static_cast<double>(cell.x), static_cast<double>(cell.y), static_cast<double>(cell.z)}) +
@@ -304,7 +305,7 @@ int run(const Settings& settings, bool only_lisco, bool with_details) {
         const Simulated drive = simulated(settings, terrain, sensor, countOf(seed, "--seeds", 0));
         const std::vector<Decisions> decided = byLisco(drive.rotations);
         for (std::size_t rotation = 0; rotation < settings.rotations; ++rotation) {
-          const Scan& scan = drive.rotations[rotation];
+          const SimulatedScan& scan = drive.rotations[rotation];
           for (std::size_t i = 0; i < rivals.size(); ++i) counts[i].add(scan, rivals[i].decide(scan, settings.height));
           counts.back().add(scan, decided[rotation]);
         }

@@ -187,7 +187,7 @@ CloudPtr dual(const ComparedCloud& cloud, bool repeats) {
   return result;
 }
 
-CloudPtr fromSimulation(const lisco_simulation::Scan& scan, float ground_z) {
+CloudPtr fromSimulation(const lisco_simulation::SimulatedScan& scan, float ground_z) {
   Cloud cloud(static_cast<std::uint32_t>(scan.steps), static_cast<std::uint32_t>(scan.lasers));
   for (std::size_t i = 0; i < scan.cells.size(); ++i) cloud[i] = {scan.cells[i].x, scan.cells[i].y, scan.cells[i].z};
   return prepareScan(cloud, {}, returnsAbove(cloud, ground_z), false).cloud;

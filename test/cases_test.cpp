@@ -24,18 +24,18 @@ namespace {
 
 constexpr double kGap = 0.41;  // metres
 
-std::vector<Cell> returnsOf(const Scan& scan) {
-  std::vector<Cell> returns;
-  for (const Cell& cell : scan.cells)
+std::vector<SimulatedCell> returnsOf(const SimulatedScan& scan) {
+  std::vector<SimulatedCell> returns;
+  for (const SimulatedCell& cell : scan.cells)
     if (!std::isnan(cell.x)) returns.push_back(cell);
   return returns;
 }
 
-double rangeOf(const Cell& cell) {
+double rangeOf(const SimulatedCell& cell) {
   return std::hypot(std::hypot(static_cast<double>(cell.x), static_cast<double>(cell.y)), static_cast<double>(cell.z));
 }
 
-double distance(const Cell& a, const Cell& b) {
+double distance(const SimulatedCell& a, const SimulatedCell& b) {
   const double x = static_cast<double>(a.x) - static_cast<double>(b.x);
   const double y = static_cast<double>(a.y) - static_cast<double>(b.y);
   const double z = static_cast<double>(a.z) - static_cast<double>(b.z);
@@ -43,7 +43,7 @@ double distance(const Cell& a, const Cell& b) {
 }
 
 /// The objects in each cluster, by all pairs.
-std::vector<std::set<std::uint32_t>> objectsOfClusters(const std::vector<Cell>& returns, double tolerance) {
+std::vector<std::set<std::uint32_t>> objectsOfClusters(const std::vector<SimulatedCell>& returns, double tolerance) {
   std::vector<std::size_t> parent(returns.size());
   std::iota(parent.begin(), parent.end(), std::size_t{0});
   const auto root = [&parent](std::size_t i) {
@@ -60,7 +60,7 @@ std::vector<std::set<std::uint32_t>> objectsOfClusters(const std::vector<Cell>& 
   return clusters;
 }
 
-double leastDistance(const std::vector<Cell>& returns, bool of_different_objects_only) {
+double leastDistance(const std::vector<SimulatedCell>& returns, bool of_different_objects_only) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < returns.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
@@ -69,19 +69,19 @@ double leastDistance(const std::vector<Cell>& returns, bool of_different_objects
   return least;
 }
 
-Scan scanOf(const std::string& name, std::size_t lasers = 32, std::size_t steps = 180,
-            const std::string& sensor = "hdl64e", double gap = kGap) {
+SimulatedScan scanOf(const std::string& name, std::size_t lasers = 32, std::size_t steps = 180,
+                     const std::string& sensor = "hdl64e", double gap = kGap) {
   return scanCase(name, makeSensor(sensor, lasers, steps), {}, gap);
 }
 
 TEST(Cases, RoomIsOneClusterOnAllSides) {
   for (const char* sensor : {"hdl64e", "os1-128"}) {
     SCOPED_TRACE(sensor);
-    const Scan rotation = scanOf("room", 32, 180, sensor);
-    const std::vector<Cell> returns = returnsOf(rotation);
+    const SimulatedScan rotation = scanOf("room", 32, 180, sensor);
+    const std::vector<SimulatedCell> returns = returnsOf(rotation);
     EXPECT_NEAR(static_cast<double>(returns.size()), 32 * 180, 0.02 * 32 * 180);
     EXPECT_EQ(objectsOfClusters(returns, 0.4), (std::vector<std::set<std::uint32_t>>{{1}}));
-    for (const Cell& cell : returns) {
+    for (const SimulatedCell& cell : returns) {
       // On one of six sides, up to the noise.
       const double inside =
           std::min({4 - std::fabs(static_cast<double>(cell.x)), 3 - std::fabs(static_cast<double>(cell.y)),
@@ -92,9 +92,9 @@ TEST(Cases, RoomIsOneClusterOnAllSides) {
 }
 
 TEST(Cases, WallIsOneMetreAway) {
-  for (const std::string& sensor : sensorNames()) {
-    const Scan rotation = scanOf("wall", 32, 180, sensor);
-    for (const Cell& cell : returnsOf(rotation)) {
+  for (const std::string& sensor : simulatedSensors()) {
+    const SimulatedScan rotation = scanOf("wall", 32, 180, sensor);
+    for (const SimulatedCell& cell : returnsOf(rotation)) {
       ASSERT_NEAR(std::hypot(static_cast<double>(cell.x), static_cast<double>(cell.y)), 1, 0.13) << sensor;
       ASSERT_EQ(cell.object, 1U);
     }
@@ -103,9 +103,9 @@ TEST(Cases, WallIsOneMetreAway) {
 }
 
 TEST(Cases, RandomIsEvenlySpreadBetweenOneAnd60Metres) {
-  const std::vector<Cell> returns = returnsOf(scanOf("random", 64, 1000));
+  const std::vector<SimulatedCell> returns = returnsOf(scanOf("random", 64, 1000));
   std::vector<int> counts(10);
-  for (const Cell& cell : returns) {
+  for (const SimulatedCell& cell : returns) {
     const double range = rangeOf(cell);
     ASSERT_GE(range, 1 - 1e-5);
     ASSERT_LE(range, 60 + 1e-5);
@@ -115,36 +115,36 @@ TEST(Cases, RandomIsEvenlySpreadBetweenOneAnd60Metres) {
 }
 
 TEST(Cases, SheetsAreAGapApart) {
-  for (const std::string& sensor : sensorNames())
+  for (const std::string& sensor : simulatedSensors())
     for (const double gap : {kGap, 0.11}) {
       SCOPED_TRACE(sensor + ", gap " + std::to_string(gap));
-      const Scan rotation = scanOf("sheets", 48, 180, sensor, gap);
-      const std::vector<Cell> returns = returnsOf(rotation);
+      const SimulatedScan rotation = scanOf("sheets", 48, 180, sensor, gap);
+      const std::vector<SimulatedCell> returns = returnsOf(rotation);
       const double least = leastDistance(returns, true);
       EXPECT_GE(least, gap - 1e-5);
       EXPECT_LE(least, gap + 0.5) << "nearest returns lie in neighbouring boxes";
       for (std::size_t laser = 0; laser < rotation.lasers; ++laser)
         for (std::size_t step = 0; step < rotation.steps; ++step) {
-          const Cell& cell = rotation.at(laser, step);
+          const SimulatedCell& cell = rotation.at(laser, step);
           ASSERT_EQ(cell.object, std::isnan(cell.x) ? 0 : 1 + (laser + step) % 2);
         }
     }
   // Two clusters up to the gap, one beyond it.
-  const std::vector<Cell> returns = returnsOf(scanOf("sheets", 64, 160));
+  const std::vector<SimulatedCell> returns = returnsOf(scanOf("sheets", 64, 160));
   EXPECT_EQ(objectsOfClusters(returns, 0.4), (std::vector<std::set<std::uint32_t>>{{1}, {2}}));
   EXPECT_EQ(objectsOfClusters(returns, 0.5).size(), 1U);
 }
 
 TEST(Cases, SingletonsAreFartherThanTheGapFromEachOther) {
-  for (const std::string& sensor : sensorNames())
+  for (const std::string& sensor : simulatedSensors())
     for (const double gap : {kGap, 1.5}) {
-      const Scan rotation = scanOf("singletons", 48, 150, sensor, gap);
-      const std::vector<Cell> returns = returnsOf(rotation);
+      const SimulatedScan rotation = scanOf("singletons", 48, 150, sensor, gap);
+      const std::vector<SimulatedCell> returns = returnsOf(rotation);
       EXPECT_GT(leastDistance(returns, false), gap) << sensor;
       EXPECT_GT(returns.size(), rotation.cells.size() * 19 / 20) << sensor;
     }
   // More cells than positions.
-  const Scan rotation = scanOf("singletons", 32, 150, "hdl64e", 20);
+  const SimulatedScan rotation = scanOf("singletons", 32, 150, "hdl64e", 20);
   EXPECT_GT(leastDistance(returnsOf(rotation), false), 20);
   EXPECT_GT(rotation.returns(), 100U);
   EXPECT_LT(rotation.returns(), rotation.cells.size() / 2);
@@ -152,16 +152,16 @@ TEST(Cases, SingletonsAreFartherThanTheGapFromEachOther) {
 
 TEST(Cases, BlockedSensorHasReturnsWithin30Centimetres) {
   for (const double noise : {0.0, 0.02, 1.0}) {
-    const Scan rotation = scanCase("blocked", makeSensor("hdl64e"), {1, noise, 0.005}, kGap);
-    const std::vector<Cell> returns = returnsOf(rotation);
+    const SimulatedScan rotation = scanCase("blocked", makeSensor("hdl64e"), {1, noise, 0.005}, kGap);
+    const std::vector<SimulatedCell> returns = returnsOf(rotation);
     EXPECT_GT(returns.size(), 70000U);
-    for (const Cell& cell : returns) ASSERT_LT(rangeOf(cell), 0.3);
+    for (const SimulatedCell& cell : returns) ASSERT_LT(rangeOf(cell), 0.3);
   }
 }
 
 TEST(Cases, PolesAreSeparateClusters) {
-  const Scan rotation = scanOf("poles", 64, 1125);
-  std::vector<Cell> returns;
+  const SimulatedScan rotation = scanOf("poles", 64, 1125);
+  std::vector<SimulatedCell> returns;
   for (std::size_t laser = 8; laser < 40; laser += 2)  // two neighbours on one pole are within 0.4 m even so
     for (std::size_t step = 0; step < 560; ++step)
       if (!std::isnan(rotation.at(laser, step).x)) returns.push_back(rotation.at(laser, step));
@@ -178,8 +178,9 @@ TEST(Cases, PolesAreSeparateClusters) {
 
 TEST(Cases, AreEqualForEqualSeedsOnly) {
   const auto bytes = [](const std::string& name, std::uint64_t seed) {
-    const Scan rotation = scanCase(name, makeSensor("vlp16"), {seed}, kGap);
-    return std::string(reinterpret_cast<const char*>(rotation.cells.data()), rotation.cells.size() * sizeof(Cell));
+    const SimulatedScan rotation = scanCase(name, makeSensor("vlp16"), {seed}, kGap);
+    return std::string(reinterpret_cast<const char*>(rotation.cells.data()),
+                       rotation.cells.size() * sizeof(SimulatedCell));
   };
   for (const std::string& name : caseNames()) {
     EXPECT_TRUE(bytes(name, 1) == bytes(name, 1)) << name;
@@ -191,13 +192,13 @@ TEST(Cases, HaveDropOutsAndTheSizeOfTheirSensor) {
   for (const std::string& name : caseNames()) {
     SCOPED_TRACE(name);
     const Sensor sensor = makeSensor("os1-128", 20, 500);
-    const Scan whole = scanCase(name, sensor, {1, 0.02, 0}, kGap);
-    const Scan half = scanCase(name, sensor, {1, 0.02, 0.5}, kGap);
+    const SimulatedScan whole = scanCase(name, sensor, {1, 0.02, 0}, kGap);
+    const SimulatedScan half = scanCase(name, sensor, {1, 0.02, 0.5}, kGap);
     EXPECT_EQ(whole.lasers, 20U);
     EXPECT_EQ(whole.steps, 500U);
     ASSERT_EQ(whole.cells.size(), 10000U);
     EXPECT_NEAR(static_cast<double>(half.returns()) / static_cast<double>(whole.returns()), 0.5, 0.03);
-    for (const Cell& cell : half.cells) ASSERT_EQ(std::isnan(cell.x), cell.object == 0);
+    for (const SimulatedCell& cell : half.cells) ASSERT_EQ(std::isnan(cell.x), cell.object == 0);
   }
   EXPECT_THROW(scanOf("rooms"), std::invalid_argument);
   EXPECT_THROW(describeCase(""), std::invalid_argument);

@@ -29,8 +29,8 @@ constexpr double kDegree = kPi / 180;
 constexpr double kHeight = 1.8;
 constexpr Disturbance kExact{1, 0, 0};
 
-std::string bytesOf(const Scan& scan) {
-  return {reinterpret_cast<const char*>(scan.cells.data()), scan.cells.size() * sizeof(Cell)};
+std::string bytesOf(const SimulatedScan& scan) {
+  return {reinterpret_cast<const char*>(scan.cells.data()), scan.cells.size() * sizeof(SimulatedCell)};
 }
 
 /// A sensor that does everything at once.
@@ -212,12 +212,12 @@ TEST_P(EachTerrain, LabelsReturnsWithWhatTheyLieOn) {
   std::size_t ground = 0;
   std::set<std::uint32_t> objects;
   constexpr std::size_t kColumns = 900;
-  const Scan scan = drive.columns(0, kColumns);
+  const SimulatedScan scan = drive.columns(0, kColumns);
   for (std::size_t column = 0; column < kColumns; ++column) {
     const Pose pose = drive.poseOf(column);
     const Rotation toWorld(pose);
     for (std::size_t laser = 0; laser < scan.lasers; ++laser) {
-      const Cell& cell = scan.at(laser, column);
+      const SimulatedCell& cell = scan.at(laser, column);
       if (std::isnan(cell.x)) {
         ASSERT_EQ(cell.object, 0U);
         continue;
@@ -253,7 +253,7 @@ TEST_P(EachTerrain, HasNoObjectWhereABruteForceLookFindsTheGround) {
   Drive drive = driveOver(GetParam(), restlessMotion(), kExact, "vlp16", 60);
   const World& world = drive.world();
   for (const std::size_t column : {std::size_t{0}, std::size_t{31}, std::size_t{137}, std::size_t{290}}) {
-    const Scan scan = drive.columns(column, 1);
+    const SimulatedScan scan = drive.columns(column, 1);
     const Pose pose = drive.poseOf(column);
     const Rotation toWorld(pose);
     for (std::size_t laser = 0; laser < scan.lasers; ++laser) {
@@ -272,7 +272,7 @@ TEST_P(EachTerrain, HasNoObjectWhereABruteForceLookFindsTheGround) {
         if (inside.enter <= inside.leave && inside.enter > 0) nearest = std::min(nearest, inside.enter);
       }
       if (nearest_leaves < nearest) continue;  // the depth in leaves is random
-      const Cell& cell = scan.at(laser, 0);
+      const SimulatedCell& cell = scan.at(laser, 0);
       const double range = std::isnan(cell.x) ? nearest : length(placeOf(cell));
       ASSERT_EQ(std::isnan(cell.x), nearest > drive.sensor().max_range) << "column " << column << ", laser " << laser;
       if (nearest > drive.sensor().max_range) continue;
@@ -285,8 +285,8 @@ TEST(Drive, HasTheNoiseOfItsRanges) {
   const Motion motion = restlessMotion();
   Drive exact = driveOver("field", motion, kExact);
   Drive noisy = driveOver("field", motion, {1, 0.02, 0});
-  const Scan was = exact.columns(0, 300);
-  const Scan is = noisy.columns(0, 300);
+  const SimulatedScan was = exact.columns(0, 300);
+  const SimulatedScan is = noisy.columns(0, 300);
   double squares = 0;
   for (std::size_t i = 0; i < was.cells.size(); ++i) {
     if (std::isnan(was.cells[i].x)) continue;
@@ -299,11 +299,11 @@ TEST(Drive, HasTheNoiseOfItsRanges) {
 
 TEST(Drive, GivesTheSameColumnsHoweverTheyAreAskedFor) {
   Drive drive = driveOver("hill", restlessMotion(), {});
-  const Scan whole = drive.columns(0, 600);
+  const SimulatedScan whole = drive.columns(0, 600);
   for (const std::size_t first : {std::size_t{437}, std::size_t{3}, std::size_t{0}, std::size_t{590}}) {
-    const Scan part = drive.columns(first, 10);
+    const SimulatedScan part = drive.columns(first, 10);
     for (std::size_t laser = 0; laser < part.lasers; ++laser)
-      ASSERT_EQ(std::memcmp(&part.at(laser, 0), &whole.at(laser, first), 10 * sizeof(Cell)), 0);
+      ASSERT_EQ(std::memcmp(&part.at(laser, 0), &whole.at(laser, first), 10 * sizeof(SimulatedCell)), 0);
   }
   EXPECT_EQ(bytesOf(driveOver("hill", restlessMotion(), {}).columns(0, 600)), bytesOf(whole));
   EXPECT_NE(bytesOf(driveOver("hill", restlessMotion(), {2}).columns(0, 600)), bytesOf(whole));
@@ -312,8 +312,8 @@ TEST(Drive, GivesTheSameColumnsHoweverTheyAreAskedFor) {
 TEST(Drive, AtRestIsAScan) {
   const Scene scene = layOutScene(3, 1, 2);
   const Sensor sensor = makeSensor("os1-128", 20, 400);
-  const Scan still = scanInMotion(scene, sensor, kExact, {}, 400);
-  const Scan expected = scan(scene, sensor, kExact);
+  const SimulatedScan still = scanInMotion(scene, sensor, kExact, {}, 400);
+  const SimulatedScan expected = scan(scene, sensor, kExact);
   std::size_t leaves = 0;
   for (std::size_t i = 0; i < still.cells.size(); ++i) {
     if (still.cells[i].object != expected.cells[i].object) {
@@ -342,7 +342,7 @@ TEST(Drive, MovesObjectsBySpeedTimesTime) {
   const Terrain slope = makeTerrain("slope", 8 * kDegree, 1);
   Drive drive({slope, {box}, {}}, makeSensor("os1-128", 0, 1024), kExact, motion, kHeight);
   for (const std::size_t rotation : {std::size_t{0}, std::size_t{6}, std::size_t{14}}) {
-    const Scan scan = drive.columns(rotation * 1024, 1024);
+    const SimulatedScan scan = drive.columns(rotation * 1024, 1024);
     std::size_t returns = 0;
     for (std::size_t i = 0; i < scan.cells.size(); ++i) {
       if (std::isnan(scan.cells[i].x) || scan.cells[i].object != 1) continue;

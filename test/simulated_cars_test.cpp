@@ -67,7 +67,7 @@ CarView viewOfCar(const Sensor& sensor, unsigned seed) {
         {view.range * std::cos(view.bearing), view.range * std::sin(view.bearing), kFloor});
   Disturbance disturbance;
   disturbance.seed = seed;
-  for (const Cell& cell : scan(scene, sensor, disturbance).cells)
+  for (const SimulatedCell& cell : scan(scene, sensor, disturbance).cells)
     if (cell.object == 1 && static_cast<double>(cell.z) > kFloor + kAboveFloor)
       view.returns.push_back({cell.x, cell.y, cell.z});
   view.features = lisco::clusterFeatures(view.returns.data(), view.returns.size(), sizeof view.returns[0]);

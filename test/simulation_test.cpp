@@ -119,7 +119,7 @@ TEST(Solid, OfLeavesStopsRaysExponentially) {
   const Scene scene = sceneOf(Solid::box({4, -50, -50}, {5, 50, 50}).ofLeaves(0.5));
   Sensor sensor = makeSensor("hdl64e", 1, 100000);
   sensor.elevation = {0};
-  const Scan rotation = scan(scene, sensor, {1, 0, 0});
+  const SimulatedScan rotation = scan(scene, sensor, {1, 0, 0});
   int rays = 0;
   int stopped = 0;
   double depth = 0;
@@ -163,7 +163,7 @@ TEST(Sensor, HasTheLasersAndStepsOfItsModel) {
     for (std::size_t laser = 1; laser < sensor.lasers(); ++laser)
       EXPECT_LT(sensor.elevation[laser], sensor.elevation[laser - 1]) << "laser " << laser;
   }
-  EXPECT_EQ(sensorNames(), names);
+  EXPECT_EQ(simulatedSensors(), names);
   EXPECT_THROW(makeSensor("hdl65"), std::invalid_argument);
 }
 
@@ -223,7 +223,7 @@ TEST(Sensor, HasTheStaggerOfItsModel) {
 }
 
 TEST(Sensor, HasAnyNumberOfLasersAndSteps) {
-  for (const std::string& name : sensorNames())
+  for (const std::string& name : simulatedSensors())
     for (const std::size_t lasers : {1, 2, 3, 7, 16, 100, 300}) {
       SCOPED_TRACE(name + " with " + std::to_string(lasers) + " lasers");
       const Sensor model = makeSensor(name);
@@ -236,7 +236,7 @@ TEST(Sensor, HasAnyNumberOfLasersAndSteps) {
         EXPECT_NEAR(sensor.elevation.front(), model.elevation.front(), 1e-12);
         EXPECT_NEAR(sensor.elevation.back(), model.elevation.back(), 1e-12);
       }
-      const Scan rotation = scan(sceneOf(Solid::box({3, -1, -1}, {4, 1, 1})), sensor, {});
+      const SimulatedScan rotation = scan(sceneOf(Solid::box({3, -1, -1}, {4, 1, 1})), sensor, {});
       EXPECT_EQ(rotation.cells.size(), lasers * 17);
     }
 }
@@ -249,7 +249,7 @@ TEST(Scan, AgreesWithBruteForce) {
     Scene scene;
     for (int object = 0; object < 60; ++object) scene.objects.push_back({"solid", {randomSolid(random)}});
     const Sensor sensor = makeSensor("os1-128", 40, 90);
-    const Scan rotation = scan(scene, sensor, {1, 0, 0});
+    const SimulatedScan rotation = scan(scene, sensor, {1, 0, 0});
     for (std::size_t laser = 0; laser < sensor.lasers(); ++laser)
       for (std::size_t step = 0; step < sensor.steps; ++step) {
         const Vector direction = sensor.direction(laser, step);
@@ -261,7 +261,7 @@ TEST(Scan, AgreesWithBruteForce) {
           nearest = inside.enter;
           object = static_cast<std::uint32_t>(i + 1);
         }
-        const Cell& cell = rotation.at(laser, step);
+        const SimulatedCell& cell = rotation.at(laser, step);
         if (nearest > sensor.max_range) {
           ASSERT_TRUE(std::isnan(cell.x) && std::isnan(cell.y) && std::isnan(cell.z));
           ASSERT_EQ(cell.object, 0U);
@@ -278,19 +278,19 @@ TEST(Scan, AgreesWithBruteForce) {
 TEST(Scan, HasTheGivenNoiseAndDropOuts) {
   const Scene scene = layOutScene(5, 1, 2);
   const Sensor sensor = makeSensor("hdl64e");
-  const Scan perfect = scan(scene, sensor, {1, 0, 0});
-  const Scan disturbed = scan(scene, sensor, {1, 0.05, 0.1});
+  const SimulatedScan perfect = scan(scene, sensor, {1, 0, 0});
+  const SimulatedScan disturbed = scan(scene, sensor, {1, 0.05, 0.1});
   double sum = 0;
   double squares = 0;
   for (std::size_t cell = 0; cell < perfect.cells.size(); ++cell) {
-    const Cell& is = disturbed.cells[cell];
+    const SimulatedCell& is = disturbed.cells[cell];
     if (std::isnan(is.x)) {
       EXPECT_EQ(is.object, 0U);
       continue;
     }
-    const Cell& was = perfect.cells[cell];
+    const SimulatedCell& was = perfect.cells[cell];
     ASSERT_EQ(is.object, was.object);
-    const auto range = [](const Cell& at) { return std::hypot(std::hypot(at.x, at.y), at.z); };
+    const auto range = [](const SimulatedCell& at) { return std::hypot(std::hypot(at.x, at.y), at.z); };
     const double error = static_cast<double>(range(is)) - static_cast<double>(range(was));
     sum += error;
     squares += error * error;
@@ -306,8 +306,9 @@ TEST(Scan, HasTheGivenNoiseAndDropOuts) {
 TEST(Scan, IsEqualForEqualSeedsOnly) {
   const Scene scene = layOutScene(1, 1, 3);
   const Sensor sensor = makeSensor("vlp16");
-  const auto bytes = [](const Scan& rotation) {
-    return std::string(reinterpret_cast<const char*>(rotation.cells.data()), rotation.cells.size() * sizeof(Cell));
+  const auto bytes = [](const SimulatedScan& rotation) {
+    return std::string(reinterpret_cast<const char*>(rotation.cells.data()),
+                       rotation.cells.size() * sizeof(SimulatedCell));
   };
   EXPECT_EQ(bytes(scan(scene, sensor, {1})), bytes(scan(layOutScene(1, 1, 3), sensor, {1})));
   EXPECT_NE(bytes(scan(scene, sensor, {1})), bytes(scan(scene, sensor, {2})));
@@ -326,7 +327,7 @@ TEST_P(EachScene, HasThePapersNumberOfReturns) {
     const Scene scene = makeScene(GetParam(), seed);
     Disturbance disturbance;
     disturbance.seed = seed;
-    const Scan rotation = scan(scene, sensor, disturbance);
+    const SimulatedScan rotation = scan(scene, sensor, disturbance);
     EXPECT_EQ(rotation.cells.size(), 72000U);
     EXPECT_NEAR(static_cast<double>(rotation.returnsAbove(scene.ground_z)), paper, 0.002 * paper) << "seed " << seed;
   }
@@ -334,11 +335,11 @@ TEST_P(EachScene, HasThePapersNumberOfReturns) {
 
 TEST_P(EachScene, LabelsReturnsWithTheObjectTheyLieOn) {
   const Scene scene = makeScene(GetParam(), 1);
-  for (const std::string& name : sensorNames()) {
+  for (const std::string& name : simulatedSensors()) {
     SCOPED_TRACE(name);
-    const Scan rotation = scan(scene, makeSensor(name), {1, 0, 0});
+    const SimulatedScan rotation = scan(scene, makeSensor(name), {1, 0, 0});
     std::set<std::uint32_t> seen;
-    for (const Cell& cell : rotation.cells) {
+    for (const SimulatedCell& cell : rotation.cells) {
       if (std::isnan(cell.x)) {
         ASSERT_EQ(cell.object, 0U);
         continue;
@@ -362,7 +363,7 @@ TEST_P(EachScene, LabelsReturnsWithTheObjectTheyLieOn) {
 TEST_P(EachScene, HidesTheMountOfThePapersSensor) {
   const Scene scene = makeScene(GetParam(), 1);
   ASSERT_EQ(scene.objects[0].kind.substr(0, 6), "sensor");
-  for (const Cell& cell : scan(scene, makeSensor("hdl64e"), {}).cells) ASSERT_NE(cell.object, 1U);
+  for (const SimulatedCell& cell : scan(scene, makeSensor("hdl64e"), {}).cells) ASSERT_NE(cell.object, 1U);
 }
 
 TEST(Scenes, AreNearAndFarWithTheSameObjects) {
@@ -410,8 +411,8 @@ TEST(Scenes, DifferFromSeedToSeed) {
 
 TEST(Scenes, RoomIsClosed) {
   const Scene scene = makeScene(5, 1);
-  for (const std::string& name : sensorNames()) {
-    const Scan rotation = scan(scene, makeSensor(name, 0, 500), {1, 0.02, 0});
+  for (const std::string& name : simulatedSensors()) {
+    const SimulatedScan rotation = scan(scene, makeSensor(name, 0, 500), {1, 0.02, 0});
     EXPECT_EQ(rotation.returns(), rotation.cells.size()) << name;
   }
 }
@@ -430,7 +431,7 @@ TEST_P(EachStreet, HasAQuarterOfItsReturnsOnItsOwnVehicle) {
     const auto vehicle = static_cast<std::uint32_t>(scene.objects.size());
     Disturbance disturbance;
     disturbance.seed = seed;
-    const Scan rotation = scan(scene, makeSensor("hdl64e"), disturbance);
+    const SimulatedScan rotation = scan(scene, makeSensor("hdl64e"), disturbance);
     const auto returns = static_cast<double>(rotation.returns());
     EXPECT_NEAR(static_cast<double>(rotation.returnsWithin(1.5)) / returns, 0.25, 0.01);
     // Nearer than the usual tolerances, by themselves and by the rest of the vehicle.
@@ -441,7 +442,7 @@ TEST_P(EachStreet, HasAQuarterOfItsReturnsOnItsOwnVehicle) {
       before = within;
     }
     EXPECT_EQ(scan(bare, makeSensor("hdl64e"), disturbance).returnsWithin(1.5), 0U);
-    for (const Cell& cell : rotation.cells) {
+    for (const SimulatedCell& cell : rotation.cells) {
       const float range = std::hypot(std::hypot(cell.x, cell.y), cell.z);
       ASSERT_EQ(cell.object == vehicle, range < 1.6F) << range;
     }
@@ -452,8 +453,9 @@ TEST_P(EachStreet, HasEqualVehiclesForEqualSeeds) {
   const auto bytes = [] {
     Scene scene = makeScene(GetParam(), 2);
     addVehicle(scene, 2);
-    const Scan rotation = scan(scene, makeSensor("vlp16"), {2});
-    return std::string(reinterpret_cast<const char*>(rotation.cells.data()), rotation.cells.size() * sizeof(Cell));
+    const SimulatedScan rotation = scan(scene, makeSensor("vlp16"), {2});
+    return std::string(reinterpret_cast<const char*>(rotation.cells.data()),
+                       rotation.cells.size() * sizeof(SimulatedCell));
   };
   EXPECT_TRUE(bytes() == bytes());
 }
@@ -473,13 +475,13 @@ struct Clustered {
   }
 };
 
-Clustered clustered(const Scan& rotation, float ground_z, float tolerance) {
+Clustered clustered(const SimulatedScan& rotation, float ground_z, float tolerance) {
   lisco::Parameters parameters;
   parameters.tolerance = tolerance;
   lisco::ColumnClusterer clusterer;
   clusterer.begin(parameters);
   clusterer.addColumns(rotation.steps, rotation.lasers, [&](std::size_t laser, std::size_t step) {
-    const Cell& cell = rotation.at(laser, step);
+    const SimulatedCell& cell = rotation.at(laser, step);
     if (!(cell.z >= ground_z)) return lisco::kNoReturn;
     return lisco::Return{cell.x, cell.y, cell.z, static_cast<std::uint32_t>(laser * rotation.steps + step)};
   });
@@ -498,7 +500,7 @@ TEST(Scenes, ParkedCarsOfASideAreOneClusterAtOneMetreOnly) {
     const Scene scene = makeScene(3, seed);
     Disturbance disturbance;
     disturbance.seed = seed;
-    const Scan rotation = scan(scene, makeSensor("hdl64e"), disturbance);
+    const SimulatedScan rotation = scan(scene, makeSensor("hdl64e"), disturbance);
     const Clustered fine = clustered(rotation, scene.ground_z, 0.4F);
     const Clustered coarse = clustered(rotation, scene.ground_z, 1.0F);
     for (const double side : {-1.0, 1.0}) {
@@ -524,7 +526,7 @@ TEST_P(EachScene, HasNoTwoObjectsInOneClusterAt40Centimetres) {
     const Scene scene = makeScene(GetParam(), seed);
     Disturbance disturbance;
     disturbance.seed = seed;
-    const Scan rotation = scan(scene, makeSensor("hdl64e"), disturbance);
+    const SimulatedScan rotation = scan(scene, makeSensor("hdl64e"), disturbance);
     std::map<std::uint32_t, std::set<std::uint32_t>> objects;
     for (const auto& [root, object] : clustered(rotation, scene.ground_z, 0.4F).root_and_object) {
       const std::string& kind = object == 0 ? "" : scene.objects[object - 1].kind;

@@ -27,7 +27,7 @@ Turning turningOf(const std::string& text) {
 }  // namespace
 
 void addSensorOptions(boost::program_options::options_description& shown, DecoderOptions& decoder) {
-  const std::string sensors = "of packets: the sensor: " + boost::algorithm::join(sensorNames(), ", ");
+  const std::string sensors = "of packets: the sensor: " + boost::algorithm::join(decodableSensors(), ", ");
   // clang-format off
   shown.add_options()
     ("sensor", textOption("NAME", [&decoder](const std::string& text) { decoder.sensor = text; }), sensors.c_str())

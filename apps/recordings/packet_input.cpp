@@ -131,7 +131,7 @@ void findMetadata(const fs::path& input, DecoderOptions& decoder, std::vector<st
 /// \param is_part whether some packets are left out
 void findSensor(const fs::path& input, DecoderOptions& decoder, std::vector<std::string>& notes,
                 const OpenPackets& open, bool is_part) {
-  const std::string all = boost::join(sensorNames(), ", ");
+  const std::string all = boost::join(decodableSensors(), ", ");
   if (!open) fail(input, "is no file: name the sensor by --sensor (" + all + ")");
   const std::vector<std::string> names = sensorsThatSent(*open());
   if (names.empty())

@@ -34,7 +34,7 @@ bool isIn(const std::vector<std::string>& names, const std::string& name) {
 
 }  // namespace
 
-std::vector<std::string> sensorNames() {
+std::vector<std::string> decodableSensors() {
   std::vector<std::string> names = velodyneModelNames();
   for (const std::string& name : hesaiModelNames()) names.push_back(name);
   names.emplace_back(kOuster);
@@ -57,9 +57,9 @@ std::uint16_t defaultPort(const std::string& sensor) {
 }
 
 std::unique_ptr<Decoder> makeDecoder(const DecoderOptions& options) {
-  if (!isIn(sensorNames(), options.sensor))
+  if (!isIn(decodableSensors(), options.sensor))
     throw std::runtime_error("there is no sensor '" + options.sensor + "': it is one of " +
-                             boost::join(sensorNames(), ", "));
+                             boost::join(decodableSensors(), ", "));
   if (options.sensor == kOuster) {
     if (!options.calibration.empty())
       throw std::runtime_error("the ouster has no calibration file; its metadata is given by --metadata");

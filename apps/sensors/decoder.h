@@ -45,7 +45,7 @@ enum class Turning { kDriver, kManual };
 
 /// What a decoder must know of its sensor.
 struct DecoderOptions {
-  std::string sensor;  ///< one of sensorNames ()
+  std::string sensor;  ///< one of decodableSensors ()
   fs::path calibration;
   fs::path metadata;
   std::string metadata_json;  ///< instead of the file, for example of a recording's message; empty: none
@@ -128,7 +128,7 @@ class Decoder {
 };
 
 /// The sensors that makeDecoder () accepts.
-std::vector<std::string> sensorNames();
+std::vector<std::string> decodableSensors();
 
 /// The sensors that send packets of this layout; those that need files are among them.
 std::vector<std::string> sensorsThatSend(const Packet& packet);

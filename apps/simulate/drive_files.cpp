@@ -25,8 +25,8 @@ double degrees(double radians) {
   return radians * 180 / kPi;
 }
 
-void count(const Scan& scan, DriveCounts& counts) {
-  for (const Cell& cell : scan.cells) {
+void count(const SimulatedScan& scan, DriveCounts& counts) {
+  for (const SimulatedCell& cell : scan.cells) {
     if (std::isnan(cell.x)) continue;
     ++counts.returns;
     if (cell.object == 0) ++counts.ground;
@@ -49,15 +49,15 @@ std::string objectsOf(const World& world) {
 
 }  // namespace
 
-std::string pcdOf(const Scan& scan, const std::string& comment) {
-  static_assert(sizeof(Cell) == 16, "cells are written as they are");
+std::string pcdOf(const SimulatedScan& scan, const std::string& comment) {
+  static_assert(sizeof(SimulatedCell) == 16, "cells are written as they are");
   std::string content = pcdHeader(comment, "x y z label", "F F F U", scan.steps, scan.lasers);
-  content.append(reinterpret_cast<const char*>(scan.cells.data()), scan.cells.size() * sizeof(Cell));
+  content.append(reinterpret_cast<const char*>(scan.cells.data()), scan.cells.size() * sizeof(SimulatedCell));
   return content;
 }
 
 DriveCounts writeRotation(Drive& drive, const std::string& comment, const fs::path& file) {
-  const Scan scan = drive.columns(0, drive.sensor().steps);
+  const SimulatedScan scan = drive.columns(0, drive.sensor().steps);
   DriveCounts counts;
   count(scan, counts);
   writeOwnFile(file, pcdOf(scan, comment), kSignature);
@@ -77,7 +77,7 @@ DriveCounts writeDrive(Drive& drive, std::size_t rotations, bool with_packets, c
     std::optional<PacketWriter> packets;
     if (with_packets) packets.emplace(aside / kCapture, drive.sensor());
     for (std::size_t rotation = 0; rotation < rotations; ++rotation) {
-      const Scan scan = drive.columns(rotation * steps, steps);
+      const SimulatedScan scan = drive.columns(rotation * steps, steps);
       count(scan, counts);
       if (packets) packets->add(scan);
       writeOwnFile(aside / names[kOthers + rotation], pcdOf(scan, comment), kSignature);

@@ -15,7 +15,7 @@ namespace lisco_apps {
 inline constexpr const char* kSignature = "# made by lisco_simulate ";
 
 /// The content of a PCD of a scan, with fields x y z label. \param comment its first line
-std::string pcdOf(const lisco_simulation::Scan& scan, const std::string& comment);
+std::string pcdOf(const lisco_simulation::SimulatedScan& scan, const std::string& comment);
 
 struct DriveCounts {
   std::size_t returns = 0;

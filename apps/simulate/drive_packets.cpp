@@ -15,9 +15,9 @@
 namespace lisco_apps {
 namespace {
 
-using lisco_simulation::Cell;
-using lisco_simulation::Scan;
 using lisco_simulation::Sensor;
+using lisco_simulation::SimulatedCell;
+using lisco_simulation::SimulatedScan;
 
 constexpr std::uint16_t kPort = 2368;
 constexpr std::size_t kTurn = 36000;                       // hundredths of a degree
@@ -84,11 +84,11 @@ void PacketWriter::writePacket() {
   waiting_.clear();
 }
 
-void PacketWriter::add(const Scan& scan) {
+void PacketWriter::add(const SimulatedScan& scan) {
   for (std::size_t step = 0; step < scan.steps; ++step) {
     std::vector<Measured> firing(row_of_.size());
     for (std::size_t laser = 0; laser < firing.size(); ++laser) {
-      const Cell& cell = scan.at(row_of_[laser], step);
+      const SimulatedCell& cell = scan.at(row_of_[laser], step);
       if (std::isnan(cell.x)) continue;
       const double range = length(placeOf(cell));
       firing[laser] = {static_cast<std::uint16_t>(std::lround(range / distance_unit_)), kIntensity};

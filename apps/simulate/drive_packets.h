@@ -33,7 +33,7 @@ class PacketWriter {
   PacketWriter(const fs::path& file, const lisco_simulation::Sensor& sensor);
 
   /// The next columns.
-  void add(const lisco_simulation::Scan& scan);
+  void add(const lisco_simulation::SimulatedScan& scan);
   /// Fills the last packet with lasers that have no return. \throws std::runtime_error as above
   void finish();
 

@@ -35,14 +35,14 @@ struct Ray {
   double noise;  ///< metres
 };
 
-Cell cellAt(const Ray& ray, const Target& target) {
+SimulatedCell cellAt(const Ray& ray, const Target& target) {
   return cellAt(target.range * ray.direction, target.object);
 }
 
 /// \param target_of gives the target of a ray as the sensor measures it, noise included
 template <typename TargetOf>
-Scan scanEachCell(const Sensor& sensor, const Disturbance& disturbance, TargetOf&& target_of) {
-  Scan scan = emptyScan(sensor.lasers(), sensor.steps);
+SimulatedScan scanEachCell(const Sensor& sensor, const Disturbance& disturbance, TargetOf&& target_of) {
+  SimulatedScan scan = emptyScan(sensor.lasers(), sensor.steps);
   for (std::size_t cell = 0; cell < scan.cells.size(); ++cell) {
     if (CellRandom(disturbance.seed, cell, kForDropOut).unit() < disturbance.drop_outs) continue;
     Ray ray{cell / scan.steps, cell % scan.steps, cell, {}, 0};
@@ -63,7 +63,7 @@ std::uint32_t numberOf(std::size_t cell) {
   return static_cast<std::uint32_t>(cell + 1);
 }
 
-Scan scanRoom(const Sensor& sensor, const Disturbance& disturbance, double /*gap*/) {
+SimulatedScan scanRoom(const Sensor& sensor, const Disturbance& disturbance, double /*gap*/) {
   constexpr double kLength = 4;  // half of it, metres
   constexpr double kWidth = 3;   // half of it
   constexpr double kFloor = -1.8;
@@ -83,19 +83,19 @@ Scan scanRoom(const Sensor& sensor, const Disturbance& disturbance, double /*gap
   return scan(scene, sensor, disturbance);
 }
 
-Scan scanWall(const Sensor& sensor, const Disturbance& disturbance, double /*gap*/) {
+SimulatedScan scanWall(const Sensor& sensor, const Disturbance& disturbance, double /*gap*/) {
   return scanEachCell(sensor, disturbance, [](const Ray& ray) {
     return Target{std::max(rangeOfRoundWall(ray.direction, 1) + ray.noise, kMinRange), 1};
   });
 }
 
-Scan scanRandom(const Sensor& sensor, const Disturbance& disturbance, double /*gap*/) {
+SimulatedScan scanRandom(const Sensor& sensor, const Disturbance& disturbance, double /*gap*/) {
   return scanEachCell(sensor, disturbance, [&](const Ray& ray) {
     return Target{1 + 59 * CellRandom(disturbance.seed, ray.cell, kForRange).unit(), numberOf(ray.cell)};
   });
 }
 
-Scan scanSheets(const Sensor& sensor, const Disturbance& disturbance, double gap) {
+SimulatedScan scanSheets(const Sensor& sensor, const Disturbance& disturbance, double gap) {
   constexpr double kRange = 5;
   return scanEachCell(sensor, disturbance, [&](const Ray& ray) {
     // Spheres: returns whose ranges differ by the gap are at least the gap apart in any direction.
@@ -105,7 +105,7 @@ Scan scanSheets(const Sensor& sensor, const Disturbance& disturbance, double gap
   });
 }
 
-Scan scanBlocked(const Sensor& sensor, const Disturbance& disturbance, double /*gap*/) {
+SimulatedScan scanBlocked(const Sensor& sensor, const Disturbance& disturbance, double /*gap*/) {
   constexpr double kRange = 0.15;
   constexpr double kMaxRange = 0.29;
   return scanEachCell(sensor, disturbance, [&](const Ray& ray) {
@@ -119,7 +119,7 @@ class Apart {
   explicit Apart(double gap) : gap_(gap) {}
 
   /// \return false, without adding it, if the position is too near to another one
-  bool add(const Cell& cell) {
+  bool add(const SimulatedCell& cell) {
     const Cube cube{along(cell.x), along(cell.y), along(cell.z)};
     for (std::int64_t x = -1; x <= 1; ++x)
       for (std::int64_t y = -1; y <= 1; ++y)
@@ -140,10 +140,10 @@ class Apart {
   }
 
   double gap_;
-  std::unordered_multimap<Cube, Cell, boost::hash<Cube>> positions_;
+  std::unordered_multimap<Cube, SimulatedCell, boost::hash<Cube>> positions_;
 };
 
-Scan scanSingletons(const Sensor& sensor, const Disturbance& disturbance, double gap) {
+SimulatedScan scanSingletons(const Sensor& sensor, const Disturbance& disturbance, double gap) {
   constexpr int kTrials = 8;
   constexpr double kNearest = 2;  // metres
   Apart apart(gap);
@@ -157,7 +157,7 @@ Scan scanSingletons(const Sensor& sensor, const Disturbance& disturbance, double
   });
 }
 
-Scan scanPoles(const Sensor& sensor, const Disturbance& disturbance, double /*gap*/) {
+SimulatedScan scanPoles(const Sensor& sensor, const Disturbance& disturbance, double /*gap*/) {
   constexpr double kPitch = 0.65;   // from pole to pole of a ring, metres
   constexpr double kSlender = 250;  // range by radius: a width of one or two steps
   constexpr double kRings[] = {3, 4.5, 6.75, 10, 15};
@@ -179,7 +179,7 @@ Scan scanPoles(const Sensor& sensor, const Disturbance& disturbance, double /*ga
 struct Case {
   const char* name;
   const char* description;
-  Scan (*scan)(const Sensor& sensor, const Disturbance& disturbance, double gap);
+  SimulatedScan (*scan)(const Sensor& sensor, const Disturbance& disturbance, double gap);
   bool has_gap = false;
 };
 
@@ -215,7 +215,7 @@ bool caseHasGap(const std::string& name) {
   return caseOf(name).has_gap;
 }
 
-Scan scanCase(const std::string& name, const Sensor& sensor, const Disturbance& disturbance, double gap) {
+SimulatedScan scanCase(const std::string& name, const Sensor& sensor, const Disturbance& disturbance, double gap) {
   return caseOf(name).scan(sensor, disturbance, gap);
 }
 

@@ -34,6 +34,6 @@ bool caseHasGap(const std::string& name);
 /// \param disturbance noise does not apply to random and singletons
 /// \param gap metres, > 0
 /// \throws std::invalid_argument if the name is unknown
-Scan scanCase(const std::string& name, const Sensor& sensor, const Disturbance& disturbance, double gap);
+SimulatedScan scanCase(const std::string& name, const Sensor& sensor, const Disturbance& disturbance, double gap);
 
 }  // namespace lisco_simulation

@@ -114,8 +114,8 @@ void Drive::lookAround(std::size_t column) {
   }
 }
 
-Scan Drive::columns(std::size_t first, std::size_t count) {
-  Scan scan = emptyScan(sensor_.lasers(), count);
+SimulatedScan Drive::columns(std::size_t first, std::size_t count) {
+  SimulatedScan scan = emptyScan(sensor_.lasers(), count);
   for (std::size_t column = first; column < first + count; ++column) {
     lookAround(column);
     const Pose pose = poseOf(column);
@@ -134,8 +134,8 @@ Scan Drive::columns(std::size_t first, std::size_t count) {
   return scan;
 }
 
-Scan scanInMotion(const Scene& scene, const Sensor& sensor, const Disturbance& disturbance, const Motion& motion,
-                  std::size_t columns) {
+SimulatedScan scanInMotion(const Scene& scene, const Sensor& sensor, const Disturbance& disturbance,
+                           const Motion& motion, std::size_t columns) {
   World world{Terrain(scene.floor_z), {}, {}};
   for (const Object& object : scene.objects) {
     Body body;
@@ -145,12 +145,12 @@ Scan scanInMotion(const Scene& scene, const Sensor& sensor, const Disturbance& d
     world.bodies.push_back(std::move(body));
   }
   Drive drive(std::move(world), sensor, disturbance, motion, -scene.floor_z);
-  Scan scan = drive.columns(0, columns);
+  SimulatedScan scan = drive.columns(0, columns);
   for (std::size_t column = 0; column < columns; ++column) {
     const Pose pose = drive.poseOf(column);
     const Rotation toWorld(pose);
     for (std::size_t laser = 0; laser < scan.lasers; ++laser) {
-      Cell& cell = scan.cells[laser * columns + column];
+      SimulatedCell& cell = scan.cells[laser * columns + column];
       cell = cellAt(toWorld(placeOf(cell)) + pose.place, cell.object);
     }
   }

@@ -63,7 +63,7 @@ class Drive {
 
   /// Columns from the start on, each in the sensor's frame of its moment, as a driver without motion compensation
   /// delivers them. The returns of a column do not depend on which columns are asked for.
-  Scan columns(std::size_t first, std::size_t count);
+  SimulatedScan columns(std::size_t first, std::size_t count);
 
   double secondsOf(std::size_t column) const { return motion_.turn_seconds * turnsOf(column); }
   Pose poseOf(std::size_t column) const { return motion_.poseAfter(turnsOf(column), world_.ground, height_); }
@@ -95,7 +95,7 @@ class Drive {
 
 /// Scans a scene while the sensor moves; the returns are in the frame of the first column (motion-compensated).
 /// \param columns more than the sensor's steps: the scan is longer than a turn
-Scan scanInMotion(const Scene& scene, const Sensor& sensor, const Disturbance& disturbance, const Motion& motion,
-                  std::size_t columns);
+SimulatedScan scanInMotion(const Scene& scene, const Sensor& sensor, const Disturbance& disturbance,
+                           const Motion& motion, std::size_t columns);
 
 }  // namespace lisco_simulation

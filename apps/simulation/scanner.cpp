@@ -11,33 +11,33 @@
 
 namespace lisco_simulation {
 
-std::size_t Scan::returns() const {
+std::size_t SimulatedScan::returns() const {
   return static_cast<std::size_t>(
-      std::count_if(cells.begin(), cells.end(), [](const Cell& cell) { return !std::isnan(cell.x); }));
+      std::count_if(cells.begin(), cells.end(), [](const SimulatedCell& cell) { return !std::isnan(cell.x); }));
 }
 
-std::size_t Scan::returnsAbove(float ground_z) const {
+std::size_t SimulatedScan::returnsAbove(float ground_z) const {
   return static_cast<std::size_t>(
-      std::count_if(cells.begin(), cells.end(), [ground_z](const Cell& cell) { return cell.z >= ground_z; }));
+      std::count_if(cells.begin(), cells.end(), [ground_z](const SimulatedCell& cell) { return cell.z >= ground_z; }));
 }
 
-std::size_t Scan::returnsWithin(double range) const {
-  return static_cast<std::size_t>(
-      std::count_if(cells.begin(), cells.end(), [range](const Cell& cell) { return length(placeOf(cell)) < range; }));
+std::size_t SimulatedScan::returnsWithin(double range) const {
+  return static_cast<std::size_t>(std::count_if(
+      cells.begin(), cells.end(), [range](const SimulatedCell& cell) { return length(placeOf(cell)) < range; }));
 }
 
-Scan emptyScan(std::size_t lasers, std::size_t steps) {
+SimulatedScan emptyScan(std::size_t lasers, std::size_t steps) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  Scan scan{lasers, steps, {}};
+  SimulatedScan scan{lasers, steps, {}};
   scan.cells.assign(scan.lasers * scan.steps, {kNan, kNan, kNan, 0});
   return scan;
 }
 
-Cell cellAt(const Vector& place, std::uint32_t object) {
+SimulatedCell cellAt(const Vector& place, std::uint32_t object) {
   return {static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z), object};
 }
 
-Scan scan(const Scene& scene, const Sensor& sensor, const Disturbance& disturbance) {
+SimulatedScan scan(const Scene& scene, const Sensor& sensor, const Disturbance& disturbance) {
   Caster caster;
   std::uint32_t number = 0;
   for (const Object& object : scene.objects) {
@@ -46,7 +46,7 @@ Scan scan(const Scene& scene, const Sensor& sensor, const Disturbance& disturban
   }
   caster.sort();
   const Terrain floor(scene.floor_z);
-  Scan scan = emptyScan(sensor.lasers(), sensor.steps);
+  SimulatedScan scan = emptyScan(sensor.lasers(), sensor.steps);
   for (std::size_t index = 0; index < scan.cells.size(); ++index) {
     const std::size_t laser = index / scan.steps;
     const std::size_t step = index % scan.steps;

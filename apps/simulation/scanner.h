@@ -37,18 +37,18 @@ struct Disturbance {
 constexpr double kMinRange = 0.01;
 
 /// One cell of a scan.
-struct Cell {
+struct SimulatedCell {
   float x, y, z;         ///< metres; NaN: no return
   std::uint32_t object;  ///< number of the object hit; 0: the ground, or no return
 };
 
 /// One rotation of a sensor.
-struct Scan {
+struct SimulatedScan {
   std::size_t lasers = 0;
   std::size_t steps = 0;
-  std::vector<Cell> cells;  ///< laser by laser from top to bottom, each step by step
+  std::vector<SimulatedCell> cells;  ///< laser by laser from top to bottom, each step by step
 
-  const Cell& at(std::size_t laser, std::size_t step) const { return cells[laser * steps + step]; }
+  const SimulatedCell& at(std::size_t laser, std::size_t step) const { return cells[laser * steps + step]; }
   std::size_t returns() const;
   /// Returns with z >= ground_z.
   std::size_t returnsAbove(float ground_z) const;
@@ -57,14 +57,14 @@ struct Scan {
 };
 
 /// A scan without returns.
-Scan emptyScan(std::size_t lasers, std::size_t steps);
-Cell cellAt(const Vector& place, std::uint32_t object);
-inline Vector placeOf(const Cell& cell) {
+SimulatedScan emptyScan(std::size_t lasers, std::size_t steps);
+SimulatedCell cellAt(const Vector& place, std::uint32_t object);
+inline Vector placeOf(const SimulatedCell& cell) {
   return {static_cast<double>(cell.x), static_cast<double>(cell.y), static_cast<double>(cell.z)};
 }
 
 /// Casts one ray per cell to the first object it meets.
-Scan scan(const Scene& scene, const Sensor& sensor, const Disturbance& disturbance);
+SimulatedScan scan(const Scene& scene, const Sensor& sensor, const Disturbance& disturbance);
 
 /// The scene in the frame of a sensor elsewhere. \param heading radians counterclockwise
 Scene seenFrom(const Scene& scene, const Vector& place, double heading);

@@ -186,7 +186,7 @@ Scene layOutScene(int number, unsigned seed, double distance) {
 }
 
 Scene makeScene(int number, unsigned seed) {
-  const Sensor sensor = makeSensor(sensorNames().front());
+  const Sensor sensor = makeSensor(simulatedSensors().front());
   Disturbance disturbance;
   disturbance.seed = seed;
   // Bisection: returns decrease with the distance, except for small fluctuations, so the best scene is kept.
@@ -213,7 +213,7 @@ Scene makeScene(int number, unsigned seed) {
 }
 
 void addVehicle(Scene& scene, unsigned seed) {
-  const Sensor sensor = makeSensor(sensorNames().front());
+  const Sensor sensor = makeSensor(simulatedSensors().front());
   Disturbance disturbance;
   disturbance.seed = seed;
   scene.objects.emplace_back();
@@ -223,7 +223,7 @@ void addVehicle(Scene& scene, unsigned seed) {
   for (int halving = 0; halving < 16; ++halving) {
     const double drop = (low + high) / 2;
     scene.objects.back() = vehicleTop(drop).object;
-    const Scan rotation = scan(scene, sensor, disturbance);
+    const SimulatedScan rotation = scan(scene, sensor, disturbance);
     const double share =
         static_cast<double>(rotation.returnsWithin(kVehicleRange)) / static_cast<double>(rotation.returns());
     if (std::fabs(share - kVehicleShare) < 0.001) break;

@@ -115,7 +115,7 @@ Vector Sensor::direction(std::size_t laser, std::size_t step) const {
   return {horizontal * std::cos(angle), horizontal * std::sin(angle), std::sin(elevation[laser])};
 }
 
-std::vector<std::string> sensorNames() {
+std::vector<std::string> simulatedSensors() {
   std::vector<std::string> names;
   for (const Model& model : models()) names.emplace_back(model.name);
   return names;

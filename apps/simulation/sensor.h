@@ -29,7 +29,7 @@ struct Sensor {
 };
 
 /// The names that makeSensor () accepts, the default first.
-std::vector<std::string> sensorNames();
+std::vector<std::string> simulatedSensors();
 
 /// A sensor by its manual:
 /// - hdl64e: Velodyne HDL-64E, 64 lasers x 1125 steps (the paper's): 32 upper lasers 1/3 degree apart from +2 degrees

@@ -200,7 +200,7 @@ py::array_t<double> arrayOf(const std::vector<double>& values) {
 PYBIND11_MODULE(_reading, module) {
   module.doc() = "The readers of the programs.";
   module.def("read_file", &readFile, py::arg("file"));
-  module.def("sensors", &lisco_apps::sensorNames);
+  module.def("sensors", &lisco_apps::decodableSensors);
   module.def("is_capture", &lisco_apps::isCapture, py::arg("path"));
   module.def("is_recording", &lisco_apps::isRecording, py::arg("path"));
   py::class_<Reading>(module, "Reading")

@@ -23,8 +23,8 @@ namespace lisco_apps {
 namespace {
 
 using lisco_simulation::Drive;
-using lisco_simulation::Scan;
 using lisco_simulation::Sensor;
+using lisco_simulation::SimulatedScan;
 
 class DrivePackets : public lisco_test::InTemporaryFolder, public testing::WithParamInterface<std::string> {
  protected:
@@ -47,7 +47,7 @@ TEST_P(DrivePackets, DecodeToTheReturnsTheyWereMadeOf) {
     const fs::path file = folder_ / "capture.pcap";
     constexpr std::size_t kRotations = 3;
     PacketWriter packets(file, sensor);
-    std::vector<Scan> scans;
+    std::vector<SimulatedScan> scans;
     for (std::size_t rotation = 0; rotation < kRotations; ++rotation) {
       scans.push_back(drive.columns(rotation * sensor.steps, sensor.steps));
       packets.add(scans.back());
@@ -86,7 +86,7 @@ TEST_P(DrivePackets, DecodeToTheReturnsTheyWereMadeOf) {
             ASSERT_TRUE(std::isnan(cell.x)) << "the rest of the last packet";
             continue;
           }
-          const lisco_simulation::Cell& truth = scans[columns / sensor.steps].at(laser, step);
+          const lisco_simulation::SimulatedCell& truth = scans[columns / sensor.steps].at(laser, step);
           ASSERT_EQ(std::isnan(cell.x), std::isnan(truth.x)) << "column " << columns << ", laser " << laser;
           if (std::isnan(cell.x)) continue;
           ++returns;

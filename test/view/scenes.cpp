@@ -56,13 +56,13 @@ ViewScan scanOfPosts(std::size_t clusters, float radius) {
 
 ViewScan largeScan() {
   const lisco_simulation::Scene scene = lisco_simulation::makeScene(5, 1);
-  const lisco_simulation::Scan simulated =
+  const lisco_simulation::SimulatedScan simulated =
       lisco_simulation::scan(scene, lisco_simulation::makeSensor("vls128"), lisco_simulation::Disturbance{});
   ViewScan scan;
   scan.name = "room.pcd";
   std::vector<std::array<float, 3>> clustered;
   for (std::size_t i = 0; i < simulated.cells.size(); ++i) {
-    const lisco_simulation::Cell& cell = simulated.cells[i];
+    const lisco_simulation::SimulatedCell& cell = simulated.cells[i];
     const bool is_ground = cell.z < scene.ground_z;
     scan.points.push_back({cell.x, cell.y, cell.z});
     clustered.push_back(is_ground ? std::array<float, 3>{} : scan.points.back());
