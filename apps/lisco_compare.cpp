@@ -287,7 +287,7 @@ int compare(const Options& options) {
   std::fflush(stdout);
   const bool agree = checkAgreement(results, settings);
 
-  if (!options.json.empty()) writeOwnFile(options.json, jsonOf(results, settings, failures), kJsonSignature);
+  if (!options.json.empty()) writeOwnFile(options.json, jsonTextOf(results, settings, failures), kJsonSignature);
   if (!options.csv.empty()) writeOwnFile(options.csv, csvOf(results, settings), kCsvSignature);
   if (!options.view.empty()) writeOwnFile(options.view, viewPage("Comparison", views), kViewSignature);
   names.clear();

@@ -234,7 +234,7 @@ struct Input {
 };
 
 /// A file's or folder's name without those before it, also of "drives/" and ".".
-std::string nameOf(const fs::path& path) {
+std::string fileNameOf(const fs::path& path) {
   const fs::path whole = fs::absolute(path).lexically_normal();
   return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
@@ -292,7 +292,7 @@ Input open(const Options& options, Report& report) {
     return {std::move(queue), std::move(decoder), live, nullptr, 1, name};
   }
   Input input = openFile(options, report);
-  input.name = nameOf(options.capture);
+  input.name = fileNameOf(options.capture);
   if (options.realtime) input.source = std::make_unique<PacedCapture>(std::move(input.source));
   return input;
 }

@@ -73,7 +73,7 @@ Pairs pairsOf(const ComparedScan& scan, double tolerance, const lisco_reference:
 /// The scan with its rows moved so that a column is one direction, as its driver might do it.
 Cloud::Ptr destaggered(const Cloud& cloud) {
   auto straight = std::make_shared<Cloud>(cloud);
-  const std::vector<int> shifts = staggerOf(cloud);
+  const std::vector<int> shifts = rowShiftsOf(cloud);
   const auto columns = static_cast<int>(cloud.width);
   for (int row = 0; row < static_cast<int>(cloud.height); ++row)
     for (int column = 0; column < columns; ++column)

@@ -282,7 +282,7 @@ void printSets(const std::vector<Result>& results) {
   }
 }
 
-std::string jsonOf(const std::vector<Result>& results) {
+std::string jsonTextOf(const std::vector<Result>& results) {
   nlohmann::ordered_json cases = nlohmann::ordered_json::array();
   for (const Result& r : results) {
     nlohmann::ordered_json entry{{"set", r.set},
@@ -317,7 +317,7 @@ int run(const Options& options) {
       measureRecording(recording, options, methods, results);
   if (results.empty()) throw std::runtime_error("no case is left to measure");
   printSets(results);
-  if (!options.json.empty()) writeOwnFile(options.json, jsonOf(results), kSignature);
+  if (!options.json.empty()) writeOwnFile(options.json, jsonTextOf(results), kSignature);
   const auto wrong = std::count_if(results.begin(), results.end(), [](const Result& r) { return !r.identical; });
   std::printf("%zu cases, clusters identical in %zu\n", results.size(),
               results.size() - static_cast<std::size_t>(wrong));

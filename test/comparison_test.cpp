@@ -978,7 +978,7 @@ TEST(Report, CsvHoldsAllResults) {
 
 TEST(Report, JsonHoldsAllResults) {
   const Example example;
-  const std::string text = jsonOf(example.inputs, example.settings, {"other.pcd: does not exist"});
+  const std::string text = jsonTextOf(example.inputs, example.settings, {"other.pcd: does not exist"});
   EXPECT_LT(text.find(kJsonSignature), 1000U);
   const auto json = nlohmann::json::parse(text);
   EXPECT_EQ(json["program"], "lisco_compare");
@@ -1031,7 +1031,7 @@ TEST(Report, FilesHoldNoNan) {
   example.inputs[0].ground = {};
   example.inputs[0].name = "no \xff UTF-8";
   for (BaselineResult& entry : example.inputs[0].cases[0].baselines) entry.times = timesOf({1});
-  const auto json = nlohmann::json::parse(jsonOf(example.inputs, example.settings, {}));
+  const auto json = nlohmann::json::parse(jsonTextOf(example.inputs, example.settings, {}));
   EXPECT_TRUE(json["inputs"][0]["ground_z"].is_null());
   EXPECT_TRUE(json["inputs"][0]["cases"][0]["baselines"][0]["confidence99_ms"].is_null());
   const std::string csv = csvOf(example.inputs, example.settings);

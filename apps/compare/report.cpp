@@ -197,8 +197,8 @@ std::string csvOf(const std::vector<InputResult>& inputs, const CompareSettings&
   return text;
 }
 
-std::string jsonOf(const std::vector<InputResult>& inputs, const CompareSettings& settings,
-                   const std::vector<std::string>& failures) {
+std::string jsonTextOf(const std::vector<InputResult>& inputs, const CompareSettings& settings,
+                       const std::vector<std::string>& failures) {
   nlohmann::ordered_json json{{"program", "lisco_compare"},
                               {"version", LISCO_VERSION},
                               {"pcl_version", PCL_VERSION_PRETTY},
@@ -232,7 +232,7 @@ std::string jsonOf(const std::vector<InputResult>& inputs, const CompareSettings
                               {"columns", input.columns},
                               {"returns", input.returns},
                               {"ground", input.left_out},
-                              {"ground_method", nameOf(input.ground)},
+                              {"ground_method", groundTextOf(input.ground)},
                               {"ground_z", input.ground.height},
                               {"cases", std::move(cases)}});
   }

@@ -28,8 +28,8 @@ inline constexpr const char* kJsonSignature = "\"program\": \"lisco_compare\"";
 std::string csvOf(const std::vector<InputResult>& inputs, const CompareSettings& settings);
 /// All results, with the times of every run.
 /// \param failures inputs that could not be read, and why
-std::string jsonOf(const std::vector<InputResult>& inputs, const CompareSettings& settings,
-                   const std::vector<std::string>& failures);
+std::string jsonTextOf(const std::vector<InputResult>& inputs, const CompareSettings& settings,
+                       const std::vector<std::string>& failures);
 
 /// The file names of the charts that drawCharts draws.
 std::vector<std::string> chartsOf(const std::vector<std::string>& input_names, const CompareSettings& settings);

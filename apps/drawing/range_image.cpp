@@ -34,7 +34,7 @@ PointMap emptyMap(int columns, int rows) {
 /// An organized scan, each row shifted by its stagger.
 PointMap shiftedRows(const Cloud& cloud) {
   PointMap map = emptyMap(static_cast<int>(cloud.width), static_cast<int>(cloud.height));
-  const std::vector<int> shifts = seenByCamera(cloud) ? std::vector<int>(cloud.height, 0) : staggerOf(cloud);
+  const std::vector<int> shifts = seenByCamera(cloud) ? std::vector<int>(cloud.height, 0) : rowShiftsOf(cloud);
   for (std::size_t row = 0; row < cloud.height; ++row)
     for (int column = 0; column < map.columns; ++column) {
       const int shifted = ((column + shifts[row]) % map.columns + map.columns) % map.columns;

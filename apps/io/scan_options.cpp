@@ -48,7 +48,7 @@ GroundChoice groundChoiceOf(const std::string& text) {
   throw std::runtime_error("--ground must be slope, height:Z or none, not '" + text + "'");
 }
 
-std::string nameOf(const GroundChoice& ground) {
+std::string groundTextOf(const GroundChoice& ground) {
   if (ground.method == GroundChoice::Method::kNone) return "none";
   if (ground.method == GroundChoice::Method::kSlope) return "slope";
   return kHeightPrefix + formatted("%.9g", static_cast<double>(ground.height));

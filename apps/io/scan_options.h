@@ -24,7 +24,7 @@ struct GroundChoice {
 GroundChoice groundChoiceOf(const std::string& text);
 
 /// As --ground names it, with a height of up to nine digits.
-std::string nameOf(const GroundChoice& ground);
+std::string groundTextOf(const GroundChoice& ground);
 
 /// The returns that are looked at, by range and place.
 struct Region {

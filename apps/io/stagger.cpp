@@ -28,7 +28,7 @@ double stepOf(const Cloud& cloud) {
 
 }  // namespace
 
-std::vector<int> staggerOf(const Cloud& cloud) {
+std::vector<int> rowShiftsOf(const Cloud& cloud) {
   std::vector<int> shifts(cloud.height, 0);
   const double step = stepOf(cloud);
   if (std::fabs(step) < kMinStep) return shifts;

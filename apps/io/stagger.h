@@ -10,6 +10,6 @@ namespace lisco_apps {
 
 /// Stagger of a rotating scan: the number of columns by which each row has to be moved right so that all returns of a
 /// column lie at one azimuth. Measured on the returns; the lasers of a column may differ by up to 12 degrees.
-std::vector<int> staggerOf(const Cloud& cloud);
+std::vector<int> rowShiftsOf(const Cloud& cloud);
 
 }  // namespace lisco_apps

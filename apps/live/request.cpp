@@ -11,7 +11,7 @@ namespace lisco_apps {
 namespace {
 
 /// A Host without its port.
-std::string_view nameOf(std::string_view host) {
+std::string_view hostNameOf(std::string_view host) {
   const std::size_t bracket = host.find(']');
   return host.substr(0, host.find(':', bracket == std::string_view::npos ? 0 : bracket));
 }
@@ -28,7 +28,7 @@ Verdict verdictOn(const RequestHead& request, bool is_loopback) {
   const std::string host = boost::to_lower_copy(std::string(request.host));
   if (host.empty() || request.has_body)
     return request.method == "GET" ? Verdict::kBadRequest : Verdict::kMethodNotAllowed;
-  if (is_loopback && !isLoopbackName(std::string(nameOf(host)))) return Verdict::kForbidden;
+  if (is_loopback && !isLoopbackName(std::string(hostNameOf(host)))) return Verdict::kForbidden;
   const std::string_view path = request.target.substr(0, request.target.find('?'));
   if (path != "/" && path != kLivePath) return Verdict::kNotFound;
   if (request.method != "GET") return Verdict::kMethodNotAllowed;

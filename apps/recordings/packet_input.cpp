@@ -168,7 +168,7 @@ bool isCapture(const fs::path& input) {
   return ending == ".pcap" || ending == ".pcapng" || ending == ".cap";
 }
 
-std::string listOf(const std::vector<fs::path>& files) {
+std::string fileNamesOf(const std::vector<fs::path>& files) {
   std::vector<std::string> names;
   for (const fs::path& file : files) names.push_back(file.filename().string());
   return boost::join(names, ", ");
@@ -212,7 +212,7 @@ PacketInput openPackets(const fs::path& input, const RecordingOptions& options, 
   if (decoder.sensor.empty())
     findSensor(input, decoder, packets.notes, open_again, options.areGiven() || port.has_value());
   if (decoder.sensor == kOuster && decoder.metadata.empty() && decoder.metadata_json.empty()) {
-    const std::string beside = listOf(metadataBeside(input).all);
+    const std::string beside = fileNamesOf(metadataBeside(input).all);
     fail(input, "needs --metadata FILE, the JSON file of the Ouster sensor" +
                     (beside.empty() ? "" : " (beside it are " + beside + ")"));
   }

@@ -19,7 +19,7 @@ namespace lisco_apps {
 bool isCapture(const fs::path& input);
 
 /// "A, B": files without their folders.
-std::string listOf(const std::vector<fs::path>& files);
+std::string fileNamesOf(const std::vector<fs::path>& files);
 
 /// Packets on file and the sensor they are from.
 struct PacketInput {

@@ -3,13 +3,13 @@
 #include "recordings/point_cloud2.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <pcl/common/io.h>
 #include <pcl/console/print.h>
 #include <pcl/io/lisco_point_cloud2.h>
 
@@ -18,11 +18,6 @@
 namespace lisco_apps {
 namespace {
 
-std::size_t sizeOf(std::uint8_t datatype) {
-  constexpr std::array<std::size_t, 9> kSizes{0, 1, 1, 2, 2, 4, 4, 4, 8};  // by the numbers of sensor_msgs/PointField
-  return datatype < kSizes.size() ? kSizes[datatype] : 0;
-}
-
 /// Makes a big-endian cloud little-endian. Leaves it as it is if its rows overlap or are empty, or if its fields
 /// overlap or are not within its points.
 void turnBytes(pcl::PCLPointCloud2& cloud) {
@@ -30,7 +25,8 @@ void turnBytes(pcl::PCLPointCloud2& cloud) {
   if (row_bytes == 0 || (cloud.height > 1 && cloud.row_step < row_bytes)) return;
   std::vector<bool> is_turned(std::min<std::size_t>(cloud.point_step, cloud.data.size()), false);
   for (const pcl::PCLPointField& field : cloud.fields) {
-    const std::size_t size = sizeOf(field.datatype), count = std::max<std::size_t>(field.count, 1);
+    const auto size = static_cast<std::size_t>(pcl::getFieldSize(field.datatype)),
+               count = std::max<std::size_t>(field.count, 1);
     if (size == 0 || field.offset > is_turned.size() || count > (is_turned.size() - field.offset) / size) return;
     for (std::size_t i = field.offset; i < field.offset + size * count; ++i) {
       if (is_turned[i]) return;
@@ -42,7 +38,8 @@ void turnBytes(pcl::PCLPointCloud2& cloud) {
     if (row_at > cloud.data.size() || row_bytes > cloud.data.size() - row_at) break;
     for (std::size_t point = 0; point < cloud.width; ++point)
       for (const pcl::PCLPointField& field : cloud.fields) {
-        const std::size_t size = sizeOf(field.datatype), count = std::max<std::size_t>(field.count, 1);
+        const auto size = static_cast<std::size_t>(pcl::getFieldSize(field.datatype)),
+                   count = std::max<std::size_t>(field.count, 1);
         auto at = cloud.data.begin() + static_cast<std::ptrdiff_t>(row_at + point * cloud.point_step + field.offset);
         for (std::size_t i = 0; i < count; ++i, at += static_cast<std::ptrdiff_t>(size))
           std::reverse(at, at + static_cast<std::ptrdiff_t>(size));

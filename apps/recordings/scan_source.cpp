@@ -212,7 +212,7 @@ ScanSource::ScanSource(const std::vector<std::string>& inputs, const InputOption
     std::vector<std::string> failures;
     const std::vector<fs::path> found = expandInputs({input}, failures);
     if (found.empty() && !recordings.empty())
-      failures = {input + ": holds no scans, but recordings, to be given by name: " + listOf(recordings)};
+      failures = {input + ": holds no scans, but recordings, to be given by name: " + fileNamesOf(recordings)};
     failures_.insert(failures_.end(), failures.begin(), failures.end());
     files_.insert(files_.end(), found.begin(), found.end());
   }

@@ -12,7 +12,7 @@
 namespace lisco_apps {
 namespace {
 
-std::string listOf(const std::vector<Topic>& topics) {
+std::string topicLinesOf(const std::vector<Topic>& topics) {
   std::size_t name_width = 0;
   std::size_t type_width = 0;
   for (const Topic& topic : topics) {
@@ -46,7 +46,7 @@ TopicKind kindOf(const Topic& topic) {
 
 std::size_t chooseTopic(const Recording& recording, const fs::path& file, const std::string& name, bool wants_packets) {
   const std::vector<Topic>& topics = recording.topics();
-  const auto refuse = [&](const std::string& why) { fail(file, why + "; its topics are:" + listOf(topics)); };
+  const auto refuse = [&](const std::string& why) { fail(file, why + "; its topics are:" + topicLinesOf(topics)); };
   std::vector<std::size_t> fitting;
   const auto collect = [&](auto&& fits) {
     for (std::size_t i = 0; i < topics.size(); ++i)

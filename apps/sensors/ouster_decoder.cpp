@@ -48,7 +48,7 @@ double staggerOf(const OusterMetadata& metadata) {
   return (most + kMargin) * kRadiansPerDegree + std::asin(beside);
 }
 
-std::string nameOf(const OusterMetadata& metadata) {
+std::string sensorNameOf(const OusterMetadata& metadata) {
   return metadata.product.empty() ? "ouster" : "ouster " + metadata.product;
 }
 
@@ -96,7 +96,7 @@ OusterDecoder::PixelLayout OusterDecoder::pixelLayoutOf(Profile profile) {
 }
 
 OusterDecoder::OusterDecoder(const OusterMetadata& metadata, ReturnChoice returns)
-    : Decoder(nameOf(metadata), sortedAltitudes(metadata), staggerOf(metadata)),
+    : Decoder(sensorNameOf(metadata), sortedAltitudes(metadata), staggerOf(metadata)),
       metadata_(metadata),
       returns_(returns),
       layout_(layoutOf(metadata)),

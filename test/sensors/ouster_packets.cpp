@@ -12,7 +12,7 @@ void add(Bytes& bytes, std::uint64_t number, std::size_t size) {
 }
 
 template <typename Value>
-std::string listOf(std::size_t count, Value&& value) {
+std::string jsonArrayOf(std::size_t count, Value&& value) {
   std::ostringstream list;
   for (std::size_t i = 0; i < count; ++i) list << (i == 0 ? "[" : ", ") << value(i);
   return list.str() + "]";
@@ -64,8 +64,8 @@ std::size_t OusterSensor::returns() const {
 }
 
 std::string OusterSensor::metadata(bool in_sections) const {
-  const std::string altitudes = listOf(pixels, [&](std::size_t i) { return altitude(i); });
-  const std::string azimuths = listOf(pixels, [&](std::size_t i) { return azimuth(i); });
+  const std::string altitudes = jsonArrayOf(pixels, [&](std::size_t i) { return altitude(i); });
+  const std::string azimuths = jsonArrayOf(pixels, [&](std::size_t i) { return azimuth(i); });
   std::ostringstream format, beams;
   format << R"({"column_window": [)" << window.first << ", " << window.second << R"(], "columns_per_frame": )"
          << columns << R"(, "columns_per_packet": )" << columns_per_packet << R"(, "pixels_per_column": )" << pixels

@@ -33,7 +33,7 @@ class ConsistencyChecker : public lisco_apps::Listener {
   void rotation(const Turn& turn, const std::vector<FoundCluster>& clusters, lisco_apps::Clock::duration) override {
     EXPECT_EQ(turn.number, ++turns);
     columns += turn.columns();
-    std::map<std::uint32_t, std::size_t> sizes = labelsOf(turn);
+    std::map<std::uint32_t, std::size_t> sizes = sizesByLabel(turn);
     EXPECT_EQ(sizes.size(), clusters.size());
     for (const FoundCluster& cluster : clusters) EXPECT_EQ(cluster.features.size, sizes[cluster.id]);
     for (std::size_t i = 1; i < clusters.size(); ++i)
@@ -50,7 +50,7 @@ class ConsistencyChecker : public lisco_apps::Listener {
   }
   void turnIsLabelled(const Turn& turn) override {
     EXPECT_EQ(turn.number, ++labelled_);
-    for (const auto& [label, size] : labelsOf(turn)) sizes_by_label_[label] += size;
+    for (const auto& [label, size] : sizesByLabel(turn)) sizes_by_label_[label] += size;
   }
 
   /// To be called after the end of an endless stream.
@@ -62,7 +62,7 @@ class ConsistencyChecker : public lisco_apps::Listener {
   std::uint64_t turns = 0, columns = 0, found = 0;
 
  private:
-  static std::map<std::uint32_t, std::size_t> labelsOf(const Turn& turn) {
+  static std::map<std::uint32_t, std::size_t> sizesByLabel(const Turn& turn) {
     EXPECT_EQ(turn.labels.size(), turn.cells.size());
     std::map<std::uint32_t, std::size_t> sizes;
     for (const std::uint32_t label : turn.labels) ++sizes[label];
