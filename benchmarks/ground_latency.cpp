@@ -16,6 +16,7 @@
 #include "column_periods.h"
 #include "io/cloud_file.h"
 #include "io/options.h"
+#include "io/sorted_element.h"
 #include "io/text.h"
 #include "lisco/column_clusterer.h"
 #include "lisco/ground_filter.h"
@@ -50,9 +51,7 @@ class LeastTimes {
   /// Time that a share of the columns does not exceed, microseconds.
   double quantile(double share) const {
     std::vector<double> sorted = times_;
-    const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sorted.size() - 1));
-    std::nth_element(sorted.begin(), at, sorted.end());
-    return *at;
+    return sortedElement(sorted, static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1)));
   }
 
  private:

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "io/point_geometry.h"
+#include "io/sorted_element.h"
 #include "lisco/label_clusters.h"
 
 namespace lisco_benchmarks {
@@ -50,8 +51,7 @@ bool isReflection(const std::map<Square, Low>& lows, const Square& square, const
       if ((dx != 0 || dy != 0) && other != lows.end()) around.push_back(other->second.height);
     }
   if (around.empty()) return low.returns < kMinReturns;
-  std::nth_element(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2), around.end());
-  return low.height < around[around.size() / 2] - kBelow;
+  return low.height < lisco_apps::sortedElement(around, around.size() / 2) - kBelow;
 }
 
 }  // namespace
@@ -61,11 +61,8 @@ std::vector<float> localGround(const Cloud& cloud) {
   for (const auto& point : cloud)
     if (lisco_apps::isReturn(point)) heights[squareOf(point)].push_back(point.z);
   std::map<Square, Low> lows;
-  for (auto& [square, of_square] : heights) {
-    const auto element = of_square.begin() + static_cast<std::ptrdiff_t>(of_square.size() / 20);
-    std::nth_element(of_square.begin(), element, of_square.end());
-    lows[square] = {*element, of_square.size()};
-  }
+  for (auto& [square, of_square] : heights)
+    lows[square] = {lisco_apps::sortedElement(of_square, of_square.size() / 20), of_square.size()};
   std::map<Square, float> kept;
   for (const auto& [square, low] : lows)
     if (!isReflection(lows, square, low)) kept[square] = low.height;

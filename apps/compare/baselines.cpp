@@ -16,6 +16,7 @@
 #include "compare/components.h"
 #include "compare/kd_tree_baselines.h"
 #include "io/point_geometry.h"
+#include "io/sorted_element.h"
 #include "lisco/return.h"
 #include "reference/voxel_grid.h"
 
@@ -129,10 +130,9 @@ lisco_reference::NominalSensor nominalSensor(const ComparedCloud& cloud) {
       if (isReturn(p)) elevations.push_back(elevationOf(p));
     }
     if (elevations.empty()) continue;
-    const auto middle = elevations.begin() + static_cast<std::ptrdiff_t>(elevations.size() / 2);
-    std::nth_element(elevations.begin(), middle, elevations.end());
-    if (std::isfinite(before)) min_step = std::min(min_step, std::fabs(*middle - before));
-    before = *middle;
+    const double middle = sortedElement(elevations, elevations.size() / 2);
+    if (std::isfinite(before)) min_step = std::min(min_step, std::fabs(middle - before));
+    before = middle;
   }
   return {2 * kPi / cloud.width, min_step};
 }

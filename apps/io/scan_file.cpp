@@ -12,6 +12,7 @@
 
 #include "io/formats.h"
 #include "io/point_geometry.h"
+#include "io/sorted_element.h"
 
 namespace lisco_apps {
 
@@ -51,12 +52,11 @@ void arrangeByAzimuth(const std::vector<std::uint16_t>& rings, Scan& scan) {
     if (rings[i] == rings[i - 1] && isReturn(cloud[i]) && isReturn(cloud[i - 1]))
       steps.push_back(std::remainder(azimuthOf(cloud[i]) - azimuthOf(cloud[i - 1]), 2 * kPi));
   if (steps.empty()) return;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
+  const double step = sortedElement(steps, steps.size() / 2);
   constexpr double kMinStep = 2 * kPi / 36000;
-  if (!(std::fabs(*middle) >= kMinStep)) return;
-  const double per_radian = std::round(2 * kPi / std::fabs(*middle)) / (2 * kPi);
-  const double way = *middle > 0 ? 1 : -1;
+  if (!(std::fabs(step) >= kMinStep)) return;
+  const double per_radian = std::round(2 * kPi / std::fabs(step)) / (2 * kPi);
+  const double way = step > 0 ? 1 : -1;
 
   constexpr std::size_t kNone = ~std::size_t{0};
   std::vector<std::size_t> column_of_point(rings.size(), kNone);

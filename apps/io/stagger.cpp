@@ -2,12 +2,12 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "io/stagger.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 
 #include "io/point_geometry.h"
+#include "io/sorted_element.h"
 
 namespace lisco_apps {
 namespace {
@@ -20,10 +20,7 @@ double stepOf(const Cloud& cloud) {
   for (std::size_t i = 0; i + 1 < cloud.size(); ++i)
     if ((i + 1) % cloud.width != 0 && isReturn(cloud[i]) && isReturn(cloud[i + 1]))
       steps.push_back(std::remainder(azimuthOf(cloud[i + 1]) - azimuthOf(cloud[i]), 2 * kPi));
-  if (steps.empty()) return 0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return steps.empty() ? 0 : sortedElement(steps, steps.size() / 2);
 }
 
 }  // namespace

@@ -2,8 +2,9 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "sensors/packet_order.h"
 
-#include <algorithm>
 #include <cmath>
+
+#include "io/sorted_element.h"
 
 namespace lisco_apps {
 namespace {
@@ -44,11 +45,7 @@ PacketOrder::Place PacketOrder::place(std::uint32_t timestamp_us, double period_
   }
   if (gap > 0 && gaps_ < first_gaps_.size()) {
     first_gaps_[gaps_++] = gap_us_;
-    const auto middle = first_gaps_.begin() + first_gaps_.size() / 2;
-    if (gaps_ == first_gaps_.size()) {
-      std::nth_element(first_gaps_.begin(), middle, first_gaps_.end());
-      usual_gap_us_ = *middle;
-    }
+    if (gaps_ == first_gaps_.size()) usual_gap_us_ = sortedElement(first_gaps_, first_gaps_.size() / 2);
   }
   const auto periods = static_cast<std::int64_t>(std::llround(gap_us_ / period_us));
   if (periods < 2) return Place::kNext;

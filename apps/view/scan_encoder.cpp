@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "io/sorted_element.h"
 #include "lisco/return.h"
 
 namespace lisco_apps {
@@ -26,12 +27,6 @@ struct Shown {
   std::size_t too_far = 0;            ///< returns beyond kViewReach
 };
 
-double medianOf(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return static_cast<double>(*middle);
-}
-
 Shown shownOf(const std::vector<std::array<float, 3>>& points) {
   Shown shown;
   std::vector<std::uint32_t> returns;
@@ -41,7 +36,7 @@ Shown shownOf(const std::vector<std::array<float, 3>>& points) {
   std::vector<float> values(returns.size());
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::transform(returns.begin(), returns.end(), values.begin(), [&](std::uint32_t i) { return points[i][axis]; });
-    shown.origin[axis] = medianOf(values);
+    shown.origin[axis] = static_cast<double>(sortedElement(values, values.size() / 2));
   }
   for (const std::uint32_t i : returns) {
     Steps steps{};
@@ -128,9 +123,8 @@ std::pair<double, double> intensityRange(const std::vector<float>& intensity, co
   }
   if (values.empty() || are_bytes) return {0, 255};
   const auto at = [&](double part) {
-    const auto place = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), place, values.end());
-    return static_cast<double>(*place);
+    const auto place = static_cast<std::size_t>(part * static_cast<double>(values.size() - 1));
+    return static_cast<double>(sortedElement(values, place));
   };
   const double low = at(0.005);
   return {low, std::max(at(0.995), low + 1e-6 * std::max(1.0, std::abs(low)))};

@@ -31,12 +31,17 @@ class Sample {
   std::size_t size_ = 0;
 };
 
-/// The element of a sorted range at a part of its length; sorts partially. The range is not empty.
+/// The element at a place (below the sample's size) of its ascending order, which is partly established.
 template <typename T>
-T quantile(T* begin, T* end, double part) {
-  T* const element = begin + static_cast<std::ptrdiff_t>(part * static_cast<double>(end - begin - 1));
-  std::nth_element(begin, element, end);
-  return *element;
+T sortedElement(Sample<T>& sample, std::size_t place) {
+  std::nth_element(sample.begin(), sample.begin() + place, sample.end());
+  return sample[place];
+}
+
+/// The element at a part (0 to 1) of the sample's ascending order. The sample is not empty.
+template <typename T>
+T quantile(Sample<T>& sample, double part) {
+  return sortedElement(sample, static_cast<std::size_t>(part * static_cast<double>(sample.size() - 1)));
 }
 
 }  // namespace lisco

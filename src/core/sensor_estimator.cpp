@@ -25,10 +25,7 @@ Direction directionOf(const Return& point, const std::array<float, 3>& origin) {
 }
 
 float median(Sample<double>& values, float if_empty) {
-  if (values.empty()) return if_empty;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return static_cast<float>(*middle);
+  return values.empty() ? if_empty : static_cast<float>(sortedElement(values, values.size() / 2));
 }
 
 /// Whether a sensor may have measured what lies in the box: it is not further outside than the box is wide.
@@ -122,25 +119,22 @@ SensorHints SensorEstimator::estimate(const std::array<float, 3>& declared_origi
   hints.clockwise = step < 0;
   constexpr double kMostPairs = 0.75;  // part of the pairs that jitter and drift less
   if (hints.steps_per_turn > 0)
-    hints.drift = static_cast<float>(quantile(deviations.begin(), deviations.end(), kMostPairs) / std::fabs(step)) *
-                  static_cast<float>(kDriftColumns);
+    hints.drift =
+        static_cast<float>(quantile(deviations, kMostPairs) / std::fabs(step)) * static_cast<float>(kDriftColumns);
   Sample<double> jitters;
   for (const Pair& pair : along_row_)
     jitters.push_back(std::fabs(
         std::remainder(directionOf(pair.b, origin).azimuth - directionOf(pair.a, origin).azimuth, 2.0 * kPi) - step));
   if (!jitters.empty() && hints.steps_per_turn > 0)
-    hints.jitter = static_cast<float>(quantile(jitters.begin(), jitters.end(), kMostPairs) / std::fabs(step));
+    hints.jitter = static_cast<float>(quantile(jitters, kMostPairs) / std::fabs(step));
 
   constexpr double kFew = 0.2;  // share of the returns beyond SensorHints::far_distance
   Sample<double> distances;
   for (const Pair& pair : along_row_)
     distances.push_back(std::hypot(static_cast<double>(pair.a.x) - static_cast<double>(origin[0]),
                                    static_cast<double>(pair.a.y) - static_cast<double>(origin[1])));
-  if (!distances.empty()) {
-    const auto few = distances.end() - 1 - static_cast<std::ptrdiff_t>(kFew * static_cast<double>(distances.size()));
-    std::nth_element(distances.begin(), few, distances.end());
-    hints.far_distance = static_cast<float>(*few);
-  }
+  const auto few = static_cast<std::size_t>(kFew * static_cast<double>(distances.size()));
+  if (!distances.empty()) hints.far_distance = static_cast<float>(sortedElement(distances, distances.size() - 1 - few));
   return hints;
 }
 

@@ -54,7 +54,7 @@ class SensorFrameEstimator::Slopes {
       for (; end < returns.size() && returns[end].laser == returns[first].laser; ++end)
         sorted.push_back(seen_[end].slope);
       if (end - first >= kMinOfLaser) {
-        const double median = quantile(sorted.begin(), sorted.end(), 0.5);
+        const double median = quantile(sorted, 0.5);
         rings_.push_back({first, end, median});
         bounds_.add(static_cast<double>(returns[first].laser), median);
         for (std::size_t i = first; i < end; ++i) deviations_.push_back(std::fabs(seen_[i].slope - median));
@@ -67,7 +67,7 @@ class SensorFrameEstimator::Slopes {
   double spread() {
     constexpr double kMost = 0.75;  // moved objects and bad returns may be among the others
     if (deviations_.size() < kMinReturns) return std::numeric_limits<double>::infinity();
-    const double spread = quantile(deviations_.begin(), deviations_.end(), kMost);
+    const double spread = quantile(deviations_, kMost);
     return spread < std::numeric_limits<double>::infinity() ? spread : std::numeric_limits<double>::infinity();
   }
 
@@ -154,9 +154,7 @@ SensorFrame SensorFrameEstimator::middle() const {
     z.push_back(static_cast<double>(one.point.z));
   }
   SensorFrame frame;
-  if (!returns_.empty())
-    frame.origin = {quantile(x.begin(), x.end(), 0.5), quantile(y.begin(), y.end(), 0.5),
-                    quantile(z.begin(), z.end(), 0.5)};
+  if (!returns_.empty()) frame.origin = {quantile(x, 0.5), quantile(y, 0.5), quantile(z, 0.5)};
   return frame;
 }
 

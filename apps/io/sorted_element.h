@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+namespace lisco_apps {
+
+/// The element at a place of the values' ascending order, which is partly established. At size / 2 it is the median, of
+/// an even number the upper one.
+/// \param place below the number of values
+template <typename Values>
+auto sortedElement(Values& values, std::size_t place) {
+  const auto element = values.begin() + static_cast<std::ptrdiff_t>(place);
+  std::nth_element(values.begin(), element, values.end());
+  return *element;
+}
+
+}  // namespace lisco_apps
