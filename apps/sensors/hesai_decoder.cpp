@@ -14,9 +14,6 @@ constexpr unsigned kTurn = 36000;    ///< hundredths of a degree
 constexpr unsigned kMaxStep = 300;   ///< larger ones have packets missing
 constexpr double kMaxSteps = 16384;  ///< counted; then all counts are halved
 constexpr std::uint32_t kHourUs = 3600U * 1000000U;
-constexpr std::uint32_t kMaxGapUs = 10U * 1000000U;  ///< beyond it, the clock was set
-constexpr std::int32_t kMaxNumbersAhead = 1000000;   ///< beyond it, another recording has begun
-constexpr unsigned kMaxLate = 16;                    ///< in a row; with more, another recording has begun
 
 constexpr auto& u16 = boost::endian::load_little_u16;
 constexpr auto& u32 = boost::endian::load_little_u32;
@@ -87,31 +84,6 @@ std::uint32_t HesaiDecoder::timeOf(const std::uint8_t* packet) const {
   return (seconds % 3600 * 1000000U + u32(packet + model_.tailAt(form_) + model_.tail.time) % kHourUs) % kHourUs;
 }
 
-PacketOrder::Place HesaiDecoder::placeOf(const std::uint8_t* packet, bool has_number, std::uint32_t time_us) {
-  using Place = PacketOrder::Place;
-  if (!has_number) {
-    const Place place = order_.place(time_us, packetPeriodUs());
-    gap_us_ = order_.gap();
-    if (place == Place::kAfterGap)
-      counts_.missing += static_cast<std::uint64_t>(std::llround(gap_us_ / packetPeriodUs()) - 1);
-    return place;
-  }
-  const std::uint32_t number = u32(packet + model_.leastBytes(form_));
-  const auto ahead = last_number_ ? static_cast<std::int32_t>(number - *last_number_) : 1;
-  if (ahead <= 0 && ++late_in_a_row_ <= kMaxLate) return Place::kLate;
-  late_in_a_row_ = 0;
-  const std::uint32_t gap = (time_us + kHourUs - last_time_us_) % kHourUs;
-  const bool is_first = !last_number_;
-  const bool is_new_clock = !is_first && (ahead <= 0 || ahead > kMaxNumbersAhead || gap > kMaxGapUs);
-  last_number_ = number;
-  last_time_us_ = time_us;
-  gap_us_ = is_first || is_new_clock ? 0 : gap;
-  if (is_new_clock) return Place::kNewClock;
-  if (ahead == 1) return Place::kNext;
-  counts_.missing += static_cast<std::uint64_t>(ahead) - 1;
-  return Place::kAfterGap;
-}
-
 void HesaiDecoder::measureStep(const std::uint8_t* packet, bool is_next) {
   if (!is_next) last_azimuth_.reset();
   for (std::size_t i = 0; i < form_.blocks; i += returns_) {
@@ -166,7 +138,11 @@ Decoder::Kind HesaiDecoder::decode(const Packet& packet, const Visitor& visit) {
   const HesaiModel::Form form_before = std::exchange(form_, *shape->form);
   const std::size_t returns_before = std::exchange(returns_, returnsOf(packet.data));
   const std::uint32_t time_us = timeOf(packet.data);
-  const PacketOrder::Place place = placeOf(packet.data, shape->has_number, time_us);
+  const PacketOrder::Place place = shape->has_number
+                                       ? order_.placeByNumber(u32(packet.data + model_.leastBytes(form_)), time_us)
+                                       : order_.place(time_us, packetPeriodUs());
+  counts_.missing = order_.missing();
+  counts_.clock_jumps = order_.clockJumps();
   if (place == PacketOrder::Place::kLate) {
     form_ = form_before;
     returns_ = returns_before;
@@ -175,13 +151,12 @@ Decoder::Kind HesaiDecoder::decode(const Packet& packet, const Visitor& visit) {
   }
   ++counts_.data;
   if (returns_ > 1) ++counts_.dual;
-  if (place == PacketOrder::Place::kNewClock) ++counts_.clock_jumps;
   measureStep(packet.data, place == PacketOrder::Place::kNext);
 
   const std::size_t cells = model_.laserCount() * (returns_choice_ == ReturnChoice::kBoth ? returns_ : 1);
   const bool is_other_mode = counts_.columns > 0 && cells != cells_.size();
   cells_.resize(cells);
-  const bool misses_turn = turnUs() > 0 && gap_us_ - packetPeriodUs() >= turnUs();
+  const bool misses_turn = turnUs() > 0 && order_.gap() - packetPeriodUs() >= turnUs();
   bool after_break = place == PacketOrder::Place::kNewClock || misses_turn || is_other_mode;
 
   constexpr double kMillimetre = 0.001, kPandar40Unit = 0.004;

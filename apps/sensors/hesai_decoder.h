@@ -32,7 +32,7 @@ class HesaiDecoder : public Decoder {
   double columnsPerTurn() const override { return step_sum_ > 0 ? 36000. * step_count_ / step_sum_ : 0; }
   double turnUs() const override { return columnsPerTurn() * model_.firing_period_us; }
   double packetPeriodUs() const override;
-  double gapUs() const override { return gap_us_; }
+  double gapUs() const override { return order_.gap(); }
 
  private:
   struct Row {
@@ -45,7 +45,6 @@ class HesaiDecoder : public Decoder {
   std::size_t returnsOf(const std::uint8_t* packet) const;
   const std::uint8_t* block(const std::uint8_t* packet, const HesaiModel::Form& form, std::size_t i) const;
   std::uint32_t timeOf(const std::uint8_t* packet) const;
-  PacketOrder::Place placeOf(const std::uint8_t* packet, bool has_number, std::uint32_t time_us);
   void measureStep(const std::uint8_t* packet, bool is_next);
   void decodeFiring(const std::uint8_t* first_block, double distance_unit);
 
@@ -56,11 +55,7 @@ class HesaiDecoder : public Decoder {
   HesaiModel::Form form_;    ///< of the last packet
   std::size_t returns_ = 1;  ///< of a laser in the last packet
 
-  PacketOrder order_;  ///< of packets without numbers
-  std::optional<std::uint32_t> last_number_;
-  std::uint32_t last_time_us_ = 0;
-  unsigned late_in_a_row_ = 0;
-  double gap_us_ = 0;
+  PacketOrder order_;
 
   std::optional<unsigned> last_azimuth_;  ///< hundredths of a degree
   double step_sum_ = 0, step_count_ = 0;  ///< of the latest firings

@@ -8,6 +8,7 @@
 #include <boost/endian/conversion.hpp>
 
 #include "sensors/laser.h"
+#include "sensors/packet_order.h"
 
 namespace lisco_apps {
 namespace {
@@ -18,8 +19,6 @@ constexpr std::size_t kImuBytes = 48;
 constexpr std::size_t kMeasurementAt = 8, kStatusAt = 10, kLegacyFrameAt = 10, kLegacyFooter = 4;
 constexpr unsigned kLidarType = 1;
 constexpr double kMetresPerMillimetre = 0.001;
-constexpr double kMaxGapUs = 10e6;    ///< beyond it, another recording begins
-constexpr unsigned kMaxLate = 16;     ///< in a row; with more, another recording has begun
 constexpr double kFullStagger = 3.2;  ///< radians: no bound
 
 constexpr auto& u16 = boost::endian::load_little_u16;
@@ -241,7 +240,7 @@ Decoder::Kind OusterDecoder::decode(const Packet& packet, const Visitor& visit) 
   initialization_ = initialization;
 
   Place place = placeOf(packet.data, *first_column);
-  if (started_ && static_cast<double>(place.frame - last_.frame) * turnUs() > kMaxGapUs) {
+  if (started_ && static_cast<double>(place.frame - last_.frame) * turnUs() > PacketOrder::kMaxGapUs) {
     startAgain(visit);
     place = placeOf(packet.data, *first_column);
   }
@@ -250,7 +249,7 @@ Decoder::Kind OusterDecoder::decode(const Packet& packet, const Visitor& visit) 
       std::find_if(held_.begin(), held_end, [&](const Held& h) { return h.place.order >= place.order; });
   const bool is_copy = behind != held_end && behind->place.order == place.order;
   if ((started_ && place.order <= last_.order) || is_copy) {
-    if (++late_in_a_row_ <= kMaxLate) {
+    if (++late_in_a_row_ <= PacketOrder::kMaxLate) {
       ++counts_.late;
       return Kind::kLate;
     }

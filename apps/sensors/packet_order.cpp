@@ -2,7 +2,9 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "sensors/packet_order.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "io/sorted_element.h"
 
@@ -10,8 +12,7 @@ namespace lisco_apps {
 namespace {
 
 constexpr std::int64_t kHourUs = 3600LL * 1000000;
-constexpr std::int64_t kMaxGapUs = 10LL * 1000000;  ///< beyond it, the clock was set
-constexpr unsigned kMaxLate = 16;                   ///< in a row; with more, another recording has begun
+constexpr std::int32_t kMaxNumbersAhead = 1000000;  ///< beyond it, another recording has begun
 
 /// From one time to another, whichever way around the hour is shorter.
 std::int64_t between(std::uint32_t from, std::uint32_t to) {
@@ -34,7 +35,30 @@ PacketOrder::Place PacketOrder::place(std::uint32_t timestamp_us, double period_
     }
     clock_stands_ = gap == 0;
   }
-  const bool is_new_clock = started_ && (is_late || std::abs(gap) > kMaxGapUs);
+  const bool is_new_clock = is_late || std::abs(gap) > kMaxGapUs;
+  if (!is_new_clock && gap > 0 && gaps_ < first_gaps_.size()) {
+    first_gaps_[gaps_++] = static_cast<double>(gap);
+    if (gaps_ == first_gaps_.size()) usual_gap_us_ = sortedElement(first_gaps_, first_gaps_.size() / 2);
+  }
+  const std::int64_t periods = std::llround(static_cast<double>(gap) / period_us);
+  return advance(timestamp_us, is_new_clock, gap, std::max<std::int64_t>(periods, 1) - 1);
+}
+
+PacketOrder::Place PacketOrder::placeByNumber(std::uint32_t number, std::uint32_t timestamp_us) {
+  const bool is_first = !last_number_;
+  const std::int32_t ahead = is_first ? 1 : static_cast<std::int32_t>(number - *last_number_);
+  if (ahead <= 0 && ++late_in_a_row_ <= kMaxLate) {
+    ++late_;
+    return Place::kLate;
+  }
+  const std::int64_t gap = is_first ? 0 : (between(newest_, timestamp_us) + kHourUs) % kHourUs;
+  last_number_ = number;
+  return advance(timestamp_us, ahead <= 0 || ahead > kMaxNumbersAhead || gap > kMaxGapUs, gap, ahead - 1);
+}
+
+/// A packet that is not late. \param missing packets before it, unless the clock is new
+PacketOrder::Place PacketOrder::advance(std::uint32_t timestamp_us, bool is_new_clock, std::int64_t gap,
+                                        std::int64_t missing) {
   started_ = true;
   newest_ = timestamp_us;
   late_in_a_row_ = 0;
@@ -43,14 +67,8 @@ PacketOrder::Place PacketOrder::place(std::uint32_t timestamp_us, double period_
     ++clock_jumps_;
     return Place::kNewClock;
   }
-  if (gap > 0 && gaps_ < first_gaps_.size()) {
-    first_gaps_[gaps_++] = gap_us_;
-    if (gaps_ == first_gaps_.size()) usual_gap_us_ = sortedElement(first_gaps_, first_gaps_.size() / 2);
-  }
-  const auto periods = static_cast<std::int64_t>(std::llround(gap_us_ / period_us));
-  if (periods < 2) return Place::kNext;
-  missing_ += static_cast<std::uint64_t>(periods - 1);
-  return Place::kAfterGap;
+  missing_ += static_cast<std::uint64_t>(missing);
+  return missing > 0 ? Place::kAfterGap : Place::kNext;
 }
 
 }  // namespace lisco_apps

@@ -5,11 +5,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 namespace lisco_apps {
 
-/// Detects missing and late packets by the sensor's clock. A packet is late if one of a later time has come before it;
-/// it is to be dropped, as the columns after it have been clustered.
+/// Detects missing and late packets by the sensor's clock, or by their numbers. A packet is late if a later one has come
+/// before it; it is to be dropped, as the columns after it have been clustered.
 class PacketOrder {
  public:
   enum class Place {
@@ -19,9 +20,15 @@ class PacketOrder {
     kLate,      ///< or a second copy; to be dropped
   };
 
+  static constexpr unsigned kMaxLate = 16;             ///< in a row; with more, another recording has begun
+  static constexpr std::int32_t kMaxGapUs = 10000000;  ///< beyond it, the clock was set, or another recording has begun
+
+  /// By the clock.
   /// \param timestamp_us as in the packet, microseconds past the hour
   /// \param period_us from one packet to the next, for this sensor and mode
   Place place(std::uint32_t timestamp_us, double period_us);
+  /// By the packet's number, which is that of the packet before and 1, modulo 2^32.
+  Place placeByNumber(std::uint32_t number, std::uint32_t timestamp_us);
 
   /// Microseconds between the last two packets that were not late; 0 if unknown.
   double gap() const { return gap_us_; }
@@ -34,11 +41,14 @@ class PacketOrder {
   double usualGap() const { return usual_gap_us_; }
 
  private:
+  Place advance(std::uint32_t timestamp_us, bool is_new_clock, std::int64_t gap, std::int64_t missing);
+
   bool started_ = false;
   bool clock_stands_ = false;      ///< all packets have the same time
   std::uint32_t newest_ = 0;       ///< time of the newest packet
   std::uint32_t newest_late_ = 0;  ///< time of the last late one
-  unsigned late_in_a_row_ = 0;     ///< in the order of their times
+  unsigned late_in_a_row_ = 0;     ///< without numbers: in the order of their times
+  std::optional<std::uint32_t> last_number_;
   double gap_us_ = 0, usual_gap_us_ = 0;
   std::array<double, 16> first_gaps_{};  ///< unordered once all are known
   std::size_t gaps_ = 0;
