@@ -13,6 +13,7 @@
 #include <pcl/io/pcd_io.h>
 
 #include "io/formats.h"
+#include "io/little_endian.h"
 
 namespace lisco_apps {
 namespace {
@@ -97,8 +98,7 @@ void writeNpy(const ClusteredScan& scan, const fs::path& file) {
   description.resize((before + description.size() + 1 + 63) / 64 * 64 - before - 1, ' ');
   description += '\n';
   std::string header("\x93NUMPY\x01\x00", 8);
-  header += static_cast<char>(description.size() & 0xFF);
-  header += static_cast<char>(description.size() >> 8);
+  putNumber(header, static_cast<std::uint16_t>(description.size()));
   writeBytes(file, header + description, labelsOf(scan.clusters, cloud.size()));
 }
 

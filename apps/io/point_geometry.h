@@ -4,10 +4,12 @@
 
 #include <cmath>
 
+#include "core/pi.h"
 #include "lisco/return.h"
-#include "pi.h"
 
 namespace lisco_apps {
+
+using lisco::kPi;
 
 template <typename Point>
 bool isReturn(const Point& p) {

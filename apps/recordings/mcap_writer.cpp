@@ -8,8 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "io/little_endian.h"
 #include "lisco/version.h"
-#include "recordings/little_endian.h"
 
 namespace lisco_apps {
 namespace {

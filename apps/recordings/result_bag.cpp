@@ -4,7 +4,8 @@
 
 #include <algorithm>
 
-#include "recordings/little_endian.h"
+#include "io/little_endian.h"
+#include "recordings/cdr_text.h"
 #include "recordings/message_definitions.h"
 
 namespace lisco_apps {

@@ -2,24 +2,26 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "sensors/capture_bytes.h"
 
+#include "io/little_endian.h"
+
 namespace lisco_apps {
 
 Bytes captureHeader(std::uint32_t link_type, bool nanoseconds) {
   Bytes header;
-  addLittle(header, nanoseconds ? 0xA1B23C4DU : 0xA1B2C3D4U);
-  addLittle(header, std::uint32_t{0x00040002});  // version 2.4
-  addLittle(header, std::uint64_t{0});
-  addLittle(header, std::uint32_t{65535});
-  addLittle(header, link_type);
+  putNumber(header, nanoseconds ? 0xA1B23C4DU : 0xA1B2C3D4U);
+  putNumber(header, std::uint32_t{0x00040002});  // version 2.4
+  putNumber(header, std::uint64_t{0});
+  putNumber(header, std::uint32_t{65535});
+  putNumber(header, link_type);
   return header;
 }
 
 Bytes captureRecord(const Frame& frame, bool nanoseconds) {
   Bytes record;
-  addLittle(record, static_cast<std::uint32_t>(frame.time_us / 1000000));
-  addLittle(record, static_cast<std::uint32_t>(frame.time_us % 1000000 * (nanoseconds ? 1000 : 1)));
-  addLittle(record, static_cast<std::uint32_t>(frame.data.size()));
-  addLittle(record, static_cast<std::uint32_t>(frame.data.size() + frame.left_out));
+  putNumber(record, static_cast<std::uint32_t>(frame.time_us / 1000000));
+  putNumber(record, static_cast<std::uint32_t>(frame.time_us % 1000000 * (nanoseconds ? 1000 : 1)));
+  putNumber(record, static_cast<std::uint32_t>(frame.data.size()));
+  putNumber(record, static_cast<std::uint32_t>(frame.data.size() + frame.left_out));
   record.insert(record.end(), frame.data.begin(), frame.data.end());
   return record;
 }

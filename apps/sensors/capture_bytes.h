@@ -11,11 +11,6 @@ namespace lisco_apps {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Appends the bytes of an unsigned number, the lowest first.
-template <typename Number>
-void addLittle(Bytes& bytes, Number number) {
-  for (std::size_t i = 0; i < sizeof(Number); ++i) bytes.push_back(static_cast<std::uint8_t>(number >> (8 * i)));
-}
 /// Appends the two lowest bytes of a number, the higher one first.
 inline void addBig(Bytes& bytes, std::size_t number) {
   bytes.push_back(static_cast<std::uint8_t>(number >> 8U));

@@ -9,11 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "core/pi.h"
 #include "io/text.h"
-#include "pi.h"
 
 namespace lisco_apps {
 
+using lisco::kPi;
 inline constexpr double kRadiansPerDegree = kPi / 180.;
 
 /// One laser, and its place in the sensor.

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "io/little_endian.h"
+
 namespace lisco_apps {
 
 VelodyneEncoder::VelodyneEncoder(const std::string& name, bool is_dual)
@@ -26,12 +28,12 @@ Bytes VelodyneEncoder::next(const World& world) {
       // The HDL-64E repeats the firing, the others each block.
       const std::size_t block = tells_mode ? i / returns : i % blocks;
       const bool second = (tells_mode ? i % returns : i / blocks) == 1;
-      addLittle(packet, model_.flags[block]);
-      addLittle(packet, static_cast<std::uint16_t>(azimuth));
+      putNumber(packet, model_.flags[block]);
+      putNumber(packet, static_cast<std::uint16_t>(azimuth));
       for (std::size_t cell = 0; cell < kLasersPerBlock; ++cell) {
         const Measured measured =
             world(firing_ + cell / lasers_per_firing, kLasersPerBlock * block + cell % lasers_per_firing, second);
-        addLittle(packet, measured.distance);
+        putNumber(packet, measured.distance);
         packet.push_back(measured.intensity);
       }
     }
@@ -39,7 +41,7 @@ Bytes VelodyneEncoder::next(const World& world) {
     firing_ += model_.firings;
   }
   packet.resize(1200, 0xFF);  // the rest of the VLS-128's dual packets
-  addLittle(packet, static_cast<std::uint32_t>(std::llround(std::fmod(time_us, 3600e6))));
+  putNumber(packet, static_cast<std::uint32_t>(std::llround(std::fmod(time_us, 3600e6))));
   time_us += packetPeriodUs();
   packet.push_back(tells_mode ? (is_dual_ ? 0x39 : 0x37) : 'H');
   packet.push_back(model_byte);

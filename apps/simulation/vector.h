@@ -4,11 +4,11 @@
 
 #include <cmath>
 
-#include "pi.h"
+#include "core/pi.h"
 
 namespace lisco_simulation {
 
-using lisco_apps::kPi;
+using lisco::kPi;
 
 /// A position or a direction: x ahead, y to the left, z up; metres.
 struct Vector {

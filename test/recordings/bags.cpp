@@ -10,7 +10,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "recordings/little_endian.h"
+#include "io/little_endian.h"
+#include "recordings/cdr_text.h"
 #include "recordings/mcap_writer.h"
 
 namespace lisco_test {

@@ -10,9 +10,10 @@
 
 #include "../sensors/temporary_folder.h"
 #include "bags.h"
+#include "io/little_endian.h"
 #include "io/scan_file.h"
 #include "recordings/bytes.h"
-#include "recordings/little_endian.h"
+#include "recordings/cdr_text.h"
 #include "recordings/point_cloud2.h"
 
 namespace lisco_test {

@@ -4,8 +4,9 @@
 #include <optional>
 
 #include "bags.h"
+#include "io/little_endian.h"
 #include "recordings/bytes.h"
-#include "recordings/little_endian.h"
+#include "recordings/cdr_text.h"
 #include "recordings/packet_messages.h"
 
 namespace lisco_test {

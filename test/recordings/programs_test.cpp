@@ -11,7 +11,7 @@
 
 #include "../programs/program_test.h"
 #include "bags.h"
-#include "recordings/little_endian.h"
+#include "io/little_endian.h"
 #include "recordings/recording.h"
 
 namespace {

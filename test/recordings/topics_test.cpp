@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "bags.h"
-#include "recordings/little_endian.h"
+#include "recordings/cdr_text.h"
 
 namespace lisco_test {
 namespace {

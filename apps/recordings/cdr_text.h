@@ -2,30 +2,13 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <string>
-#include <type_traits>
 
-#include <boost/endian/conversion.hpp>
+#include "io/little_endian.h"
 
 namespace lisco_apps {
-
-/// Appends a number, little-endian.
-template <typename Number>
-void putNumber(std::string& text, Number number) {
-  static_assert(std::is_arithmetic_v<Number>);
-  std::array<unsigned char, sizeof(Number)> bytes{};
-  boost::endian::endian_store<Number, sizeof(Number), boost::endian::order::little>(bytes.data(), number);
-  text.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-}
-
-/// Appends a text after its length, of four bytes.
-inline void putText(std::string& text, const std::string& part) {
-  putNumber(text, static_cast<std::uint32_t>(part.size()));
-  text += part;
-}
 
 /// A message in CDR, little-endian: numbers are aligned to their size.
 class CdrText {
