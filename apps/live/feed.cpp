@@ -29,23 +29,15 @@ void LiveFeed::clear() {
   batch_.clear(next_cell_);
 }
 
-void LiveFeed::rotation(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) {
-  result(turn, clusters, latency);
-  report_.rotation(turn, clusters, latency);
-}
-
-void LiveFeed::window(const Turn& window, const std::vector<FoundCluster>& clusters, Clock::duration latency) {
-  result(window, clusters, latency);
-  report_.window(window, clusters, latency);
-}
-
-void LiveFeed::result(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) {
+void LiveFeed::found(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) {
   note(latency);
-  if (!is_copying_) return;
-  batch_.result_end = next_cell_;
-  batch_.result_number = turn.number;
-  batch_.labels.assign(turn.labels.begin(), turn.labels.end());
-  batch_.clusters.assign(clusters.begin(), clusters.end());
+  if (is_copying_) {
+    batch_.result_end = next_cell_;
+    batch_.result_number = turn.number;
+    batch_.labels.assign(turn.labels.begin(), turn.labels.end());
+    batch_.clusters.assign(clusters.begin(), clusters.end());
+  }
+  report_.found(turn, clusters, latency);
 }
 
 void LiveFeed::cluster(const DeliveredCluster& cluster) {

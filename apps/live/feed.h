@@ -22,8 +22,7 @@ class LiveFeed : public Listener {
   LiveFeed(Report& report, HandOver& hand_over) : report_(report), hand_over_(hand_over) {}
 
   void column(const PreparedColumn& column) override;
-  void rotation(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) override;
-  void window(const Turn& window, const std::vector<FoundCluster>& clusters, Clock::duration latency) override;
+  void found(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) override;
   void cluster(const DeliveredCluster& cluster) override;
   void turnEnds(const Turn& turn) override;
   void turnIsLabelled(const Turn& turn) override { report_.turnIsLabelled(turn); }
@@ -41,7 +40,6 @@ class LiveFeed : public Listener {
   /// percentile of the columns' latency 12 % higher (benchmarks/live_view.sh, VLS-128).
   static constexpr std::chrono::milliseconds kPause{16};
 
-  void result(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency);
   void note(Clock::duration latency);
   void clear();
   void flushColumns();

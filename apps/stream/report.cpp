@@ -82,16 +82,8 @@ std::string Report::countTurn(const char* name, const Turn& turn) {
          groundOf(turn);
 }
 
-void Report::rotation(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) {
-  found("rotation", turn, clusters, latency);
-}
-
-void Report::window(const Turn& window, const std::vector<FoundCluster>& clusters, Clock::duration latency) {
-  found("window", window, clusters, latency);
-}
-
-void Report::found(const char* name, const Turn& turn, const std::vector<FoundCluster>& clusters,
-                   Clock::duration latency) {
+void Report::found(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) {
+  const char* const name = turn.is_window ? "window" : "rotation";
   const std::string heading = countTurn(name, turn);
   for (const FoundCluster& cluster : clusters) count(cluster);
   if (clouds_ != nullptr) clouds_->write(turn);

@@ -37,8 +37,7 @@ class Report : public Listener {
   using OnFound = std::function<void(const Turn& turn, const std::vector<FoundCluster>& clusters)>;
   void callWith(OnFound on_found) { on_found_ = std::move(on_found); }
 
-  void rotation(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) override;
-  void window(const Turn& window, const std::vector<FoundCluster>& clusters, Clock::duration latency) override;
+  void found(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) override;
   void cluster(const DeliveredCluster& cluster) override;
   void turnEnds(const Turn& turn) override;
   void turnIsLabelled(const Turn& turn) override;
@@ -58,8 +57,6 @@ class Report : public Listener {
   void printStatistics(const PacketSource& source, const Decoder& decoder, const Stream& stream);
 
  private:
-  /// Reports a rotation or a window.
-  void found(const char* name, const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency);
   void count(const FoundCluster& cluster);
   /// Counts a turn. \return its number, columns and returns as text
   std::string countTurn(const char* name, const Turn& turn);

@@ -85,7 +85,7 @@ void RotationStream::end(Clock::time_point start) {
   cluster_latency_.add(latency);
   turn_.lost = takeLost();
   collector_.measure(turn_, clusters_);
-  listener_.rotation(turn_, clusters_, latency);
+  listener_.found(turn_, clusters_, latency);
 }
 
 }  // namespace lisco_apps

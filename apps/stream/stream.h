@@ -19,7 +19,7 @@
 
 namespace lisco_apps {
 
-/// The columns received of one turn of the sensor.
+/// The columns received of one turn of the sensor, or of a sliding window.
 struct Turn {
   std::uint64_t number = 0;  ///< from 1
   std::size_t lasers = 0;
@@ -31,6 +31,7 @@ struct Turn {
   std::uint64_t returns = 0;          ///< clustered
   std::uint64_t ground = 0;           ///< returns left out as ground
   std::uint64_t lost = 0;             ///< packets missing in it, or between it and the next one
+  bool is_window = false;
 
   std::size_t columns() const { return lasers == 0 ? 0 : cells.size() / lasers; }
 
@@ -39,7 +40,7 @@ struct Turn {
     cells.clear();
     uses.clear();
     labels.clear();
-    *this = {new_number, new_lasers, std::move(cells), std::move(uses), std::move(labels), new_azimuth, 0, 0, 0, 0};
+    *this = {new_number, new_lasers, std::move(cells), std::move(uses), std::move(labels), new_azimuth};
   }
 
   void add(const PreparedColumn& column) {
@@ -87,12 +88,8 @@ class Listener {
   /// A column has been received; results that cover it follow.
   virtual void column(const PreparedColumn& /*column*/) {}
 
-  /// A rotation has been clustered: clusters largest first, cells labelled.
-  virtual void rotation(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) = 0;
-
-  /// A sliding window has been clustered: the same for its columns.
-  virtual void window(const Turn& /*window*/, const std::vector<FoundCluster>& /*clusters*/,
-                      Clock::duration /*latency*/) {}
+  /// A rotation or sliding window has been clustered: clusters largest first, cells labelled.
+  virtual void found(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) = 0;
 
   /// A cluster has been delivered.
   virtual void cluster(const DeliveredCluster& cluster) = 0;

@@ -40,6 +40,7 @@ void WindowStream::deliver(Clock::duration took) {
   const std::size_t first = (columns_ - columns) % window_;  // slot
   const std::int64_t time_us = turn_.time_us;
   turn_.begin(++rotations_, lasers_, azimuths_[first]);
+  turn_.is_window = true;
   turn_.time_us = time_us;
   turn_.returns = clusterer_.returnCount();
   for (std::size_t column = 0; column < columns; ++column) {
@@ -63,7 +64,7 @@ void WindowStream::deliver(Clock::duration took) {
   const auto latency = took + (Clock::now() - start);
   cluster_latency_.add(latency);
   collector_.measure(turn_, clusters_);
-  listener_.window(turn_, clusters_, latency);
+  listener_.found(turn_, clusters_, latency);
 }
 
 }  // namespace lisco_apps
