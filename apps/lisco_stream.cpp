@@ -19,9 +19,9 @@
 #include <boost/algorithm/string/join.hpp>
 #include <boost/program_options.hpp>
 
-#include "io/cloud_file.h"
 #include "io/interruption.h"
 #include "io/options.h"
+#include "io/scan_file.h"
 #include "io/scan_options.h"
 #include "io/text.h"
 #include "live/live_view.h"

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "column_periods.h"
-#include "io/cloud_file.h"
 #include "io/options.h"
+#include "io/scan_file.h"
 #include "io/sorted_element.h"
 #include "io/text.h"
 #include "lisco/column_clusterer.h"
@@ -128,7 +128,7 @@ int main(int argc, char** argv) {
                 "99%", "most", "of T");
     for (const fs::path& file : expandInputs(inputs, failures)) {
       const std::string name = file.stem().string();
-      measure(name, *readCloudFile(file), lisco_benchmarks::columnPeriodOf(names.modelOf(name)), tolerance,
+      measure(name, *readScan(file).cloud, lisco_benchmarks::columnPeriodOf(names.modelOf(name)), tolerance,
               countOf(runs, "--runs", 1));
     }
     for (const std::string& failure : failures) std::fprintf(stderr, "ground_latency: %s\n", failure.c_str());

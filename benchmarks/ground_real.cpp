@@ -18,9 +18,9 @@
 
 #include "ground_picture.h"
 #include "ground_quality.h"
-#include "io/cloud_file.h"
 #include "io/options.h"
 #include "io/point_geometry.h"
+#include "io/scan_file.h"
 #include "io/text.h"
 #include "lisco/ground_filter.h"
 #include "lisco/label_ground.h"
@@ -178,7 +178,7 @@ int main(int argc, char** argv) {
                 "not flat", "time");
     std::printf("%-30s %8s %8s %9s %9s %6s %9s %8s\n", "", "", "%", "%", "", "", "", "ns/cell");
     for (const fs::path& file : expandInputs(inputs, failures)) {
-      const auto cloud = readCloudFile(file);
+      const auto cloud = readScan(file).cloud;
       measure(file.stem().string(), *cloud, settings);
       if (given.count("forms") > 0) measureForms(file.stem().string(), *cloud, settings);
     }

@@ -27,8 +27,8 @@
 #include "compare/comparison.h"
 #include "compare/report.h"
 #include "ground_heights.h"
-#include "io/cloud_file.h"
 #include "io/options.h"
+#include "io/scan_file.h"
 #include "io/text.h"
 #include "lisco/column_clusterer.h"
 #include "lisco/endless_clusterer.h"
@@ -518,7 +518,7 @@ int run(const Options& options, Table table) {
         for (const Cloud::Ptr& cloud : readRotations(files[i], model, options.rotations))
           one.rotations.push_back(makeRotation(*cloud, ground_z));
       } else {
-        one.rotations.push_back(makeRotation(*readCloudFile(files[i]), ground_z));
+        one.rotations.push_back(makeRotation(*readScan(files[i]).cloud, ground_z));
       }
       for (const double tolerance : options.tolerances) {
         one.setTolerance(tolerance, options.min_size);

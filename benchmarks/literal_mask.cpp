@@ -15,8 +15,8 @@
 
 #include "compare/comparison.h"
 #include "ground_heights.h"
-#include "io/cloud_file.h"
 #include "io/options.h"
+#include "io/scan_file.h"
 #include "io/stagger.h"
 
 namespace {
@@ -95,7 +95,7 @@ int run(const std::vector<std::string>& inputs, const PerInput<float>& ground, c
   for (const auto& file : files) {
     const std::string name = file.stem().string();
     try {
-      const Cloud::Ptr cloud = readCloudFile(file);
+      const Cloud::Ptr cloud = readScan(file).cloud;
       if (cloud->height < 2) throw std::runtime_error(file.string() + ": is not organized");
       const ComparedScan scan = prepareScan(*cloud, {}, returnsAbove(*cloud, ground.of(name)), false);
       const Cloud::Ptr straightened = destaggered(*cloud);

@@ -24,9 +24,9 @@
 #include "compare/comparison.h"
 #include "compare/report.h"
 #include "ground_heights.h"
-#include "io/cloud_file.h"
 #include "io/options.h"
 #include "io/output_file.h"
+#include "io/scan_file.h"
 #include "io/text.h"
 
 extern "C" {
@@ -274,7 +274,7 @@ bool parse(int argc, char** argv, Options& options) {
 /// \return whether all is as it must be
 bool measureFile(const fs::path& file, const std::string& name, const Options& options, std::string& csv) {
   const float ground_z = options.ground.of(file.stem().string());
-  const Cloud::Ptr cloud = readCloudFile(file);
+  const Cloud::Ptr cloud = readScan(file).cloud;
   ComparedScan scan;
   try {
     scan = prepareScan(*cloud, {}, returnsAbove(*cloud, ground_z), false);

@@ -11,8 +11,8 @@
 
 #include "compare/comparison.h"
 #include "ground_heights.h"
-#include "io/cloud_file.h"
 #include "io/options.h"
+#include "io/scan_file.h"
 #include "lisco/return.h"
 
 namespace lisco_benchmarks {
@@ -45,7 +45,7 @@ struct OrganizedScans {
     const auto heights = lisco_apps::groundHeights(ground);
     for (const auto& file : files) {
       const std::string name = file.stem().string();
-      const lisco_apps::Cloud::Ptr cloud = lisco_apps::readCloudFile(file);
+      const lisco_apps::Cloud::Ptr cloud = lisco_apps::readScan(file).cloud;
       if (cloud->height < 2) throw std::runtime_error(file.string() + ": is not organized");
       visit(name, lisco_apps::prepareScan(*cloud, {}, lisco_apps::returnsAbove(*cloud, heights.of(name)), false));
     }

@@ -17,8 +17,8 @@
 
 #include "captured_rotations.h"
 #include "compare/comparison.h"
-#include "io/cloud_file.h"
 #include "io/point_geometry.h"
+#include "io/scan_file.h"
 #include "io/text.h"
 #include "simulation/cases.h"
 #include "simulation/drive.h"
@@ -50,7 +50,7 @@ float groundOf(const std::string& scan) {
 }
 
 CloudPtr load(const fs::path& file, bool unorganized) {
-  const Cloud::Ptr cloud = readCloudFile(file);
+  const Cloud::Ptr cloud = readScan(file).cloud;
   return prepareScan(*cloud, {}, returnsAbove(*cloud, groundOf(file.stem().string())), unorganized).cloud;
 }
 

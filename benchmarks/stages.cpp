@@ -26,9 +26,9 @@
 #include "compare/comparison.h"
 #include "compare/report.h"
 #include "ground_heights.h"
-#include "io/cloud_file.h"
 #include "io/options.h"
 #include "io/output_file.h"
+#include "io/scan_file.h"
 #include "io/text.h"
 #include "lisco/column_clusterer.h"
 #include "lisco/sensor_hints.h"
@@ -399,7 +399,7 @@ bool measureFile(const fs::path& file, const std::string& name, const Options& o
   Case one;
   one.name = name;
   one.ground_z = options.ground.of(file.stem().string());
-  const Cloud::Ptr cloud = readCloudFile(file);
+  const Cloud::Ptr cloud = readScan(file).cloud;
   ComparedScan scan;
   try {
     scan = prepareScan(*cloud, {}, returnsAbove(*cloud, one.ground_z), false);

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "ground_quality.h"
-#include "io/cloud_file.h"
+#include "io/scan_file.h"
 #include "lisco/ground_filter.h"
 
 namespace lisco_test {
@@ -38,7 +38,7 @@ class GroundOnRealScan : public testing::TestWithParam<GroundScan> {
     const fs::path scans = fs::path(folder != nullptr ? folder : LISCO_TEST_DATA_DEFAULT) / "scans";
     if (!fs::is_directory(scans))
       GTEST_SKIP() << "no real scans: there is no folder " << scans << "; set LISCO_TEST_DATA to the data folder";
-    cloud_ = lisco_apps::readCloudFile(scans / (std::string(GetParam().name) + ".pcd"));
+    cloud_ = lisco_apps::readScan(scans / (std::string(GetParam().name) + ".pcd")).cloud;
   }
 
   lisco::Return cell(std::size_t laser, std::size_t column) const {

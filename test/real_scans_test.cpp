@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "io/cloud_file.h"
+#include "io/scan_file.h"
 #include "pcl_client.h"
 #include "pcl_clouds.h"
 #include "pcl_stream.h"
@@ -59,7 +59,7 @@ class RealScan : public testing::TestWithParam<ScanFile> {
     const fs::path scans = dataFolder() / "scans";
     if (!fs::is_directory(scans))
       GTEST_SKIP() << "no real scans: there is no folder " << scans << "; set LISCO_TEST_DATA to the data folder";
-    cloud_ = lisco_apps::readCloudFile(scans / (std::string(GetParam().name) + ".pcd"));
+    cloud_ = lisco_apps::readScan(scans / (std::string(GetParam().name) + ".pcd")).cloud;
     ASSERT_GT(cloud_->height, 1U);
   }
 

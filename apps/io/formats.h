@@ -16,8 +16,6 @@ class FileReader;
 
 namespace lisco_apps {
 
-using Labels = std::vector<std::uint32_t>;
-
 /// What a file holds besides its points.
 struct ReadExtras {
   pcl::PCLPointCloud2 fields;        ///< all, of each point of the cloud; empty if x, y, z are all
@@ -26,13 +24,12 @@ struct ReadExtras {
   std::string note;                  ///< how the file was read
 };
 
-// The readers behind readScan and readCloudFile, one per format: a file that exists and is not empty to a cloud. They
-// throw std::runtime_error as readCloudFile does.
+// The readers behind readScan, one per format: a file that exists and is not empty to a cloud. They throw
+// std::runtime_error as readScan does.
 Cloud::Ptr readPcd(const fs::path& file, const ReadOptions& options, ReadExtras& extras);
 Cloud::Ptr readPly(const fs::path& file, const ReadOptions& options, ReadExtras& extras);
 Cloud::Ptr readFloatBin(const fs::path& file, const ReadOptions& options, ReadExtras& extras);
 Cloud::Ptr readAuthorsCsv(const fs::path& file, const ReadOptions& options, ReadExtras& extras);
-
 Cloud::Ptr readNpy(const fs::path& file, const ReadOptions& options, ReadExtras& extras);
 
 /// Appends a field of one value. \param datatype of pcl::PCLPointField

@@ -18,7 +18,7 @@ struct Scan {
   Cloud::Ptr cloud;                      ///< in the input's order
   Cloud::Ptr arranged;                   ///< a row for each ring; nullptr: the cloud is clustered as it is
   pcl::Indices point_of_cell;            ///< of `arranged`: number in `cloud`, UNAVAILABLE without a point
-  std::vector<std::uint32_t> object_of;  ///< field `label` of each point of `cloud`; empty if there is none
+  std::vector<std::uint32_t> object_of;  ///< field `label` (uint32) of each point of `cloud`; empty if there is none
   pcl::PCLPointCloud2 fields;            ///< all, of each point of `cloud`; empty if x, y, z are all
   std::string note;                      ///< how it was read and arranged; empty if there is nothing to say
 
@@ -35,10 +35,15 @@ struct ReadOptions {
   unsigned bin_fields = 0;  ///< floats a point of a `.bin`; 0: by their looks
 };
 
-/// Reads a scan as readCloudFile () does, and arranges an unorganized one by its field `ring`, or by rings that the
-/// order of a `.bin` or `.npy` shows.
-/// \throws std::runtime_error as readCloudFile ()
+/// Reads a scan by the ending of its name: PCD and PLY with fields x, y, z of float or double, KITTI's, nuScenes' and
+/// others' `.bin` (float32 x y z and more, unorganized), NumPy's `.npy`, or the paper authors' `.csv` (see
+/// authors_csv.cpp). Its cloud is organized as the file is; an unorganized one is arranged by its field `ring`, or by
+/// rings that the order of a `.bin` or `.npy` shows.
+/// \throws std::runtime_error with one line that names the file and what is wrong with it
 Scan readScan(const fs::path& file, const ReadOptions& options = {});
+
+/// Whether a file's name has an ending of readScan ().
+bool isCloudFile(const fs::path& file);
 
 /// Arranges a cloud of one row by the rings in its message, see pcl::organizeLiscoCloud (). Leaves it as it is without
 /// such a field, or if rings and times make no rows.

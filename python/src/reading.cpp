@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/cloud_file.h"
+#include "io/scan_file.h"
 #include "recordings/packet_input.h"
 #include "recordings/recording.h"
 #include "recordings/scan_source.h"
@@ -50,7 +50,7 @@ py::array_t<float> readFile(const fs::path& file) {
   lisco_apps::Cloud::Ptr cloud;
   {
     const py::gil_scoped_release release;
-    cloud = lisco_apps::readCloudFile(file);
+    cloud = lisco_apps::readScan(file).cloud;
   }
   return arrayOf(*cloud);
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bodies.h"
-#include "io/cloud_file.h"
+#include "io/scan_file.h"
 #include "scratch_file.h"
 
 namespace lisco_test {
@@ -17,9 +17,10 @@ void fuzzReaders(const std::uint8_t* data, std::size_t size) {
                                                 ScratchFile(".csv")};
   if (size == 0) return;
   const std::filesystem::path& file = files[data[0] % files.size()].holding(data + 1, size - 1);
-  std::vector<std::uint32_t> labels;
   try {
-    const lisco_apps::Cloud::Ptr cloud = lisco_apps::readCloudFile(file, &labels);
+    const lisco_apps::Scan scan = lisco_apps::readScan(file);
+    const lisco_apps::Cloud::Ptr& cloud = scan.cloud;
+    const std::vector<std::uint32_t>& labels = scan.object_of;
     hold(cloud->size() == std::size_t{cloud->width} * cloud->height, "the size of a cloud");
     hold(labels.empty() || labels.size() == cloud->size(), "the number of labels");
     hold(std::count_if(cloud->begin(), cloud->end(), [](const pcl::PointXYZ& p) { return p.x < p.y; }) >= 0, "memory");

@@ -14,7 +14,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "io/cloud_file.h"
+#include "io/scan_file.h"
 #include "lisco/version.h"
 #include "program_test.h"
 
@@ -87,7 +87,7 @@ TEST_F(LiscoCluster, WritesOneCloudPerClusterOnRequest) {
   write("walls.pcd", twoWalls());
   ASSERT_EQ(run("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results --clouds").status, 0);
   for (const char* name : {"cluster_0001.pcd", "cluster_0002.pcd"})
-    EXPECT_EQ(lisco_apps::readCloudFile(folder_ / "results/clusters" / name)->size(), 60U) << name;
+    EXPECT_EQ(lisco_apps::readScan(folder_ / "results/clusters" / name).cloud->size(), 60U) << name;
   // A second run replaces the clouds; a run without clouds removes them and keeps foreign files.
   write("results/clusters/mine.txt", "keep me");
   ASSERT_EQ(run("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results --clouds").status, 0);
@@ -302,7 +302,7 @@ TEST_F(LiscoCluster, ReadsEveryFormat) {
   EXPECT_EQ(found, 4U) << outcome.out;
   EXPECT_NE(outcome.out.find("2 rows x 2 columns, 3 returns"), std::string::npos) << outcome.out;
 
-  const auto csv = lisco_apps::readCloudFile(folder_ / "b.csv");
+  const auto csv = lisco_apps::readScan(folder_ / "b.csv").cloud;
   EXPECT_NEAR(csv->at(0, 0).x, 5.0F, 1e-5F);
   EXPECT_NEAR(csv->at(1, 0).y, 5.0F * std::cos(1.5507963F), 1e-5F);
   EXPECT_NEAR(csv->at(1, 1).z, 9.0F * std::sin(0.1F), 1e-5F);

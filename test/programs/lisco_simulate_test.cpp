@@ -14,7 +14,7 @@
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/io/pcd_io.h>
 
-#include "io/cloud_file.h"
+#include "io/scan_file.h"
 #include "program_test.h"
 
 namespace {
@@ -63,7 +63,7 @@ TEST_F(LiscoSimulate, WritesTheFiveScenesOfThePaper) {
     EXPECT_NE(outcome.out.find("cluster it with --ground-z -1.6\n"), std::string::npos) << outcome.out;
 
     // The summary agrees with the file.
-    const auto cloud = lisco_apps::readCloudFile(folder_ / file);
+    const auto cloud = lisco_apps::readScan(folder_ / file).cloud;
     EXPECT_EQ(cloud->height, 64U);
     EXPECT_EQ(cloud->width, 1125U);
     long returns = 0;
@@ -133,7 +133,7 @@ TEST_F(LiscoSimulate, SimulatesSensorsOfAnySize) {
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(numberBefore(outcome.out, " cells"), static_cast<long>(size.lasers) * size.steps) << outcome.out;
     EXPECT_EQ(outcome.out.find("the paper's scene gave") != std::string::npos, arguments == "hdl64e") << outcome.out;
-    const auto cloud = lisco_apps::readCloudFile(folder_ / "scan.pcd");
+    const auto cloud = lisco_apps::readScan(folder_ / "scan.pcd").cloud;
     EXPECT_EQ(cloud->height, size.lasers);
     EXPECT_EQ(cloud->width, size.steps);
     for (const auto& point : *cloud) ASSERT_TRUE(std::isfinite(point.x)) << "the room is closed";
@@ -143,8 +143,8 @@ TEST_F(LiscoSimulate, SimulatesSensorsOfAnySize) {
 TEST_F(LiscoSimulate, AppliesNoiseAndDropOuts) {
   ASSERT_EQ(run("--scene 5 --noise 0 --drop-outs 0 -o exact.pcd").status, 0);
   ASSERT_EQ(run("--scene 5 --noise 0.3 --drop-outs 0.5 -o poor.pcd").status, 0);
-  const auto exact = lisco_apps::readCloudFile(folder_ / "exact.pcd");
-  const auto poor = lisco_apps::readCloudFile(folder_ / "poor.pcd");
+  const auto exact = lisco_apps::readScan(folder_ / "exact.pcd").cloud;
+  const auto poor = lisco_apps::readScan(folder_ / "poor.pcd").cloud;
   double returns = 0;
   double squares = 0;
   for (std::size_t i = 0; i < poor->size(); ++i) {
@@ -160,7 +160,7 @@ TEST_F(LiscoSimulate, AddsTheVehicle) {
   const Outcome outcome = run("--scene 3 --vehicle -o scan.pcd");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("1 x vehicle"), std::string::npos) << outcome.out;
-  const auto cloud = lisco_apps::readCloudFile(folder_ / "scan.pcd");
+  const auto cloud = lisco_apps::readScan(folder_ / "scan.pcd").cloud;
   long returns = 0;
   long near = 0;
   for (const auto& point : *cloud) {
@@ -183,7 +183,7 @@ TEST_F(LiscoSimulate, WritesTheWorstCases) {
     EXPECT_EQ(outcome.err, "");
     EXPECT_EQ(outcome.out.rfind(std::string("case ") + name + ": ", 0), 0U) << outcome.out;
     EXPECT_EQ(outcome.out.find("ground"), std::string::npos) << outcome.out;
-    const auto cloud = lisco_apps::readCloudFile(folder_ / "scan.pcd");
+    const auto cloud = lisco_apps::readScan(folder_ / "scan.pcd").cloud;
     EXPECT_EQ(cloud->height, 20U);
     EXPECT_EQ(cloud->width, 1808U);
     long returns = 0;
@@ -208,8 +208,9 @@ TEST_F(LiscoSimulate, WritesAScanOnEachTerrain) {
     EXPECT_EQ(outcome.out.rfind(std::string("terrain ") + name + ": ", 0), 0U) << outcome.out;
     for (const char* kind : {"car", "lorry", "person", "tree", "wall", "house", "bridge", "sensor car"})
       EXPECT_NE(outcome.out.find(std::string(" x ") + kind), std::string::npos) << kind << ": " << outcome.out;
-    std::vector<std::uint32_t> objects;
-    const auto cloud = lisco_apps::readCloudFile(folder_ / "scan.pcd", &objects);
+    const lisco_apps::Scan scan = lisco_apps::readScan(folder_ / "scan.pcd");
+    const auto& cloud = scan.cloud;
+    const std::vector<std::uint32_t>& objects = scan.object_of;
     EXPECT_EQ(cloud->height, 32U);
     EXPECT_EQ(cloud->width, 2170U);
     long returns = 0;
@@ -246,7 +247,7 @@ TEST_F(LiscoSimulate, WritesADriveIntoAFolder) {
   EXPECT_EQ(last.rfind("3,399,0.29975", 0), 0U) << last;
   EXPECT_NE(textOf(drive / "objects.csv").find(",sensor car,"), std::string::npos);
   for (int rotation = 1; rotation <= 3; ++rotation)
-    EXPECT_EQ(lisco_apps::readCloudFile(drive / ("rotation_00000" + std::to_string(rotation) + ".pcd"))->width, 400U);
+    EXPECT_EQ(lisco_apps::readScan(drive / ("rotation_00000" + std::to_string(rotation) + ".pcd")).cloud->width, 400U);
   EXPECT_FALSE(textOf(drive / "rotation_000001.pcd") == textOf(drive / "rotation_000002.pcd"));
 
   // A shorter one replaces it, and a foreign file stops it.
@@ -267,7 +268,7 @@ TEST_F(LiscoSimulate, WritesPacketsBesideADrive) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   // 75 packets of 24 firings are a turn; each record is 16 bytes, 42 of headers, and a packet.
   EXPECT_EQ(fs::file_size(folder_ / "drive/capture.pcap"), 24U + 150U * (16 + 42 + 1206));
-  EXPECT_EQ(lisco_apps::readCloudFile(folder_ / "drive/rotation_000002.pcd")->width, 1800U);
+  EXPECT_EQ(lisco_apps::readScan(folder_ / "drive/rotation_000002.pcd").cloud->width, 1800U);
   ASSERT_EQ(run(options).status, 0);
   EXPECT_FALSE(fs::exists(folder_ / "drive/capture.pcap"));
 }
@@ -304,9 +305,9 @@ TEST_F(LiscoSimulate, RefusesBadDrivesInOneLine) {
 TEST_F(LiscoSimulate, PrintsHelpAndVersion) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.status, 0);
-  for (const char* word : {"Usage: lisco_simulate", "--scene", "--case", "singletons", "--gap", "--vehicle", "--sensor",
-                           "os1-128", "--drop-outs", "--terrain", "field", "--rotations", "poses.csv", "--pitch",
-                           "--pcap"})
+  for (const char* word :
+       {"Usage: lisco_simulate", "--scene", "--case", "singletons", "--gap", "--vehicle", "--sensor", "os1-128",
+        "--drop-outs", "--terrain", "field", "--rotations", "poses.csv", "--pitch", "--pcap"})
     EXPECT_NE(help.out.find(word), std::string::npos) << word;
   const Outcome version = run("--version");
   EXPECT_EQ(version.status, 0);
