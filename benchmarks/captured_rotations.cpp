@@ -31,11 +31,10 @@ Cloud::Ptr organized(const std::vector<Cell>& cells, std::size_t lasers) {
 std::vector<Cloud::Ptr> readRotations(const std::filesystem::path& file, const std::string& model_name,
                                       std::size_t most, double overlap) {
   const VelodyneModel model = makeVelodyneModel(model_name);
-  CaptureFile first_pass(file);
-  const double step = stepIn(first_pass, model);
-  CaptureFile capture(file);
   VelodyneDecoder decoder(model);
-  decoder.setStep(step);
+  CaptureFile first_pass(file);
+  decoder.prepare(first_pass);
+  CaptureFile capture(file);
   RotationCutter cutter;
   const std::size_t lasers = model.lasers.size();
   std::vector<std::vector<Cell>> rotations;  // the last one is not whole

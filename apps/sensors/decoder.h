@@ -89,7 +89,7 @@ class Decoder {
   /// none has come for a while.
   virtual void flush(const Visitor& /*visit*/) {}
 
-  /// Measures on a whole capture, which is read to its end, what is less exact while decoding.
+  /// Measures on a whole capture, which is read to its end, what is less exact while decoding. openPackets () calls it.
   virtual void prepare(PacketSource& /*capture*/) {}
 
   const std::string& name() const { return name_; }

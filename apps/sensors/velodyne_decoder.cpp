@@ -79,11 +79,6 @@ std::optional<VelodyneDecoder::Layout> VelodyneDecoder::layoutOf(const std::uint
   return std::nullopt;
 }
 
-void VelodyneDecoder::setStep(double degrees) {
-  step_ = degrees;
-  step_is_set_ = true;
-}
-
 void VelodyneDecoder::measureStep(const std::uint8_t* data, const Layout& layout) {
   for (std::size_t g = 0; g < layout.groups; ++g) {
     const unsigned azimuth = azimuthOf(data + kBlockBytes * g * layout.group) % kTurn;
@@ -232,14 +227,12 @@ double VelodyneDecoder::columnsPerTurn() const {
 }
 
 void VelodyneDecoder::prepare(PacketSource& capture) {
-  if (const double step = stepIn(capture, model_); step > 0) setStep(step);
-}
-
-double stepIn(PacketSource& capture, const VelodyneModel& model) {
-  VelodyneDecoder decoder(model);
+  VelodyneDecoder decoder(model_);
   Packet packet;
   while (capture.next(packet) != PacketSource::Arrival::kEnd) decoder.decode(packet, [](const Column&) {});
-  return decoder.step();
+  if (decoder.step_ <= 0) return;
+  step_ = decoder.step_;
+  step_is_set_ = true;
 }
 
 }  // namespace lisco_apps

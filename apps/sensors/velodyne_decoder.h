@@ -38,17 +38,14 @@ class VelodyneDecoder : public Decoder {
   bool isData(const Packet& packet) const;
 
   Kind decode(const Packet& packet, const Visitor& visit) override;
-  /// Sets the step to that of the whole capture.
+  /// Sets the step to that of the whole capture, instead of the latest packets'.
   void prepare(PacketSource& capture) override;
 
   const VelodyneModel& model() const { return model_; }
-  const PacketOrder& order() const { return order_; }
 
   /// Degrees that the sensor turns from one block of all lasers to the next; 0 if it does not turn, or before the
   /// second packet.
   double step() const { return step_; }
-  /// Sets the step instead of measuring it, for example to stepIn () of the whole capture.
-  void setStep(double degrees);
 
   /// By the mean of the steps between half and twice the median.
   double columnsPerTurn() const override;
@@ -103,13 +100,10 @@ class VelodyneDecoder : public Decoder {
   double packet_period_us_;
   double step_ = 0;
   double mean_step_ = 0;
-  bool step_is_set_ = false;
+  bool step_is_set_ = false;  ///< by prepare ()
   std::optional<unsigned> last_azimuth_;
   std::array<std::uint32_t, kStepLimit> steps_{};  ///< histogram by hundredths of a degree
   std::uint32_t step_count_ = 0;
 };
-
-/// VelodyneDecoder::step () of all packets of a capture, which is read to its end.
-double stepIn(PacketSource& capture, const VelodyneModel& model);
 
 }  // namespace lisco_apps

@@ -16,6 +16,7 @@
 
 #include "random.h"
 #include "sensors/velodyne_decoder.h"
+#include "sensors/velodyne_encoder.h"
 #include "stream/endless_stream.h"
 #include "stream/rotation_stream.h"
 #include "stream/window_stream.h"
@@ -44,7 +45,11 @@ class LiveSceneTest : public testing::Test {
     options_.tolerance = 0.5F;
     options_.min_size = 5;
     options_.ground = lisco_apps::groundChoiceOf("height:-1");
-    decoder_.setStep(360. / kColumns);
+    lisco_apps::VelodyneEncoder encoder("vlp16");
+    encoder.step = 36000 / kColumns;  // hundredths of a degree, by which the decoder knows how many columns a turn has
+    const lisco_apps::Bytes packet =
+        encoder.next([](std::size_t, std::size_t, bool) { return lisco_apps::Measured(); });
+    decoder_.decode({packet.data(), packet.size()}, [](const lisco_apps::Column&) {});
   }
 
   template <typename AnyStream, typename... More>

@@ -11,6 +11,7 @@
 
 #include "random.h"
 #include "sensors/velodyne_decoder.h"
+#include "sensors/velodyne_encoder.h"
 #include "stream/endless_stream.h"
 #include "stream/rotation_stream.h"
 
@@ -30,7 +31,7 @@ using lisco_apps::VelodyneDecoder;
 /// Checks that the results of a stream agree with each other.
 class ConsistencyChecker : public lisco_apps::Listener {
  public:
-  void rotation(const Turn& turn, const std::vector<FoundCluster>& clusters, lisco_apps::Clock::duration) override {
+  void found(const Turn& turn, const std::vector<FoundCluster>& clusters, lisco_apps::Clock::duration) override {
     EXPECT_EQ(turn.number, ++turns);
     columns += turn.columns();
     std::map<std::uint32_t, std::size_t> sizes = sizesByLabel(turn);
@@ -38,10 +39,10 @@ class ConsistencyChecker : public lisco_apps::Listener {
     for (const FoundCluster& cluster : clusters) EXPECT_EQ(cluster.features.size, sizes[cluster.id]);
     for (std::size_t i = 1; i < clusters.size(); ++i)
       EXPECT_LE(clusters[i].features.size, clusters[i - 1].features.size);
-    found += clusters.size();
+    found_clusters += clusters.size();
   }
   void cluster(const DeliveredCluster& cluster) override {
-    EXPECT_EQ(cluster.found.id, ++found);
+    EXPECT_EQ(cluster.found.id, ++found_clusters);
     delivered_[cluster.found.id] = cluster.found.features.size;
   }
   void turnEnds(const Turn& turn) override {
@@ -59,7 +60,7 @@ class ConsistencyChecker : public lisco_apps::Listener {
     EXPECT_EQ(sizes_by_label_, delivered_);
   }
 
-  std::uint64_t turns = 0, columns = 0, found = 0;
+  std::uint64_t turns = 0, columns = 0, found_clusters = 0;
 
  private:
   static std::map<std::uint32_t, std::size_t> sizesByLabel(const Turn& turn) {
@@ -111,7 +112,11 @@ TEST(Streams, AcceptIrregularColumns) {
     options.min_size = 1;
     options.ground = ground;
     VelodyneDecoder decoder(lisco_apps::makeVelodyneModel("vlp16"));
-    decoder.setStep(0.8);
+    lisco_apps::VelodyneEncoder encoder("vlp16");
+    encoder.step = 80;  // hundredths of a degree, by which the decoder knows how many columns a turn has
+    const lisco_apps::Bytes packet =
+        encoder.next([](std::size_t, std::size_t, bool) { return lisco_apps::Measured(); });
+    decoder.decode({packet.data(), packet.size()}, [](const Column&) {});
     constexpr std::size_t kColumns = 30000;
 
     ConsistencyChecker of_rotations;
@@ -132,7 +137,7 @@ TEST(Streams, AcceptIrregularColumns) {
     EXPECT_EQ(endless.columnLatency().count(), kColumns);
     of_endless.expectAllLabelled();
     EXPECT_EQ(of_rotations.turns, of_endless.turns);
-    EXPECT_GT(of_endless.found, 100U);
+    EXPECT_GT(of_endless.found_clusters, 100U);
   }
 }
 
@@ -146,7 +151,7 @@ TEST(Streams, FindNothingWithoutColumns) {
     stream->finish();
     stream->finish();
   }
-  EXPECT_EQ(witness.turns + witness.found, 0U);
+  EXPECT_EQ(witness.turns + witness.found_clusters, 0U);
 }
 
 }  // namespace
