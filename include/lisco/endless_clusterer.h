@@ -2,7 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include "lisco/cxx17.h"
+#include "lisco/export.h"
 
 #include <array>
 #include <cstddef>
@@ -11,7 +11,6 @@
 #include <memory>
 #include <vector>
 
-#include "lisco/export.h"
 #include "lisco/return.h"
 
 namespace lisco {

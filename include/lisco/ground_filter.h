@@ -2,7 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include "lisco/cxx17.h"
+#include "lisco/export.h"
 
 #include <array>
 #include <cstddef>
@@ -10,7 +10,6 @@
 #include <limits>
 #include <memory>
 
-#include "lisco/export.h"
 #include "lisco/return.h"
 #include "lisco/sensor_hints.h"
 

@@ -2,14 +2,13 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include "lisco/cxx17.h"
+#include "lisco/export.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 
-#include "lisco/export.h"
 #include "lisco/return.h"
 
 namespace lisco {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include "lisco/cxx17.h"
+#include "lisco/export.h"
 
 #include <cmath>
 #include <cstddef>

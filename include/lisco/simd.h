@@ -2,10 +2,10 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include "lisco/export.h"
+
 #include <string>
 #include <vector>
-
-#include "lisco/export.h"
 
 namespace lisco {
 

@@ -2,13 +2,12 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include "lisco/cxx17.h"
+#include "lisco/export.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 
-#include "lisco/export.h"
 #include "lisco/return.h"
 
 namespace lisco {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include "lisco/cxx17.h"
+#include "lisco/export.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -18,8 +18,6 @@
 #include <pcl/pcl_base.h>   // UNAVAILABLE
 #include <pcl/point_cloud.h>
 #include <pcl/types.h>
-
-#include "lisco/export.h"
 
 namespace pcl {
 

@@ -2,7 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include "lisco/cxx17.h"
+#include "lisco/export.h"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,6 @@
 #include <pcl/point_cloud.h>
 #include <pcl/segmentation/lisco_pcl_version.h>
 
-#include "lisco/export.h"
 #include "lisco/return.h"
 
 namespace pcl::detail {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include "lisco/cxx17.h"
+#include "lisco/export.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -19,8 +19,6 @@
 #include <pcl/segmentation/extract_clusters.h>  // comparePointClusters, which its clients call too
 #include <pcl/segmentation/lisco_cloud_clusterer.h>
 #include <pcl/segmentation/lisco_search_method.h>
-
-#include "lisco/export.h"
 
 namespace pcl {
 

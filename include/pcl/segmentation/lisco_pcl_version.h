@@ -2,7 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include "lisco/cxx17.h"
+#include "lisco/export.h"
 
 /** \file
  * The only place that depends on PCL's version. PCL 1.12 to 1.15 have all that Lisco uses, under the same names:

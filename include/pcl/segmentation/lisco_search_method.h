@@ -2,14 +2,12 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include "lisco/cxx17.h"
+#include "lisco/export.h"
 
 #include <vector>
 
 #include <pcl/search/kdtree.h>
 #include <pcl/search/search.h>
-
-#include "lisco/export.h"
 
 namespace pcl::detail {
 

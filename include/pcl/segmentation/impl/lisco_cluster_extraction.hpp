@@ -2,14 +2,12 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include "lisco/cxx17.h"
+#include "lisco/export.h"
 
 #include <algorithm>
 #include <cstddef>
 
 #include <pcl/segmentation/lisco_cluster_extraction.h>
-
-#include "lisco/export.h"
 
 template <typename PointT>
 std::size_t pcl::LiscoClusterExtraction<PointT>::appendClusters(std::vector<PointIndices>& clusters) {

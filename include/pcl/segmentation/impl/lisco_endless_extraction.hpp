@@ -2,7 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include "lisco/cxx17.h"
+#include "lisco/export.h"
 
 #include <cmath>
 #include <cstddef>
@@ -17,7 +17,6 @@
 #include <pcl/segmentation/impl/lisco_column_stream.hpp>
 
 #include "lisco/endless_clusterer.h"
-#include "lisco/export.h"
 
 template <typename PointT>
 class pcl::LiscoEndlessExtraction<PointT>::State : public detail::LiscoReceivedColumns<PointT> {

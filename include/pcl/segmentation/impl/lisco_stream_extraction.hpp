@@ -2,7 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include "lisco/cxx17.h"
+#include "lisco/export.h"
 
 #include <array>
 #include <cstddef>
@@ -15,7 +15,6 @@
 #include <pcl/segmentation/impl/lisco_column_stream.hpp>
 
 #include "lisco/column_clusterer.h"
-#include "lisco/export.h"
 #include "lisco/return.h"
 #include "lisco/sensor_hints.h"
 

@@ -2,7 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include "lisco/cxx17.h"
+#include "lisco/export.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,6 @@
 #include <pcl/segmentation/lisco_window_extraction.h>
 #include <pcl/segmentation/impl/lisco_column_stream.hpp>
 
-#include "lisco/export.h"
 #include "lisco/window_clusterer.h"
 
 template <typename PointT>
