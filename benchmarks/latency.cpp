@@ -107,10 +107,7 @@ bool parse(int argc, char** argv, Options& options) {
   if (options.inputs.empty()) throw std::runtime_error("no input; see --help");
   if (options.table != "columns" && options.table != "windows" && options.table != "timeline")
     throw std::runtime_error("--table must be columns, windows or timeline, not '" + options.table + "'");
-  for (const std::string& item : itemsOf(tolerances)) {
-    options.tolerances.push_back(numberOf(item, "--tolerance"));
-    if (!(options.tolerances.back() > 0)) throw std::runtime_error("--tolerance must be positive, not '" + item + "'");
-  }
+  for (const std::string& item : itemsOf(tolerances)) options.tolerances.push_back(toleranceOf(item));
   options.min_size = countOf(min_size, "--min-size", 1);
   options.runs = countOf(runs, "--runs", 1);
   options.rotations = countOf(rotations, "--rotations", 1);

@@ -259,10 +259,7 @@ bool parse(int argc, char** argv, Options& options) {
   po::variables_map given;
   if (!readCommandLine(argc, argv, "memory_use", shown, &options.inputs, given)) return false;
   if (options.inputs.empty()) throw std::runtime_error("no input; see --help");
-  for (const std::string& item : itemsOf(tolerances)) {
-    options.tolerances.push_back(numberOf(item, "--tolerance"));
-    if (!(options.tolerances.back() > 0)) throw std::runtime_error("--tolerance must be positive, not '" + item + "'");
-  }
+  for (const std::string& item : itemsOf(tolerances)) options.tolerances.push_back(toleranceOf(item));
   options.min_size = countOf(min_size, "--min-size", 1);
   options.ground = groundHeights(ground);
   if (given.count("csv") != 0 && csv.empty()) throw std::runtime_error("--csv is empty");

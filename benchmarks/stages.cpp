@@ -179,10 +179,7 @@ bool parse(int argc, char** argv, Options& options) {
   if (table != "stages" && table != "threads")
     throw std::runtime_error("--table must be stages or threads, not '" + table + "'");
   options.threads = table == "threads";
-  for (const std::string& item : itemsOf(tolerances)) {
-    options.tolerances.push_back(numberOf(item, "--tolerance"));
-    if (!(options.tolerances.back() > 0)) throw std::runtime_error("--tolerance must be positive, not '" + item + "'");
-  }
+  for (const std::string& item : itemsOf(tolerances)) options.tolerances.push_back(toleranceOf(item));
   options.min_size = countOf(min_size, "--min-size", 1);
   options.runs = countOf(runs, "--runs", 1);
   options.ground = groundHeights(ground);

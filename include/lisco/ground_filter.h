@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 
@@ -38,27 +39,6 @@ LISCO_EXPORT GroundParameters estimateGround(std::size_t columns, std::size_t la
 /// \param parameters those returned, but for the slope, and for the height if it is NaN
 LISCO_EXPORT GroundParameters estimateGroundPlane(std::size_t columns, std::size_t lasers, GroundParameters parameters,
                                                   const CellSource& cells);
-
-/// Receives the decisions on whole columns. Refers to the callable that it is made of.
-class GroundVisitor {
- public:
-  /// \param visit callable as void (std::size_t column, const std::uint8_t* ground, std::size_t lasers)
-  template <typename Visit>
-  explicit GroundVisitor(Visit& visit)
-      : context_(std::addressof(visit)),
-        visit_([](const void* context, std::size_t column, const std::uint8_t* ground, std::size_t lasers) {
-          (*static_cast<Visit*>(const_cast<void*>(context)))(column, ground, lasers);
-        }) {}
-
-  /// Visits one column.
-  void operator()(std::size_t column, const std::uint8_t* ground, std::size_t lasers) const {
-    visit_(context_, column, ground, lasers);
-  }
-
- private:
-  const void* context_;
-  void (*visit_)(const void* context, std::size_t column, const std::uint8_t* ground, std::size_t lasers);
-};
 
 /// Finds the ground in a rotating LiDAR's returns, column by column: which returns lie on the ground is decided from
 /// the columns before, and final after at most kMaxDelay further columns.
@@ -99,13 +79,13 @@ class LISCO_EXPORT GroundFilter {
   /// \throws std::logic_error before begin (); std::invalid_argument if there are more cells than begin () was told
   template <typename Visit>
   void addColumn(const Return* cells, std::size_t lasers, Visit&& visit) {
-    receive(cells, lasers, GroundVisitor(visit));
+    receive(cells, lasers, std::ref(visit));
   }
 
   /// Visits the columns that are not final yet. More columns may follow.
   template <typename Visit>
   void finish(Visit&& visit) {
-    decideRest(GroundVisitor(visit));
+    decideRest(std::ref(visit));
   }
 
   /// Starts anew and decides on whole columns, as an organized cloud holds them. The result is that of addColumn and
@@ -121,8 +101,10 @@ class LISCO_EXPORT GroundFilter {
   }
 
  private:
-  void receive(const Return* cells, std::size_t lasers, const GroundVisitor& visit);
-  void decideRest(const GroundVisitor& visit);
+  using Visitor = std::function<void(std::size_t column, const std::uint8_t* ground, std::size_t lasers)>;
+
+  void receive(const Return* cells, std::size_t lasers, const Visitor& visit);
+  void decideRest(const Visitor& visit);
   void filterAll(const GroundParameters& parameters, std::size_t columns, std::size_t lasers, const CellSource& cells,
                  std::uint8_t* ground);
 

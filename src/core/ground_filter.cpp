@@ -39,15 +39,15 @@ float maxSlope(const GroundParameters& parameters) {
 class GroundFilter::State {
  public:
   void begin(const GroundParameters& parameters, std::size_t lasers);
-  void add(const Return* cells, std::size_t lasers, const GroundVisitor& visit);
-  void finish(const GroundVisitor& visit);
+  void add(const Return* cells, std::size_t lasers, const Visitor& visit);
+  void finish(const Visitor& visit);
   void addAll(std::size_t columns, const CellSource& cells, std::uint8_t* ground);
 
  private:
   static constexpr std::size_t kVisitsTwice = Block::kColumns / 2;
 
   void decideWaiting();
-  void visitNext(const GroundVisitor& visit);
+  void visitNext(const Visitor& visit);
   void decide(std::size_t first, std::size_t count, std::uint8_t* ground, std::size_t stride);
   void tellMap();
   void estimatePlane();
@@ -94,7 +94,7 @@ void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t 
   begun_ = true;
 }
 
-void GroundFilter::State::add(const Return* cells, std::size_t lasers, const GroundVisitor& visit) {
+void GroundFilter::State::add(const Return* cells, std::size_t lasers, const Visitor& visit) {
   if (!begun_) throw std::logic_error("lisco::GroundFilter: addColumn before begin");
   if (lasers > lasers_) throw std::invalid_argument("lisco::GroundFilter: more cells than lasers");
   for (std::size_t laser = 0; laser < lasers_; ++laser) {
@@ -114,7 +114,7 @@ void GroundFilter::State::add(const Return* cells, std::size_t lasers, const Gro
     visitNext(visit);
 }
 
-void GroundFilter::State::finish(const GroundVisitor& visit) {
+void GroundFilter::State::finish(const Visitor& visit) {
   if (!begun_) return;
   while (ready_ < ready_end_) visitNext(visit);
   if (waiting_ == 0) return;
@@ -134,7 +134,7 @@ void GroundFilter::State::decideWaiting() {
   decide(0, ready_end_, ready_ground_.data(), Block::kColumns);
 }
 
-void GroundFilter::State::visitNext(const GroundVisitor& visit) {
+void GroundFilter::State::visitNext(const Visitor& visit) {
   const std::size_t column = ready_++, cells = ready_counts_[column];
   for (std::size_t laser = 0; laser < cells; ++laser)
     column_ground_[laser] = ready_ground_[laser * Block::kColumns + column];
@@ -238,11 +238,11 @@ void GroundFilter::begin(const GroundParameters& parameters, std::size_t lasers)
   state_->begin(parameters, lasers);
 }
 
-void GroundFilter::receive(const Return* cells, std::size_t lasers, const GroundVisitor& visit) {
+void GroundFilter::receive(const Return* cells, std::size_t lasers, const Visitor& visit) {
   state_->add(cells, lasers, visit);
 }
 
-void GroundFilter::decideRest(const GroundVisitor& visit) {
+void GroundFilter::decideRest(const Visitor& visit) {
   state_->finish(visit);
 }
 

@@ -39,7 +39,6 @@ int main() {
   PRINT(lisco::EndlessParameters);
   PRINT(lisco::GroundFilter);
   PRINT(lisco::GroundParameters);
-  PRINT(lisco::GroundVisitor);
   PRINT(lisco::LabelGroundParameters);
   PRINT(lisco::LabelParameters);
   PRINT(lisco::OrientedBox);
