@@ -16,26 +16,7 @@
 namespace lisco {
 
 class EndlessCluster;
-
-/// How an endless stream is clustered. Positions are turns of the sensor, counted from any moment.
-struct EndlessParameters {
-  float tolerance = 0.0F;                  ///< eps, metres; see Parameters::tolerance for 0, negative and NaN values
-  std::size_t min_size = 1;                ///< as max_size
-  std::size_t max_size = ~std::size_t{0};  ///< clusters of fewer or more returns are not delivered
-  std::array<float, 3> origin{};           ///< position of the sensor, metres; finite
-  bool clockwise = false;                  ///< sense of rotation, seen from above
-  double start_azimuth = 0;  ///< of position 0, radians, counter-clockwise from the x axis; at most kMaxAzimuth
-  /// Largest difference between the azimuths of a return and of its column, radians, 0..kMaxStagger. Clusters are
-  /// delivered the later, the larger it is. A return beyond it is an outlier: a cluster of its own.
-  double stagger = kMaxStagger;
-  double columns_per_turn = 0;     ///< for addColumn () without a position; 0: each column has a position
-  std::size_t lasers = 0;          ///< largest number of cells of a column; 0: any number
-  std::size_t block_columns = 16;  ///< columns read together, 1..64; with 1, clusters are delivered soonest
-
-  static constexpr double kMaxStagger = 0.39269908169872414;  ///< a sixteenth of a turn
-  static constexpr double kMaxAzimuth = 1e6;                  ///< radians
-  static constexpr double kMaxPosition = 1e12;  ///< turns, either sign; beyond, a double cannot tell columns apart
-};
+struct EndlessParameters;
 
 /// Clusters of a stream that never ends: each is delivered once, as soon as no later column can reach it, whole across
 /// the borders of rotations.
@@ -108,6 +89,26 @@ class LISCO_EXPORT EndlessClusterer {
  private:
   class LISCO_HIDDEN Stream;
   std::unique_ptr<Stream> stream_;
+};
+
+/// How an endless stream is clustered. Positions are turns of the sensor, counted from any moment.
+struct EndlessParameters {
+  float tolerance = 0.0F;                  ///< eps, metres; see Parameters::tolerance for 0, negative and NaN values
+  std::size_t min_size = 1;                ///< as max_size
+  std::size_t max_size = ~std::size_t{0};  ///< clusters of fewer or more returns are not delivered
+  std::array<float, 3> origin{};           ///< position of the sensor, metres; finite
+  bool clockwise = false;                  ///< sense of rotation, seen from above
+  double start_azimuth = 0;  ///< of position 0, radians, counter-clockwise from the x axis; at most kMaxAzimuth
+  /// Largest difference between the azimuths of a return and of its column, radians, 0..kMaxStagger. Clusters are
+  /// delivered the later, the larger it is. A return beyond it is an outlier: a cluster of its own.
+  double stagger = kMaxStagger;
+  double columns_per_turn = 0;     ///< for addColumn () without a position; 0: each column has a position
+  std::size_t lasers = 0;          ///< largest number of cells of a column; 0: any number
+  std::size_t block_columns = 16;  ///< columns read together, 1..64; with 1, clusters are delivered soonest
+
+  static constexpr double kMaxStagger = 0.39269908169872414;  ///< a sixteenth of a turn
+  static constexpr double kMaxAzimuth = 1e6;                  ///< radians
+  static constexpr double kMaxPosition = 1e12;  ///< turns, either sign; beyond, a double cannot tell columns apart
 };
 
 /// Width of the ring around eps within which a return's reach end is (n + 4) / 8, in units of eps: there the float

@@ -28,18 +28,6 @@ struct GroundParameters {
   SensorHints sensor;
 };
 
-/// Estimates the sensor and its height above the ground from a sample of an organized cloud's cells, or of a rotation
-/// before. The height stays NaN where no ground is clearly seen.
-/// \param declared_origin position that the cloud states for its sensor, metres
-/// \param cells row by row from top to bottom; see estimateSensor
-LISCO_EXPORT GroundParameters estimateGround(std::size_t columns, std::size_t lasers,
-                                             const std::array<float, 3>& declared_origin, const CellSource& cells);
-
-/// The same for a known sensor.
-/// \param parameters those returned, but for the slope, and for the height if it is NaN
-LISCO_EXPORT GroundParameters estimateGroundPlane(std::size_t columns, std::size_t lasers, GroundParameters parameters,
-                                                  const CellSource& cells);
-
 /// Finds the ground in a rotating LiDAR's returns, column by column: which returns lie on the ground is decided from
 /// the columns before, and final after at most kMaxDelay further columns.
 ///
@@ -111,5 +99,17 @@ class LISCO_EXPORT GroundFilter {
   class LISCO_HIDDEN State;
   std::unique_ptr<State> state_;
 };
+
+/// Estimates the sensor and its height above the ground from a sample of an organized cloud's cells, or of a rotation
+/// before. The height stays NaN where no ground is clearly seen.
+/// \param declared_origin position that the cloud states for its sensor, metres
+/// \param cells row by row from top to bottom; see estimateSensor
+LISCO_EXPORT GroundParameters estimateGround(std::size_t columns, std::size_t lasers,
+                                             const std::array<float, 3>& declared_origin, const CellSource& cells);
+
+/// The same for a known sensor.
+/// \param parameters those returned, but for the slope, and for the height if it is NaN
+LISCO_EXPORT GroundParameters estimateGroundPlane(std::size_t columns, std::size_t lasers, GroundParameters parameters,
+                                                  const CellSource& cells);
 
 }  // namespace lisco
