@@ -4,11 +4,15 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <numeric>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include <pcl/console/print.h>
 #include <pcl/io/lisco_point_cloud2.h>
@@ -163,37 +167,83 @@ Firings cutFirings(const std::vector<double>& keys, const std::vector<std::uint3
 
 }  // namespace
 
-bool pcl::detail::LiscoMessageReader::open(const PCLPointCloud2& message, const std::vector<PCLPointField>& fields,
-                                           const char* caller) {
-  message_ = &message;
-  copies_.clear();
-  cells_.clear();
-  points_ = width_ = height_ = 0;
-  try {
+/// The message that is read, and the cells of its points.
+class pcl::detail::LiscoMessageReader::State {
+ public:
+  // These throw std::invalid_argument if the message is not valid.
+  State(const PCLPointCloud2& message, const std::vector<PCLPointField>& fields) : message_(message) {
     checkLayout();
-    if (points_ == 0) return (true);
+    if (points_ == 0) return;
     selectFields(fields);
     arrange();
-    return (true);
+  }
+
+  Indices& cells() { return cells_; }
+  std::size_t width() const { return width_; }
+  std::size_t height() const { return height_; }
+  void copyPoint(index_t index, std::uint8_t* point) const;
+
+ private:
+  /// From a field of the message to one of the point.
+  struct Copy {
+    PCLPointField from, to;
+    bool is_same_type;
+  };
+
+  void checkLayout();
+  void selectFields(const std::vector<PCLPointField>& fields);
+  void arrange();
+  std::optional<PCLPointField> findField(const std::string& name) const;
+  std::optional<PCLPointField> findNumber(const std::string& name) const;
+  bool arrangeByRings(const PCLPointField& ring, const PCLPointField* time);
+  bool rowsAreFirings(const PCLPointField& ring) const;
+  const std::uint8_t* pointAt(std::size_t index) const;
+
+  const PCLPointCloud2& message_;
+  std::size_t points_ = 0;
+  PCLPointField x_, y_, z_;
+  std::vector<Copy> copies_;
+  Indices cells_;
+  std::size_t width_ = 0, height_ = 0;
+};
+
+pcl::detail::LiscoMessageReader::LiscoMessageReader() = default;
+pcl::detail::LiscoMessageReader::~LiscoMessageReader() = default;
+
+bool pcl::detail::LiscoMessageReader::open(const PCLPointCloud2& message, const std::vector<PCLPointField>& fields,
+                                           const char* caller, Indices& cells) {
+  try {
+    state_ = std::make_unique<State>(message, fields);
   } catch (const std::invalid_argument& error) {
     PCL_ERROR("[%s] %s\n", caller, error.what());
     return (false);
   }
+  cells.swap(state_->cells());
+  return (true);
 }
 
-void pcl::detail::LiscoMessageReader::checkLayout() {
-  const PCLPointCloud2& message = *message_;
-  const std::size_t width = message.width;
-  const std::size_t height = message.height;
-  const std::size_t point_step = message.point_step;
-  const std::size_t row_step = message.row_step;
-  const std::size_t bytes = message.data.size();
+std::uint32_t pcl::detail::LiscoMessageReader::width() const {
+  return (static_cast<std::uint32_t>(state_->width()));
+}
+std::uint32_t pcl::detail::LiscoMessageReader::height() const {
+  return (static_cast<std::uint32_t>(state_->height()));
+}
+void pcl::detail::LiscoMessageReader::copyPoint(index_t index, std::uint8_t* point) const {
+  state_->copyPoint(index, point);
+}
+
+void pcl::detail::LiscoMessageReader::State::checkLayout() {
+  const std::size_t width = message_.width;
+  const std::size_t height = message_.height;
+  const std::size_t point_step = message_.point_step;
+  const std::size_t row_step = message_.row_step;
+  const std::size_t bytes = message_.data.size();
   if (width == 0 || height == 0) {
     if (bytes > 0) reject("The message has ", bytes, " bytes of data but no points (", width, " x ", height, ").");
     return;
   }
-  if ((message.is_bigendian == 0) != isLittleEndian())
-    reject("The message's byte order (is_bigendian = ", +message.is_bigendian, ") is not this machine's.");
+  if ((message_.is_bigendian == 0) != isLittleEndian())
+    reject("The message's byte order (is_bigendian = ", +message_.is_bigendian, ") is not this machine's.");
   if (width > kMaxPoints / height)
     reject("The message has ", width, " x ", height, " points, more than pcl::index_t can number.");
   if (point_step == 0 || width > bytes / point_step ||
@@ -205,7 +255,7 @@ void pcl::detail::LiscoMessageReader::checkLayout() {
   points_ = width * height;
 }
 
-void pcl::detail::LiscoMessageReader::selectFields(const std::vector<PCLPointField>& fields) {
+void pcl::detail::LiscoMessageReader::State::selectFields(const std::vector<PCLPointField>& fields) {
   for (const auto& [name, field] : {std::pair("x", &x_), {"y", &y_}, {"z", &z_}}) {
     const auto found = findField(name);
     if (!found) reject("The message has no field '", name, "'.");
@@ -225,13 +275,13 @@ void pcl::detail::LiscoMessageReader::selectFields(const std::vector<PCLPointFie
 }
 
 /// \return the field of this name, which lies within the points and is of a known type; nullopt if there is none
-std::optional<pcl::PCLPointField> pcl::detail::LiscoMessageReader::findField(const std::string& name) const {
-  for (PCLPointField field : message_->fields) {
+std::optional<pcl::PCLPointField> pcl::detail::LiscoMessageReader::State::findField(const std::string& name) const {
+  for (PCLPointField field : message_.fields) {
     if (field.name != name) continue;
     if (field.count == 0) field.count = 1;  // as some drivers write it
     const std::size_t size = sizeOf(field.datatype);
     if (size == 0) reject("Field '", name, "' is of the unknown type ", +field.datatype, ".");
-    const std::size_t point_step = message_->point_step;
+    const std::size_t point_step = message_.point_step;
     if (field.offset > point_step || field.count > (point_step - field.offset) / size)
       reject("Field '", name, "' (", size * field.count, " bytes at offset ", field.offset,
              ") reaches beyond a point_step of ", point_step, ".");
@@ -241,16 +291,16 @@ std::optional<pcl::PCLPointField> pcl::detail::LiscoMessageReader::findField(con
 }
 
 /// The same for a field that must have one element.
-std::optional<pcl::PCLPointField> pcl::detail::LiscoMessageReader::findNumber(const std::string& name) const {
+std::optional<pcl::PCLPointField> pcl::detail::LiscoMessageReader::State::findNumber(const std::string& name) const {
   auto field = findField(name);
   if (field && field->count != 1) reject("Field '", name, "' has ", field->count, " elements.");
   return (field);
 }
 
-void pcl::detail::LiscoMessageReader::arrange() {
+void pcl::detail::LiscoMessageReader::State::arrange() {
   auto ring = findNumber("ring");
   if (!ring) ring = findNumber("channel");
-  if (ring && message_->height == 1) {
+  if (ring && message_.height == 1) {
     for (const char* const name : {"time", "t", "timestamp", "time_stamp"})
       if (const auto time = findNumber(name); time && arrangeByRings(*ring, &*time)) return;
     if (arrangeByRings(*ring, nullptr)) return;
@@ -258,8 +308,8 @@ void pcl::detail::LiscoMessageReader::arrange() {
 
   // As it is.
   cells_.resize(points_);
-  width_ = message_->width;
-  height_ = message_->height;
+  width_ = message_.width;
+  height_ = message_.height;
   if (ring && height_ > 1 && width_ > 1 && rowsAreFirings(*ring)) {
     std::swap(width_, height_);
     for (std::size_t cell = 0; cell < points_; ++cell)
@@ -272,7 +322,7 @@ void pcl::detail::LiscoMessageReader::arrange() {
 /// \param time the field by which points are ordered; nullptr: by their azimuths
 /// \return false if the rings and times give no arrangement: a value is out of range, no time differs from another, or
 /// most cells would be empty
-bool pcl::detail::LiscoMessageReader::arrangeByRings(const PCLPointField& ring, const PCLPointField* time) {
+bool pcl::detail::LiscoMessageReader::State::arrangeByRings(const PCLPointField& ring, const PCLPointField* time) {
   constexpr std::size_t kMaxRings = 65536;
   constexpr std::uint32_t kNone = ~std::uint32_t{0};
   constexpr double kMinAzimuthStep = 2e-4;  // radians: less than any sensor's, more than rounding of coordinates
@@ -317,8 +367,8 @@ bool pcl::detail::LiscoMessageReader::arrangeByRings(const PCLPointField& ring, 
 }
 
 /// Whether ring numbers change along the rows rather than from row to row.
-bool pcl::detail::LiscoMessageReader::rowsAreFirings(const PCLPointField& ring) const {
-  const std::size_t width = message_->width;
+bool pcl::detail::LiscoMessageReader::State::rowsAreFirings(const PCLPointField& ring) const {
+  const std::size_t width = message_.width;
   const auto ring_at = [&](std::size_t point) { return (readNumber(pointAt(point), ring)); };
   std::size_t same_along_rows = 0;
   std::size_t same_along_columns = 0;
@@ -330,13 +380,13 @@ bool pcl::detail::LiscoMessageReader::rowsAreFirings(const PCLPointField& ring) 
   return (same_along_columns > same_along_rows);
 }
 
-const std::uint8_t* pcl::detail::LiscoMessageReader::pointAt(std::size_t index) const {
-  const std::size_t width = message_->width;
-  if (message_->height == 1) return (message_->data.data() + index * message_->point_step);
-  return (message_->data.data() + index / width * message_->row_step + index % width * message_->point_step);
+const std::uint8_t* pcl::detail::LiscoMessageReader::State::pointAt(std::size_t index) const {
+  const std::size_t width = message_.width;
+  if (message_.height == 1) return (message_.data.data() + index * message_.point_step);
+  return (message_.data.data() + index / width * message_.row_step + index % width * message_.point_step);
 }
 
-void pcl::detail::LiscoMessageReader::copyPoint(index_t index, std::uint8_t* point) const {
+void pcl::detail::LiscoMessageReader::State::copyPoint(index_t index, std::uint8_t* point) const {
   const std::uint8_t* const bytes = pointAt(static_cast<std::size_t>(index));
   for (const Copy& copy : copies_)
     if (copy.is_same_type)

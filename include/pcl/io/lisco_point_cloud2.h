@@ -7,8 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
-#include <string>
+#include <memory>
 #include <vector>
 
 #include <pcl/PCLPointCloud2.h>
@@ -83,17 +82,22 @@ namespace detail {
 /** \brief Reads a message of any content, after checking it. */
 class LISCO_EXPORT LiscoMessageReader {
  public:
+  LiscoMessageReader();
+  ~LiscoMessageReader();
+  LiscoMessageReader(const LiscoMessageReader&) = delete;
+  LiscoMessageReader& operator=(const LiscoMessageReader&) = delete;
+
   /** \brief Checks the message and arranges its points in cells.
    * \param[in] message must stay as it is while the reader is used
    * \param[in] fields of the points that are to be made
+   * \param[out] cells the points of the cells, row by row; UNAVAILABLE in empty ones
    * \return false, after a PCL_ERROR, if it cannot be read
    */
-  bool open(const PCLPointCloud2& message, const std::vector<PCLPointField>& fields, const char* caller);
-
-  /** \brief The points of the cells, row by row; UNAVAILABLE in empty ones. */
-  Indices& cells() { return (cells_); }
-  std::size_t width() const { return (width_); }
-  std::size_t height() const { return (height_); }
+  bool open(const PCLPointCloud2& message, const std::vector<PCLPointField>& fields, const char* caller,
+            Indices& cells);
+  /** \brief Columns and rows of the cells. */
+  std::uint32_t width() const;
+  std::uint32_t height() const;
 
   /** \brief Copies a point's fields; others stay as they are.
    * \param[in] index of the point in the message
@@ -102,29 +106,8 @@ class LISCO_EXPORT LiscoMessageReader {
   void copyPoint(index_t index, std::uint8_t* point) const;
 
  private:
-  /** \brief From a field of the message to one of the point. */
-  struct Copy {
-    PCLPointField from, to;
-    bool is_same_type;
-  };
-
-  // These throw std::invalid_argument if the message is not valid.
-  void checkLayout();
-  void selectFields(const std::vector<PCLPointField>& fields);
-  void arrange();
-  std::optional<PCLPointField> findField(const std::string& name) const;
-  std::optional<PCLPointField> findNumber(const std::string& name) const;
-
-  bool arrangeByRings(const PCLPointField& ring, const PCLPointField* time);
-  bool rowsAreFirings(const PCLPointField& ring) const;
-  const std::uint8_t* pointAt(std::size_t index) const;
-
-  const PCLPointCloud2* message_ = nullptr;
-  std::size_t points_ = 0;
-  PCLPointField x_, y_, z_;
-  std::vector<Copy> copies_;
-  Indices cells_;
-  std::size_t width_ = 0, height_ = 0;
+  class LISCO_HIDDEN State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace detail
@@ -136,15 +119,14 @@ bool organizeLiscoCloud(const PCLPointCloud2& message, PointCloud<PointT>& cloud
   detail::LiscoMessageReader reader;
   cloud.clear();
   point_of_cell.clear();
-  if (!reader.open(message, getFields<PointT>(), "pcl::organizeLiscoCloud")) return (false);
-  point_of_cell.swap(reader.cells());
+  if (!reader.open(message, getFields<PointT>(), "pcl::organizeLiscoCloud", point_of_cell)) return (false);
 
   PointT missing{};
   missing.x = missing.y = missing.z = std::numeric_limits<float>::quiet_NaN();
   cloud.header = message.header;
   cloud.points.assign(point_of_cell.size(), missing);
-  cloud.width = static_cast<std::uint32_t>(reader.width());
-  cloud.height = static_cast<std::uint32_t>(reader.height());
+  cloud.width = reader.width();
+  cloud.height = reader.height();
   cloud.is_dense = message.is_dense != 0;
   for (std::size_t cell = 0; cell < point_of_cell.size(); ++cell) {
     if (point_of_cell[cell] == UNAVAILABLE) {
