@@ -34,10 +34,8 @@ class LISCO_EXPORT ColumnClusterer {
  public:
   ColumnClusterer();
   ~ColumnClusterer();
-  /// A copy goes on from the same column.
-  ColumnClusterer(const ColumnClusterer& other);
-  /// The same.
-  ColumnClusterer& operator=(const ColumnClusterer& other);
+  ColumnClusterer(const ColumnClusterer& other);             ///< a copy goes on from the same column
+  ColumnClusterer& operator=(const ColumnClusterer& other);  ///< the same
 
   /// Starts a new rotation and forgets the last one. After an exception other than std::logic_error and
   /// std::invalid_argument (refused memory, a throwing callable), every other call either throws std::logic_error or

@@ -47,10 +47,8 @@ class LISCO_EXPORT EndlessClusterer {
 
   EndlessClusterer();
   ~EndlessClusterer();
-  /// A copy goes on from the same column.
-  EndlessClusterer(const EndlessClusterer& other);
-  /// The same.
-  EndlessClusterer& operator=(const EndlessClusterer& other);
+  EndlessClusterer(const EndlessClusterer& other);             ///< a copy goes on from the same column
+  EndlessClusterer& operator=(const EndlessClusterer& other);  ///< the same
 
   /// Starts a new stream; of the last one, nothing more is delivered. After an exception other than std::logic_error
   /// and std::invalid_argument (refused memory, a throwing callback), every other call either throws std::logic_error

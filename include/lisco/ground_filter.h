@@ -45,10 +45,8 @@ class LISCO_EXPORT GroundFilter {
  public:
   GroundFilter();
   ~GroundFilter();
-  /// A copy goes on from the same column.
-  GroundFilter(const GroundFilter& other);
-  /// The same.
-  GroundFilter& operator=(const GroundFilter& other);
+  GroundFilter(const GroundFilter& other);             ///< a copy goes on from the same column
+  GroundFilter& operator=(const GroundFilter& other);  ///< the same
 
   /// Further columns that may have to arrive before a column's decisions are final.
   static constexpr std::size_t kMaxDelay = 8;

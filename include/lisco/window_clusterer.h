@@ -39,10 +39,8 @@ class LISCO_EXPORT WindowClusterer {
  public:
   WindowClusterer();
   ~WindowClusterer();
-  /// A copy goes on from the same column.
-  WindowClusterer(const WindowClusterer& other);
-  /// The same.
-  WindowClusterer& operator=(const WindowClusterer& other);
+  WindowClusterer(const WindowClusterer& other);             ///< a copy goes on from the same column
+  WindowClusterer& operator=(const WindowClusterer& other);  ///< the same
 
   /// Starts a new stream and forgets the last one. After an exception other than std::logic_error and
   /// std::invalid_argument, every other call either throws std::logic_error or does nothing.
@@ -64,9 +62,7 @@ class LISCO_EXPORT WindowClusterer {
   /// \param subcluster 0..subclusterCount()-1
   std::uint32_t sizeOf(std::uint32_t subcluster) const;
 
-  /// Calls visit(source_indices, count, subcluster) for all returns of the last window, in groups of the same
-  /// subcluster, of one laser and of consecutive columns: laser by laser, and the returns of each in the order of their
-  /// columns. Valid until the next window ends.
+  /// Visits all returns of the last window as ColumnClusterer::forEachRun does, until the next window ends.
   template <typename Visit>
   void forEachRun(Visit&& visit) {
     visitRuns(RunVisitor(visit));
