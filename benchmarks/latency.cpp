@@ -18,7 +18,6 @@
 
 #include <omp.h>
 
-#include <pcl/segmentation/extract_clusters.h>  // comparePointClusters
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 #include <pcl/segmentation/lisco_cluster_writer.h>
 
@@ -177,7 +176,7 @@ Clusters collect(Clusterer& clusterer, const Problem& problem, IndexOf&& index_o
         subcluster, [&](std::uint32_t one) { return clusterer.sizeOf(one); }, count,
         [&](std::size_t i) { return index_of(cells[i]); });
   });
-  std::sort(clusters.rbegin(), clusters.rend(), pcl::comparePointClusters);
+  pcl::detail::sortLiscoClusters(clusters);
   return clusters;
 }
 

@@ -19,7 +19,6 @@
 
 #include <omp.h>
 
-#include <pcl/segmentation/extract_clusters.h>  // comparePointClusters
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 #include <pcl/segmentation/lisco_cluster_writer.h>
 
@@ -71,7 +70,7 @@ class StagedExtraction {
     clusterer_.update();
     finish(kUpdate);
     collect(problem, clusters);
-    std::sort(clusters.rbegin(), clusters.rend(), pcl::comparePointClusters);
+    pcl::detail::sortLiscoClusters(clusters);
     finish(kOutput);
   }
 

@@ -17,7 +17,7 @@
 #include <pcl/console/print.h>
 #include <pcl/io/lisco_point_cloud2.h>
 #include <pcl/point_types.h>
-#include <pcl/segmentation/extract_clusters.h>  // comparePointClusters
+#include <pcl/segmentation/lisco_cluster_writer.h>
 
 #include "lisco/return.h"
 
@@ -423,6 +423,6 @@ bool pcl::mapLiscoClusters(const Indices& point_of_cell, std::vector<PointIndice
   // The order of extract (): clusters by their first points, then PCL's own sort.
   std::sort(clusters.begin(), clusters.end(),
             [](const PointIndices& a, const PointIndices& b) { return (a.indices < b.indices); });
-  std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);
+  detail::sortLiscoClusters(clusters);
   return (true);
 }

@@ -4,15 +4,24 @@
 
 #include "lisco/export.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
 #include <vector>
 
 #include <pcl/PointIndices.h>
+#include <pcl/segmentation/extract_clusters.h>  // comparePointClusters
 #include <pcl/segmentation/lisco_pcl_version.h>
 
 namespace pcl::detail {
+
+/** \brief Sorts clusters by size, the largest first, as EuclideanClusterExtraction::extract () does: by an unstable
+ * sort, so that only the same call on the same sequence gives PCL's order among clusters of one size.
+ */
+inline void sortLiscoClusters(std::vector<PointIndices>& clusters) {
+  std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);
+}
 
 /** \brief Writes subclusters of accepted sizes as PCL's clusters, in the order of their first place (). Keeps its
  * memory.

@@ -8,6 +8,7 @@
 #include <cstddef>
 
 #include <pcl/segmentation/lisco_cluster_extraction.h>
+#include <pcl/segmentation/lisco_cluster_writer.h>
 
 template <typename PointT>
 std::size_t pcl::LiscoClusterExtraction<PointT>::appendClusters(std::vector<PointIndices>& clusters) {
@@ -29,8 +30,7 @@ std::size_t pcl::LiscoClusterExtraction<PointT>::appendClusters(std::vector<Poin
 template <typename PointT>
 void pcl::LiscoClusterExtraction<PointT>::extract(std::vector<PointIndices>& clusters) {
   appendClusters(clusters);
-  // Not a stable sort: only PCL's own call on PCL's own sequence gives PCL's order among clusters of one size.
-  std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);
+  detail::sortLiscoClusters(clusters);
 }
 
 template <typename PointT>
@@ -45,7 +45,7 @@ void pcl::LiscoClusterExtraction<PointT>::extractWithLabels(std::vector<PointInd
   std::vector<Origin> origins;
   for (const auto& cluster : clusters) origins.push_back({cluster.indices.size(), origins.size()});
   std::sort(origins.rbegin(), origins.rend(), [](const Origin& a, const Origin& b) { return (a.size < b.size); });
-  std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);
+  detail::sortLiscoClusters(clusters);
 
   for (std::size_t number = 0; number < clusters.size(); ++number)
     if (origins[number].place >= first)

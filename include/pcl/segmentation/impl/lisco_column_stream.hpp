@@ -12,7 +12,6 @@
 
 #include <pcl/PointIndices.h>
 #include <pcl/console/print.h>
-#include <pcl/segmentation/extract_clusters.h>       // comparePointClusters
 #include <pcl/segmentation/lisco_cloud_clusterer.h>  // fitsIndexType
 #include <pcl/segmentation/lisco_cluster_writer.h>
 #include <pcl/segmentation/lisco_column_stream.h>
@@ -213,8 +212,7 @@ class LiscoReceivedColumns {
           subcluster, [&](std::uint32_t one) { return clusterer.sizeOf(one); }, count,
           [first](std::size_t i) { return static_cast<index_t>(first + static_cast<index_t>(i)); });
     });
-    // Not a stable sort: only PCL's own call on PCL's own sequence gives PCL's order among clusters of one size.
-    std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);
+    sortLiscoClusters(clusters);
   }
 
   std::size_t maxRows() const { return (max_rows_); }  ///< of any column since the beginning
