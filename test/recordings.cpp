@@ -15,7 +15,7 @@ namespace lisco_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr std::size_t kLeastColumns = 256;
+constexpr std::size_t kMinColumns = 256;
 
 enum class Layout { kOrganized, kFirings, kRings, kShuffled };
 
@@ -140,7 +140,7 @@ Recording randomRecording(Random& random) {
   Recording recording;
   Simulation simulation(random);
   recording.scan = arranged(random, simulation, simulation.fire(), random.oneOf(kLayouts));
-  if (recording.scan.columns < kLeastColumns) recording.scan = widened(random, recording.scan, kLeastColumns);
+  if (recording.scan.columns < kMinColumns) recording.scan = widened(random, recording.scan, kMinColumns);
   recording.tolerance =
       random.chance(0.3) ? criticalTolerance(random, recording.scan) : static_cast<float>(random.magnitude(0.03, 2));
   recording.hints = simulation.hints();

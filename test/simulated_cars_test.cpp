@@ -30,10 +30,10 @@ struct CarView {
 
 /// The largest coordinate of a car, facing x on a floor of height 0. \param axis 0: x, 1: y
 double reachOf(const std::vector<Solid>& solids, int axis) {
-  constexpr double kMost = 3;
+  constexpr double kMaxReach = 3;
   constexpr double kStep = 0.002;
-  for (double reach = kMost; reach > 0; reach -= kStep)
-    for (double other = -kMost; other < kMost; other += 0.1)
+  for (double reach = kMaxReach; reach > 0; reach -= kStep)
+    for (double other = -kMaxReach; other < kMaxReach; other += 0.1)
       for (const double z : {0.3, 0.5, 0.61})
         for (const Solid& solid : solids)
           if (solid.contains(axis == 0 ? Vector{reach, other, z} : Vector{other, reach, z})) return reach;

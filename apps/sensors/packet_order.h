@@ -9,7 +9,7 @@
 
 namespace lisco_apps {
 
-/// Detects missing and late packets by the sensor's clock, or by their numbers. A packet is late if a later one has come
+/// Detects missing and late packets by the sensor's clock or by their numbers. A packet is late if a later one has come
 /// before it; it is to be dropped, as the columns after it have been clustered.
 class PacketOrder {
  public:

@@ -19,9 +19,9 @@ std::size_t columnsPerView(const World& world, const Sensor& sensor, const Motio
   for (const Body& body : world.bodies) fastest = std::max(fastest, length(body.velocity));
   const double per_column =
       (fastest + std::fabs(motion.speed)) * motion.turn_seconds / static_cast<double>(sensor.steps);
-  constexpr double kMost = 1e9;  // at rest, one view serves for all
-  return per_column * kMost < kViewLength
-             ? static_cast<std::size_t>(kMost)
+  constexpr double kMaxColumns = 1e9;  // at rest, one view serves for all
+  return per_column * kMaxColumns < kViewLength
+             ? static_cast<std::size_t>(kMaxColumns)
              : std::max<std::size_t>(1, static_cast<std::size_t>(kViewLength / per_column));
 }
 

@@ -64,9 +64,9 @@ class History {
   /// clusterer has surely read.
   void forget() {
     constexpr double kHeldTurns = 1.5;
-    if (columns_.size() <= kMostUnread) return;
-    const double read = columns_[columns_.size() - 1 - kMostUnread].position;
-    while (columns_.size() > kMostUnread && columns_.front().position < read - kHeldTurns) {
+    if (columns_.size() <= kMaxUnread) return;
+    const double read = columns_[columns_.size() - 1 - kMaxUnread].position;
+    while (columns_.size() > kMaxUnread && columns_.front().position < read - kHeldTurns) {
       spare_.push_back(std::move(columns_.front()));
       columns_.pop_front();
     }
@@ -91,7 +91,7 @@ class History {
   std::size_t size() const { return columns_.size(); }
 
  private:
-  static constexpr std::size_t kMostUnread = 64;  ///< columns of a block
+  static constexpr std::size_t kMaxUnread = 64;  ///< columns of a block
 
   std::deque<Column> columns_;
   std::vector<Column> spare_;

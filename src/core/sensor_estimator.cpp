@@ -117,16 +117,16 @@ SensorHints SensorEstimator::estimate(const std::array<float, 3>& declared_origi
   if (std::fabs(step) > kMinStep && static_cast<double>(median(deviations, 0.0F)) < kMaxDeviation * std::fabs(step))
     hints.steps_per_turn = static_cast<int>(std::lround(2.0 * kPi / std::fabs(step)));
   hints.clockwise = step < 0;
-  constexpr double kMostPairs = 0.75;  // part of the pairs that jitter and drift less
+  constexpr double kSteadyShare = 0.75;  // part of the pairs that jitter and drift less
   if (hints.steps_per_turn > 0)
     hints.drift =
-        static_cast<float>(quantile(deviations, kMostPairs) / std::fabs(step)) * static_cast<float>(kDriftColumns);
+        static_cast<float>(quantile(deviations, kSteadyShare) / std::fabs(step)) * static_cast<float>(kDriftColumns);
   Sample<double> jitters;
   for (const Pair& pair : along_row_)
     jitters.push_back(std::fabs(
         std::remainder(directionOf(pair.b, origin).azimuth - directionOf(pair.a, origin).azimuth, 2.0 * kPi) - step));
   if (!jitters.empty() && hints.steps_per_turn > 0)
-    hints.jitter = static_cast<float>(quantile(jitters, kMostPairs) / std::fabs(step));
+    hints.jitter = static_cast<float>(quantile(jitters, kSteadyShare) / std::fabs(step));
 
   constexpr double kFew = 0.2;  // share of the returns beyond SensorHints::far_distance
   Sample<double> distances;
