@@ -157,12 +157,10 @@ class Capture {
   }
 
  private:
-  static constexpr std::size_t kMaxColumns = 36000;  ///< bounds a rotation of a sensor at rest
-
   void add(const lisco_apps::Column& column, const lisco_apps::Packet& packet) {
     constexpr double kSecondsPerMicrosecond = 1e-6;
     const bool starts = cutter_.startsRotation(column.azimuth, column.after_break);
-    if (starts || turn_.azimuths.size() == kMaxColumns) {
+    if (starts || turn_.azimuths.size() == lisco_apps::kMaxColumns) {
       if (!turn_.azimuths.empty()) ended_.push_back(std::exchange(turn_, {}));
       turn_.lasers = column.cells.size();
       turn_.time = static_cast<double>(packet.time_us) * kSecondsPerMicrosecond;
