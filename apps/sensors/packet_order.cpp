@@ -29,10 +29,7 @@ PacketOrder::Place PacketOrder::place(std::uint32_t timestamp_us, double period_
   if (is_late) {
     late_in_a_row_ = late_in_a_row_ > 0 && between(newest_late_, timestamp_us) >= 0 ? late_in_a_row_ + 1 : 1;
     newest_late_ = timestamp_us;
-    if (late_in_a_row_ <= kMaxLate) {
-      ++late_;
-      return Place::kLate;
-    }
+    if (late_in_a_row_ <= kMaxLate) return Place::kLate;
     clock_stands_ = gap == 0;
   }
   const bool is_new_clock = is_late || std::abs(gap) > kMaxGapUs;
@@ -47,10 +44,7 @@ PacketOrder::Place PacketOrder::place(std::uint32_t timestamp_us, double period_
 PacketOrder::Place PacketOrder::placeByNumber(std::uint32_t number, std::uint32_t timestamp_us) {
   const bool is_first = !last_number_;
   const std::int32_t ahead = is_first ? 1 : static_cast<std::int32_t>(number - *last_number_);
-  if (ahead <= 0 && ++late_in_a_row_ <= kMaxLate) {
-    ++late_;
-    return Place::kLate;
-  }
+  if (ahead <= 0 && ++late_in_a_row_ <= kMaxLate) return Place::kLate;
   const std::int64_t gap = is_first ? 0 : (between(newest_, timestamp_us) + kHourUs) % kHourUs;
   last_number_ = number;
   return advance(timestamp_us, ahead <= 0 || ahead > kMaxNumbersAhead || gap > kMaxGapUs, gap, ahead - 1);

@@ -34,7 +34,6 @@ class PacketOrder {
   double gap() const { return gap_us_; }
 
   std::uint64_t missing() const { return missing_; }  ///< packets that never came, or late
-  std::uint64_t late() const { return late_; }        ///< packets that came late, or twice
   std::uint64_t clockJumps() const { return clock_jumps_; }
   /// Median time between the first packets, microseconds; 0 before the 17th. Far from the sensor's period, the packets
   /// are another sensor's.
@@ -52,7 +51,7 @@ class PacketOrder {
   double gap_us_ = 0, usual_gap_us_ = 0;
   std::array<double, 16> first_gaps_{};  ///< unordered once all are known
   std::size_t gaps_ = 0;
-  std::uint64_t missing_ = 0, late_ = 0, clock_jumps_ = 0;
+  std::uint64_t missing_ = 0, clock_jumps_ = 0;
 };
 
 }  // namespace lisco_apps
