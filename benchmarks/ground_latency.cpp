@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "column_periods.h"
+#include "core/sorted_element.h"
 #include "io/options.h"
 #include "io/scan_file.h"
-#include "io/sorted_element.h"
 #include "io/text.h"
 #include "lisco/column_clusterer.h"
 #include "lisco/ground_filter.h"
@@ -51,7 +51,7 @@ class LeastTimes {
   /// Time that a share of the columns does not exceed, microseconds.
   double quantile(double share) const {
     std::vector<double> sorted = times_;
-    return sortedElement(sorted, static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1)));
+    return lisco::sortedElement(sorted, static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1)));
   }
 
  private:

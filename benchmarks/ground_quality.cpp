@@ -9,8 +9,8 @@
 #include <map>
 #include <utility>
 
+#include "core/sorted_element.h"
 #include "io/point_geometry.h"
-#include "io/sorted_element.h"
 #include "lisco/label_clusters.h"
 
 namespace lisco_benchmarks {
@@ -51,7 +51,7 @@ bool isReflection(const std::map<Square, Low>& lows, const Square& square, const
       if ((dx != 0 || dy != 0) && other != lows.end()) around.push_back(other->second.height);
     }
   if (around.empty()) return low.returns < kMinReturns;
-  return low.height < lisco_apps::sortedElement(around, around.size() / 2) - kBelow;
+  return low.height < lisco::sortedElement(around, around.size() / 2) - kBelow;
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ std::vector<float> localGround(const Cloud& cloud) {
     if (lisco_apps::isReturn(point)) heights[squareOf(point)].push_back(point.z);
   std::map<Square, Low> lows;
   for (auto& [square, of_square] : heights)
-    lows[square] = {lisco_apps::sortedElement(of_square, of_square.size() / 20), of_square.size()};
+    lows[square] = {lisco::sortedElement(of_square, of_square.size() / 20), of_square.size()};
   std::map<Square, float> kept;
   for (const auto& [square, low] : lows)
     if (!isReflection(lows, square, low)) kept[square] = low.height;

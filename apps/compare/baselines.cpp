@@ -15,8 +15,8 @@
 
 #include "compare/components.h"
 #include "compare/kd_tree_baselines.h"
+#include "core/sorted_element.h"
 #include "io/point_geometry.h"
-#include "io/sorted_element.h"
 #include "lisco/return.h"
 #include "reference/voxel_grid.h"
 
@@ -130,7 +130,7 @@ lisco_reference::NominalSensor nominalSensor(const ComparedCloud& cloud) {
       if (isReturn(p)) elevations.push_back(elevationOf(p));
     }
     if (elevations.empty()) continue;
-    const double middle = sortedElement(elevations, elevations.size() / 2);
+    const double middle = lisco::sortedElement(elevations, elevations.size() / 2);
     if (std::isfinite(before)) min_step = std::min(min_step, std::fabs(middle - before));
     before = middle;
   }

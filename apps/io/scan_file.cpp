@@ -17,9 +17,9 @@
 #include <pcl/common/io.h>
 #include <pcl/io/lisco_point_cloud2.h>
 
+#include "core/sorted_element.h"
 #include "io/formats.h"
 #include "io/point_geometry.h"
-#include "io/sorted_element.h"
 
 namespace lisco_apps {
 namespace {
@@ -130,7 +130,7 @@ void arrangeByAzimuth(const std::vector<std::uint16_t>& rings, Scan& scan) {
     if (rings[i] == rings[i - 1] && isReturn(cloud[i]) && isReturn(cloud[i - 1]))
       steps.push_back(std::remainder(azimuthOf(cloud[i]) - azimuthOf(cloud[i - 1]), 2 * kPi));
   if (steps.empty()) return;
-  const double step = sortedElement(steps, steps.size() / 2);
+  const double step = lisco::sortedElement(steps, steps.size() / 2);
   constexpr double kMinStep = 2 * kPi / 36000;
   if (!(std::fabs(step) >= kMinStep)) return;
   const double per_radian = std::round(2 * kPi / std::fabs(step)) / (2 * kPi);

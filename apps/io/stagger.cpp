@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "core/sorted_element.h"
 #include "io/point_geometry.h"
-#include "io/sorted_element.h"
 
 namespace lisco_apps {
 namespace {
@@ -20,7 +20,7 @@ double stepOf(const Cloud& cloud) {
   for (std::size_t i = 0; i + 1 < cloud.size(); ++i)
     if ((i + 1) % cloud.width != 0 && isReturn(cloud[i]) && isReturn(cloud[i + 1]))
       steps.push_back(std::remainder(azimuthOf(cloud[i + 1]) - azimuthOf(cloud[i]), 2 * kPi));
-  return steps.empty() ? 0 : sortedElement(steps, steps.size() / 2);
+  return steps.empty() ? 0 : lisco::sortedElement(steps, steps.size() / 2);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "io/sorted_element.h"
+#include "core/sorted_element.h"
 
 namespace lisco_apps {
 namespace {
@@ -35,7 +35,7 @@ PacketOrder::Place PacketOrder::place(std::uint32_t timestamp_us, double period_
   const bool is_new_clock = is_late || std::abs(gap) > kMaxGapUs;
   if (!is_new_clock && gap > 0 && gaps_ < first_gaps_.size()) {
     first_gaps_[gaps_++] = static_cast<double>(gap);
-    if (gaps_ == first_gaps_.size()) usual_gap_us_ = sortedElement(first_gaps_, first_gaps_.size() / 2);
+    if (gaps_ == first_gaps_.size()) usual_gap_us_ = lisco::sortedElement(first_gaps_, first_gaps_.size() / 2);
   }
   const std::int64_t periods = std::llround(static_cast<double>(gap) / period_us);
   return advance(timestamp_us, is_new_clock, gap, std::max<std::int64_t>(periods, 1) - 1);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/sorted_element.h"
+#include "core/sorted_element.h"
 #include "lisco/sensor_hints.h"
 #include "sensors/laser.h"
 
@@ -21,7 +21,7 @@ lisco::SensorHints hintsFor(const Decoder& decoder) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < elevations.size(); ++i) steps.push_back(elevations[i - 1] - elevations[i]);
   if (steps.empty()) return hints;
-  hints.elevation_step = static_cast<float>(sortedElement(steps, steps.size() / 2) * kRadiansPerDegree);
+  hints.elevation_step = static_cast<float>(lisco::sortedElement(steps, steps.size() / 2) * kRadiansPerDegree);
   return hints;
 }
 

@@ -10,7 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "io/sorted_element.h"
+#include "core/sorted_element.h"
 #include "lisco/return.h"
 
 namespace lisco_apps {
@@ -36,7 +36,7 @@ Shown shownOf(const std::vector<std::array<float, 3>>& points) {
   std::vector<float> values(returns.size());
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::transform(returns.begin(), returns.end(), values.begin(), [&](std::uint32_t i) { return points[i][axis]; });
-    shown.origin[axis] = static_cast<double>(sortedElement(values, values.size() / 2));
+    shown.origin[axis] = static_cast<double>(lisco::sortedElement(values, values.size() / 2));
   }
   for (const std::uint32_t i : returns) {
     Steps steps{};
@@ -124,7 +124,7 @@ std::pair<double, double> intensityRange(const std::vector<float>& intensity, co
   if (values.empty() || are_bytes) return {0, 255};
   const auto at = [&](double part) {
     const auto place = static_cast<std::size_t>(part * static_cast<double>(values.size() - 1));
-    return static_cast<double>(sortedElement(values, place));
+    return static_cast<double>(lisco::sortedElement(values, place));
   };
   const double low = at(0.005);
   return {low, std::max(at(0.995), low + 1e-6 * std::max(1.0, std::abs(low)))};

@@ -2,9 +2,10 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
+
+#include "core/sorted_element.h"
 
 namespace lisco {
 
@@ -30,13 +31,6 @@ class Sample {
   std::array<T, kCapacity> elements_;
   std::size_t size_ = 0;
 };
-
-/// The element at a place (below the sample's size) of its ascending order, which is partly established.
-template <typename T>
-T sortedElement(Sample<T>& sample, std::size_t place) {
-  std::nth_element(sample.begin(), sample.begin() + place, sample.end());
-  return sample[place];
-}
 
 /// The element at a part (0 to 1) of the sample's ascending order. The sample is not empty.
 template <typename T>

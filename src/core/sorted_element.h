@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace lisco_apps {
+namespace lisco {
 
 /// The element at a place of the values' ascending order, which is partly established. At size / 2 it is the median, of
 /// an even number the upper one.
@@ -17,4 +17,4 @@ auto sortedElement(Values& values, std::size_t place) {
   return *element;
 }
 
-}  // namespace lisco_apps
+}  // namespace lisco
