@@ -179,20 +179,19 @@ HWY_INLINE Mask lanesOf(std::uint8_t bits, std::size_t k) {
 /// What is found of a part of a row without ground.
 HWY_INLINE Found passObjects(const FollowedRow& row, std::size_t k, const Column& column, Floats steepest) {
   const auto over = hn::AndNot(column.first, hn::Gt(column.above, set(kObstacle)));
-  auto object = over;
-  if (!hn::AllTrue(kLanes, hn::Or(over, hn::Not(column.valid))))
-    object = rises(column, lookUp(row, k, column.rho, column.height, steepest));
-  row.passed->obstacles |= bitsOf(hn::And(object, column.valid), k);
+  std::uint8_t& obstacles = row.passed->obstacles;
+  obstacles |= bitsOf(hn::And(over, column.valid), k);
+  if ((bitsOf(column.valid, k) & ~obstacles) != 0)
+    obstacles |= bitsOf(hn::And(rises(column, lookUp(row, k, column.rho, column.height, steepest)), column.valid), k);
   lowerLimit(row, k, column, hn::Lt(column.rho, hn::Zero(kLanes)));
   const auto higher = hn::And(column.valid, hn::Gt(column.above, set(kHigher)));
   return {0, 0, 0, 0, bitsOf(higher, k), false};
 }
 
 /// What is found of a part of a row, all of whose returns are on the ground.
-HWY_INLINE Found passGround(const FollowedRow& row, std::size_t k, const Column& column, Floats steepest) {
-  const auto reached = hn::And(column.valid, hn::Ge(column.way, set(kAdvance)));
+HWY_INLINE Found passGround(const FollowedRow& row, std::size_t k, const Column& column, Mask& reached) {
+  reached = hn::And(column.valid, hn::Ge(column.way, set(kAdvance)));
   lowerLimit(row, k, column, column.valid);
-  advance(row, k, reached, column.rho, column.height, steepest);
   const std::uint8_t ground = bitsOf(column.valid, k), reached_bits = bitsOf(reached, k);
   row.passed->obstacles = static_cast<std::uint8_t>(row.passed->obstacles & ~reached_bits);
   return {ground, reached_bits, ground, ground, 0, false};
@@ -246,7 +245,7 @@ HWY_INLINE Mask foundByColumn(const Column& column, const Mapped& map, const Abo
 
 /// What is found of any part of a row.
 HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const Column& column, const Mapped& map,
-                            Floats steepest) {
+                            Floats steepest, Mask& reached) {
   const Floats rho = column.rho, height = column.height, distance = column.distance;
   const Mask valid = column.valid;
   const Above above = lookUp(row, k, rho, height, steepest);
@@ -270,8 +269,7 @@ HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const Column&
   const auto unsure = hn::AndNot(hn::And(sure, agrees), found);
   if (!hn::AllFalse(kLanes, unsure)) found = hn::AndNot(hn::And(unsure, isRough(row, k, rho, height)), found);
 
-  const auto reached = hn::And(found, hn::Ge(column.way, set(kAdvance)));
-  advance(row, k, reached, rho, height, steepest);
+  reached = hn::And(found, hn::Ge(column.way, set(kAdvance)));
   const auto object = hn::And(hn::AndNot(found, rises(column, above)), valid);
   const auto below = hn::And(hn::And(hn::Lt(column.above, set(-kNearBelow)), hn::Gt(column.above, set(-kReflection))),
                              hn::And(hn::AndNot(hn::Or(found, object), valid),
@@ -302,6 +300,7 @@ HWY_INLINE Found followRow(const FollowedRow& row, Floats steepest) {
   passed.obstacles = before.obstacles;
   Column columns[kParts];
   Mapped maps[kParts];
+  Mask reached[kParts];  // unless all are objects
   bool are_objects = true;
   for (std::size_t i = 0; i < kParts; ++i) {
     const Column column = columns[i] = columnOf(row, i * kStep, steepest);
@@ -321,13 +320,17 @@ HWY_INLINE Found followRow(const FollowedRow& row, Floats steepest) {
                    hn::AllFalse(kLanes, hn::AndNot(hn::AndNot(too_high, areWhereExpected(column, map)), column.valid));
     }
   }
-  if (!are_objects) passed.followed = row.number;
   for (std::size_t i = 0; i < kParts; ++i) {
     const std::size_t k = i * kStep;
     add(are_objects  ? passObjects(row, k, columns[i], steepest)
-        : are_ground ? passGround(row, k, columns[i], steepest)
-                     : followPart(row, k, columns[i], maps[i], steepest),
+        : are_ground ? passGround(row, k, columns[i], reached[i])
+                     : followPart(row, k, columns[i], maps[i], steepest, reached[i]),
         found);
+  }
+  if (found.reached != 0) {
+    passed.followed = row.number;
+    for (std::size_t i = 0; i < kParts; ++i)
+      advance(row, i * kStep, reached[i], columns[i].rho, columns[i].height, steepest);
   }
   return found;
 }
