@@ -71,10 +71,8 @@ Filtered filterCloud(const Cloud& cloud, lisco::GroundParameters parameters) {
     }
     const double begin = threadSeconds();
     const std::array<float, 3> origin{cloud.sensor_origin_[0], cloud.sensor_origin_[1], cloud.sensor_origin_[2]};
-    auto estimated = lisco::estimateGround(cloud.width, cloud.height, origin, lisco::CellSource(cells));
-    if (!std::isnan(parameters.sensor_height)) estimated.sensor_height = parameters.sensor_height;
-    if (!std::isnan(estimated.sensor_height))  // otherwise there is no ground, as in labelGround
-      filter.filter(estimated, cloud.width, cloud.height, cells, filtered.ground.data());
+    parameters.sensor = lisco::estimateSensor(cloud.width, cloud.height, origin, lisco::CellSource(cells));
+    filter.filterScan(parameters, cloud.width, cloud.height, cells, filtered.ground.data());
     filtered.ns_per_cell =
         std::min(filtered.ns_per_cell, 1e9 * (threadSeconds() - begin) / static_cast<double>(cloud.size()));
   }

@@ -276,6 +276,19 @@ TEST(GroundFilter, EstimatesTheSensorsHeight) {
   EXPECT_NEAR(estimated.slope[1], 0.0F, 0.02F);
 }
 
+TEST(GroundFilter, FiltersAScanByItsOwnEstimates) {
+  const Scan scan = planeWithWall(64, 1800, 30.0);
+  const auto cells = [&](std::size_t laser, std::size_t column) { return scan.cells[laser * scan.columns + column]; };
+  std::vector<std::uint8_t> ground(scan.cells.size(), 7);
+  const auto estimated = lisco::GroundFilter().filterScan({}, scan.columns, scan.lasers, cells, ground.data());
+  EXPECT_NEAR(estimated.sensor_height, 1.8F, 0.05F);
+  EXPECT_EQ(ground, filterAll(scan, estimated));
+  lisco::GroundParameters given;
+  given.sensor_height = 1.7F;
+  const auto kept = lisco::GroundFilter().filterScan(given, scan.columns, scan.lasers, cells, ground.data());
+  EXPECT_EQ(kept.sensor_height, 1.7F);
+}
+
 TEST(GroundFilter, RejectsBadCallsAndParameters) {
   const auto ignore = [](std::size_t, const std::uint8_t*, std::size_t) {};
   const std::vector<lisco::Return> cells(5, lisco::kNoReturn);
@@ -292,6 +305,9 @@ TEST(GroundFilter, RejectsBadCallsAndParameters) {
   parameters.max_slope = 20.0F;
   parameters.sensor_height = std::numeric_limits<float>::infinity();
   EXPECT_THROW(filter.begin(parameters, 4), std::invalid_argument);
+  const auto cell_at = [](std::size_t, std::size_t) { return lisco::kNoReturn; };
+  std::uint8_t ground = 7;
+  EXPECT_THROW(filter.filterScan(parameters, 1, 1, cell_at, &ground), std::invalid_argument);
 }
 
 TEST(LabelGround, SortsUnorganizedPoints) {

@@ -57,14 +57,15 @@ std::vector<std::uint8_t> groundBySlope(const Cloud& cloud, const Region& region
     lisco::labelGround(points.data(), points.size(), sizeof points[0], unorganized, ground.data());
     return ground;
   }
+  lisco::GroundFilter filter;
   lisco::GroundParameters parameters;
-  if (!is_rotation) {
-    parameters = lisco::estimateGround(columns, lasers, origin, lisco::CellSource(cell_at));
-    if (parameters.sensor.steps_per_turn == 0) return {};
-    // Where the whole scan shows no ground, that of a few columns is none.
-    if (std::isnan(parameters.sensor_height)) return ground;
+  if (is_rotation) {
+    filter.filter(parameters, columns, lasers, cell_at, ground.data());
+    return ground;
   }
-  lisco::GroundFilter().filter(parameters, columns, lasers, cell_at, ground.data());
+  parameters.sensor = lisco::estimateSensor(columns, lasers, origin, lisco::CellSource(cell_at));
+  if (parameters.sensor.steps_per_turn == 0) return {};
+  filter.filterScan(parameters, columns, lasers, cell_at, ground.data());
   return ground;
 }
 

@@ -86,6 +86,16 @@ class LISCO_EXPORT GroundFilter {
     filterAll(parameters, columns, lasers, CellSource(cells), ground);
   }
 
+  /// The same by what the whole scan shows: the plane around the sensor is estimated first, and where none is clearly
+  /// seen, nothing is ground.
+  /// \param parameters as estimateGroundPlane takes them: the sensor's, and its height if it is known
+  /// \return the parameters with the estimates; the height is NaN where nothing is ground
+  template <typename Cells>
+  GroundParameters filterScan(const GroundParameters& parameters, std::size_t columns, std::size_t lasers,
+                              Cells&& cells, std::uint8_t* ground) {
+    return estimateAndFilter(parameters, columns, lasers, CellSource(cells), ground);
+  }
+
  private:
   using Visitor = std::function<void(std::size_t column, const std::uint8_t* ground, std::size_t lasers)>;
 
@@ -93,6 +103,8 @@ class LISCO_EXPORT GroundFilter {
   void decideRest(const Visitor& visit);
   void filterAll(const GroundParameters& parameters, std::size_t columns, std::size_t lasers, const CellSource& cells,
                  std::uint8_t* ground);
+  GroundParameters estimateAndFilter(const GroundParameters& parameters, std::size_t columns, std::size_t lasers,
+                                     const CellSource& cells, std::uint8_t* ground);
 
   class LISCO_HIDDEN State;
   std::unique_ptr<State> state_;

@@ -252,4 +252,16 @@ void GroundFilter::filterAll(const GroundParameters& parameters, std::size_t col
   state_->addAll(columns, cells, ground);
 }
 
+GroundParameters GroundFilter::estimateAndFilter(const GroundParameters& parameters, std::size_t columns,
+                                                 std::size_t lasers, const CellSource& cells, std::uint8_t* ground) {
+  state_->begin(parameters, 0);  // rejects bad parameters
+  const GroundParameters estimated = estimateGroundPlane(columns, lasers, parameters, cells);
+  // Where the whole scan shows no ground, that of a few columns is none.
+  if (std::isnan(estimated.sensor_height))
+    std::fill_n(ground, columns * lasers, std::uint8_t{0});
+  else
+    filterAll(estimated, columns, lasers, cells, ground);
+  return estimated;
+}
+
 }  // namespace lisco

@@ -139,30 +139,19 @@ void labelGround(const void* points, std::size_t count, std::size_t stride, cons
     std::memcpy(xyz, bytes + point * stride, sizeof xyz);
     return Return{xyz[0], xyz[1], xyz[2], static_cast<std::uint32_t>(point)};
   };
-  // Also rejects parameters without points.
   GroundParameters filter_parameters;
   filter_parameters.sensor_height = parameters.sensor_height;
   filter_parameters.max_slope = parameters.max_slope;
   GroundFilter filter;
-  filter.begin(filter_parameters, 0);
+  filter.begin(filter_parameters, 0);  // rejects bad parameters, even without points
   if (count == 0) return;
-  const auto run = [&](std::size_t columns, std::size_t lasers, const SensorHints& sensor, const auto& cell_at,
-                       std::uint8_t* decisions) {
-    filter_parameters.sensor = sensor;
-    const GroundParameters estimated = estimateGroundPlane(columns, lasers, filter_parameters, CellSource(cell_at));
-    // Where the whole scan shows no ground, that of a few columns is none.
-    if (std::isnan(estimated.sensor_height))
-      std::fill_n(decisions, columns * lasers, std::uint8_t{0});
-    else
-      filter.filter(estimated, columns, lasers, cell_at, decisions);
-  };
 
   const std::size_t width = count / parameters.lasers;
   const auto cell_at = [=](std::size_t laser, std::size_t column) { return point_at(laser * width + column); };
-  SensorHints sensor;
+  SensorHints& sensor = filter_parameters.sensor;
   if (parameters.lasers > 1) sensor = estimateSensor(width, parameters.lasers, parameters.origin, CellSource(cell_at));
   if (sensor.steps_per_turn != 0) {
-    run(width, parameters.lasers, sensor, cell_at, ground);
+    filter.filterScan(filter_parameters, width, parameters.lasers, cell_at, ground);
     return;
   }
   std::fill_n(ground, count, std::uint8_t{0});
@@ -174,7 +163,7 @@ void labelGround(const void* points, std::size_t count, std::size_t stride, cons
   sensor = SensorHints();
   sensor.origin = parameters.origin;
   std::vector<std::uint8_t> decisions(sorted.rows() * sorted.columns());
-  run(sorted.columns(), sorted.rows(), sensor, sorted_cell_at, decisions.data());
+  filter.filterScan(filter_parameters, sorted.columns(), sorted.rows(), sorted_cell_at, decisions.data());
   for (std::size_t row = 0; row < sorted.rows(); ++row)
     for (std::size_t column = 0; column < sorted.columns(); ++column)
       if (const std::size_t point = sorted.pointAt(row, column); point != AzimuthColumns::kNone)
