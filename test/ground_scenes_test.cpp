@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -227,6 +228,48 @@ TEST(GroundScenes, FindsTheGroundOfStaggeredLasers) {
       staggered.cells[laser * scan.columns + column] =
           scan.cells[laser * scan.columns + (column + laser % 4 * 6) % scan.columns];
   EXPECT_GT(share(staggered, filterAll(staggered), all), 0.98);
+}
+
+/// 48 lasers, each of which is 1.8 degrees of azimuth further on than the one below, up to every eighth: these eight
+/// chains have few lasers that look steeply down.
+Scan chainsOf(const Distance& distance) {
+  constexpr std::size_t kChains = 8;
+  constexpr std::array<double, kChains> kLowest = {25.0, 19.6, 15.6, 13.6, 11.3, 9.8, 8.8, 8.0};
+  Scan scan{48, 1600, {}};
+  for (std::size_t laser = 0; laser < scan.lasers; ++laser)
+    for (std::size_t column = 0; column < scan.columns; ++column) {
+      const double below = laser < kChains ? kLowest[laser] : 7.5 - 0.35 * static_cast<double>(laser - kChains);
+      const double slope = -std::tan(below * M_PI / 180.0);
+      const double azimuth = 2.0 * M_PI * static_cast<double>(column + laser % kChains * 8) / 1600.0;
+      const double rho = distance(azimuth, slope);
+      scan.cells.push_back(rho < 0.0 ? lisco::kNoReturn
+                                     : lisco::Return{static_cast<float>(rho * std::cos(azimuth)),
+                                                     static_cast<float>(rho * std::sin(azimuth)),
+                                                     static_cast<float>(rho * slope), 0});
+    }
+  return scan;
+}
+
+TEST(GroundScenes, LeavesMostOfBoxesThatHideTheGroundFromChainsOfLasers) {
+  // Eight flat boxes, 0.45 m high, from 7 m to 11 m away: many chains of lasers see no ground in front of them.
+  const auto surface = [](double x, double y) {
+    const double away = std::hypot(x, y), turn = std::atan2(y, x) * 4.0 / M_PI;
+    return away > 7.0 && away < 11.0 && turn - std::floor(turn) < 0.5 ? 0.45 - kHeight : -kHeight;
+  };
+  const Scan scan = chainsOf([&](double azimuth, double slope) { return meetsSurface(azimuth, slope, surface); });
+  const std::vector<std::uint8_t> ground = filterAll(scan);
+  EXPECT_LT(share(scan, ground, [](const lisco::Return& cell) { return cell.z > -1.4F; }), 0.4);
+  EXPECT_GT(share(scan, ground, [](const lisco::Return& cell) { return cell.z < -1.79F; }), 0.99);
+}
+
+TEST(GroundScenes, BeginsAtTheGroundNearby) {
+  // Beyond a step down of 1.7 m, 7.5 m away, the ground rises by 8 %, as if from 4.1 m beneath the sensor.
+  const auto surface = [](double x, double y) {
+    const double away = std::hypot(x, y);
+    return away < 7.5 ? -kHeight : std::min(-kHeight, -4.1 + 0.08 * away);
+  };
+  const Scan scan = scanOfSurface(surface);
+  EXPECT_GT(share(scan, filterAll(scan), [](const lisco::Return& cell) { return cell.z > -1.81F; }), 0.98);
 }
 
 TEST(GroundScenes, FindsTheGroundWithoutSomeRowsColumnsAndReturns) {

@@ -78,4 +78,15 @@ TEST_F(GroundTruth, RefusesUnknownNamesInOneLine) {
   expectRefusal("stray", {"stray"});
 }
 
+TEST_F(GroundTruth, FindsFieldsWithTheHardestSensors) {
+  const Outcome outcome = run("--terrains field --sensors vlp16,vls128 --only-lisco");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* row : {"| field | vlp16 |", "| field | vls128 |"}) {
+    const std::vector<Scores> scores = scoresOf(outcome.out, row);
+    ASSERT_EQ(scores.size(), 1U) << outcome.out;
+    EXPECT_GE(scores[0].f1, 93) << outcome.out;
+    EXPECT_LE(scores[0].lost, 2) << outcome.out;
+  }
+}
+
 }  // namespace

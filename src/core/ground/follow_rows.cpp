@@ -23,19 +23,19 @@ namespace HWY_NAMESPACE {
 constexpr float kKnown = 1.5F;        // most slack of what may contradict
 constexpr float kWellKnown = 0.15F;   // most slack of what decides
 constexpr float kNearlyKnown = 0.5F;  // most slack of what decides where the ground seems to go on
-constexpr float kAtMap = 0.08F, kMostSlack = 0.03F, kLevelAtMap = 0.05F;
+constexpr float kAtMap = 0.09F, kMostSlack = 0.03F, kLevelAtMap = 0.05F;
 constexpr float kSure = 0.05F;         // slack and height, even where a surface rises
 constexpr float kFoot = 0.03F;         // height, even at the foot of a wall
-constexpr float kAboveMap = 0.25F;     // contradicts
+constexpr float kAboveMap = 0.15F;     // contradicts
 constexpr float kKnownHeight = 0.06F;  // even among returns of which most are higher
 
 // The ground of the same column.
-constexpr float kAtColumn = 0.07F, kAtColumnGrowth = 0.03F, kAtColumnMost = 0.15F;
+constexpr float kAtColumn = 0.16F, kAtColumnGrowth = 0.03F, kAtColumnMost = 0.15F;
 constexpr float kLevel = 0.15F, kLevelGrowth = 0.1F, kLevelMost = 0.8F, kSameSlope = 0.15F;
 constexpr float kFirst = 0.1F, kFirstGrowth = 0.04F, kFirstLevelGrowth = 0.12F, kFirstMost = 10.0F;
 constexpr float kFirstHighest = 0.2F, kFirstHighestGrowth = 0.3F;
-constexpr float kBend = 0.1F, kBendGrowth = 0.1F, kLineBend = 0.2F, kLineKnown = 0.3F;
-constexpr float kStepDown = 0.15F, kStepUp = 0.15F;
+constexpr float kBend = 0.13F, kBendGrowth = 0.1F, kLineBend = 0.2F, kLineKnown = 0.3F;
+constexpr float kStepDown = 0.15F, kStepUp = 0.13F;
 constexpr float kAgrees = 0.1F, kAgreesGrowth = 0.03F;
 constexpr float kObstacle = 0.3F;
 constexpr float kHigher = 0.1F;

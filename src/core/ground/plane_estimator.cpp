@@ -20,6 +20,7 @@ constexpr float kEnough = 0.5F;         // of the most weight
 constexpr float kWindow = 0.15F;        // metres, of heights that agree
 constexpr float kRefinedWindow = 0.4F;  // metres, of heights that agree with the plane's slope
 constexpr float kRefinedEnough = 0.7F;  // of the most weight
+constexpr float kSureReach = 9.0F;      // metres; lines that begin further out agree with less weight
 constexpr float kTrust = 0.5F;          // of the plane's slope, the rest of a line's own
 constexpr double kPointReach = 6.0;     // metres; where lines begin further out, they count less as points
 constexpr double kSlopeReach = 2.0;     // metres, over which a line's slope counts
@@ -106,7 +107,8 @@ PlaneEstimator::Agreed PlaneEstimator::lowestOf(const Line* lines, std::size_t s
   std::array<float, kMemory> heights, support{};
   for (std::size_t i = 0; i < size; ++i) heights[i] = lines[i].height;
   for (std::size_t j = 0; j < size; ++j) {
-    const float height = lines[j].height, weight = lines[j].weight;
+    const float reach = lines[j].rho / kSureReach;
+    const float height = lines[j].height, weight = lines[j].weight * std::min(1.0F, 2.0F / (1.0F + reach * reach));
     for (std::size_t i = 0; i < size; ++i) support[i] += std::fabs(heights[i] - height) < window ? weight : 0.0F;
   }
   float most = 0.0F;

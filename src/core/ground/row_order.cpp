@@ -12,6 +12,7 @@ namespace {
 
 constexpr float kTurn = static_cast<float>(2.0 * kPi);
 constexpr float kSameAzimuth = 0.022F;  // radians
+constexpr float kNearAzimuth = 0.04F;   // the same, where no row below is so near
 constexpr float kClearly = 0.013F;      // of the slopes of rays
 
 /// Brings a difference of azimuths to -pi to pi.
@@ -83,6 +84,16 @@ void RowOrder::sort() {
     const auto isBeside = [&](std::int32_t j) { return std::fabs(wrapped(nowAt(i) - nowAt(j))) < kSameAzimuth; };
     for (std::int32_t j = i - 1; j >= 0 && j >= i - kMost && row.down == kNone; --j)
       if (isBeside(j)) row.down = j;
+    if (row.down == kNone) {
+      float nearest = kNearAzimuth;
+      for (std::int32_t j = i - 1; j >= 0 && j >= i - kMost; --j) {
+        const float apart = std::fabs(wrapped(nowAt(i) - nowAt(j)));
+        if (apart < nearest) {
+          nearest = apart;
+          row.down = j;
+        }
+      }
+    }
     for (std::int32_t j = i + 1; j < size && j <= i + kMost && row.above == kNone; ++j)
       if (isBeside(j)) {
         if (row.up == kNone) row.up = j;
