@@ -20,6 +20,12 @@ constexpr float kEnough = 0.5F;         // of the most weight
 constexpr float kWindow = 0.15F;        // metres, of heights that agree
 constexpr float kRefinedWindow = 0.4F;  // metres, of heights that agree with the plane's slope
 constexpr float kRefinedEnough = 0.7F;  // of the most weight
+constexpr float kLowSensor = 0.3F;      // metres; where the ground is no lower, it reaches further than a table does
+constexpr float kBeyondTable = 2.2F;    // metres, the same, with returns in between
+constexpr float kTableGap = 1.75F;      // between these, as a ratio of their distances
+constexpr float kTable = 0.5F;          // metres; most height above a table, or a low floor
+constexpr float kBelowTable = 0.1F;     // metres, of the floor beside it
+constexpr float kRoom = 10.0F;          // metres, where it is looked for
 constexpr float kSureReach = 9.0F;      // metres; lines that begin further out agree with less weight
 constexpr float kTrust = 0.5F;          // of the plane's slope, the rest of a line's own
 constexpr double kPointReach = 6.0;     // metres; where lines begin further out, they count less as points
@@ -69,6 +75,15 @@ void PlaneEstimator::add(const Block& block, std::size_t column) {
   const auto slopeOf = [&](std::size_t i, std::size_t j) {
     return (lows[j].height - lows[i].height) / (lows[j].rho - lows[i].rho);
   };
+  // Whether the column has returns below a line, as those of the floor are beyond a table.
+  const auto isPassedBelow = [&](float height, float slope) {
+    bool is_below = false;
+    forEachBin(sector, [&](std::size_t bin) {
+      const float rho = sector.cells[bin].lowRho(), below = height + slope * rho - sector.cells[bin].low();
+      is_below = is_below || (rho < kRoom && below > kBelowTable);
+    });
+    return is_below;
+  };
   // Lines through three cells, or through two that are nearly level.
   std::array<Line, kMostCells> lines{};
   std::size_t line_count = 0;
@@ -85,6 +100,8 @@ void PlaneEstimator::add(const Block& block, std::size_t column) {
       continue;
     }
     const float height = lows[i].height - slope * lows[i].rho;
+    const bool is_far = lows[j].rho > kBeyondTable && lows[j].rho < kTableGap * lows[i].rho;
+    if ((height > -kLowSensor && !is_far) || (height > -kTable && isPassedBelow(height, slope))) continue;
     if (height < highest_) lines[line_count++] = {height, slope, weight, lows[i].rho, direction};
   }
   const Agreed agreed = lowestOf(lines.data(), line_count, 0.1F, kEnough);
