@@ -3,13 +3,28 @@
 #include "io/cloud_file.h"
 
 #include <algorithm>
+#include <cctype>
+#include <fstream>
 #include <set>
+
+#include <boost/algorithm/string/predicate.hpp>
 
 #include "io/output_file.h"
 #include "io/point_geometry.h"
 #include "io/scan_file.h"
 
 namespace lisco_apps {
+namespace {
+
+/// Whether a file is a table beside scans, as lisco_simulate's poses.csv: a .csv with names of columns, the first of
+/// which is not x, as that of points would be.
+bool isTable(const fs::path& file) {
+  if (!boost::iequals(file.extension().string(), ".csv")) return false;
+  const int first = std::tolower(std::ifstream(file).peek());
+  return std::isalpha(first) != 0 && first != 'x';
+}
+
+}  // namespace
 
 std::vector<fs::path> cloudFilesIn(const fs::path& folder) {
   std::vector<fs::path> files;
@@ -18,7 +33,7 @@ std::vector<fs::path> cloudFilesIn(const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(folder)) {
       const std::string name = entry.path().filename().string();
       if (has_results && (name == "labels.pcd" || name == "clusters.csv")) continue;
-      if (entry.is_regular_file() && isCloudFile(entry.path())) files.push_back(entry.path());
+      if (entry.is_regular_file() && isCloudFile(entry.path()) && !isTable(entry.path())) files.push_back(entry.path());
     }
   } catch (const fs::filesystem_error& error) {
     fail(folder, "cannot be read: " + error.code().message());

@@ -15,7 +15,7 @@ namespace lisco_apps {
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 /// The files in a folder that have an ending of readScan (), sorted by name, without results written there by
-/// lisco_cluster. Not recursive.
+/// lisco_cluster, and without tables (.csv with names of columns, the first of which is not x). Not recursive.
 /// \throws std::runtime_error if the folder cannot be read
 std::vector<fs::path> cloudFilesIn(const fs::path& folder);
 

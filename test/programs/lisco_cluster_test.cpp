@@ -309,6 +309,20 @@ TEST_F(LiscoCluster, ReadsEveryFormat) {
   EXPECT_TRUE(std::isnan(csv->at(0, 1).x));
 }
 
+TEST_F(LiscoCluster, PassesOverTheTablesOfASimulatedDrive) {
+  const Outcome drive = runLine(std::string(LISCO_SIMULATE) + " --terrain plane --sensor vlp16 --rotations 2 -o drive");
+  ASSERT_EQ(drive.status, 0) << drive.err;
+  ASSERT_TRUE(fs::exists(folder_ / "drive/poses.csv") && fs::exists(folder_ / "drive/objects.csv"));
+  const Outcome outcome = run("drive --tolerance 0.5");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_NE(outcome.out.find("rotation_000002.pcd"), std::string::npos) << outcome.out;
+  write("drive/points.csv", "x,y,z\n1,2,3\n");  // these are points, which a .csv cannot hold
+  const Outcome with_points = run("drive --tolerance 0.5");
+  EXPECT_EQ(with_points.status, 2);
+  EXPECT_NE(with_points.err.find("points.csv: line 1"), std::string::npos) << with_points.err;
+}
+
 TEST_F(LiscoCluster, RefusesBadFilesInOneLine) {
   const std::string good = twoWalls();
   const std::string header =
