@@ -80,7 +80,8 @@ Filtered filterCloud(const Cloud& cloud, lisco::GroundParameters parameters) {
 }
 
 struct Settings {
-  double tolerance = 0.4, threshold = std::numeric_limits<double>::quiet_NaN(), radius = 50;
+  double tolerance = 0.4, radius = 50;
+  double threshold = std::numeric_limits<double>::quiet_NaN(), above_ground = threshold;  ///< NaN: the filter decides
   lisco::GroundParameters parameters;
   fs::path pictures;
 };
@@ -91,6 +92,9 @@ void measure(const std::string& name, const Cloud& cloud, const Settings& settin
     for (std::size_t i = 0; i < cloud.size(); ++i)
       filtered.ground[i] = static_cast<double>(cloud.points[i].z) < settings.threshold;
   const std::vector<float> local = localGround(cloud);
+  if (!std::isnan(settings.above_ground))
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      filtered.ground[i] = static_cast<double>(cloud.points[i].z - local[i]) < settings.above_ground;
   std::vector<std::int32_t> labels;
   std::vector<std::uint8_t> flat;
   const GroundQuality quality = measureGround(cloud, filtered.ground, local, settings.tolerance, labels, flat);
@@ -164,6 +168,8 @@ int main(int argc, char** argv) {
     shown.add_options()("tolerance", numberOption("M", "--tolerance", settings.tolerance), "of the clusters, metres")(
         "sensor-height", numberOption("M", "--sensor-height", height), "instead of an estimate, metres")(
         "threshold", numberOption("M", "--threshold", settings.threshold), "remove all below this height instead")(
+        "above-ground", numberOption("M", "--above-ground", settings.above_ground),
+        "remove all up to this height above the local ground instead")(
         "forms", "also tilted, moved, mirrored, thinned and shuffled copies")(
         "radius", numberOption("M", "--radius", settings.radius), "of the pictures, metres")(
         "pictures", pathOption("DIR", "--pictures", settings.pictures), "draw a picture of each scan here");
