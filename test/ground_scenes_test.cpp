@@ -108,15 +108,18 @@ TEST(GroundScenes, FindsTheFloorOfARoom) {
   EXPECT_LT(share(scan, ground, [](const lisco::Return& cell) { return cell.z > -0.8F; }), 0.005);
 }
 
+struct Table {
+  double half_length, below;  ///< metres, below the sensor in its middle
+};
+
 /// A room of 12 m x 8 m with a box in it, 1 m wide and 0.3 m high.
 /// \param height of the sensor above the floor, metres
-/// \param table half its length, metres, around the sensor, which is 0.15 m above it; 0: there is none
-Scan lowRoom(std::size_t lasers, double height, double table) {
+Scan lowRoom(std::size_t lasers, double height, const Table& table = {0.0, 0.0}) {
   return scanOf(lasers, kColumns, [&](double azimuth, double slope) {
     return meetsSurface(azimuth, slope, [&](double x, double y) {
       if (std::fabs(x) > 6.0 || std::fabs(y) > 4.0) return 10.0;
-      if (std::fabs(x) < table && std::fabs(y) < 0.7 * table) return -0.15;
-      return (std::fabs(x - 3.0) < 0.5 && std::fabs(y) < 0.5 ? 0.3 : 0.0) - height;
+      if (std::fabs(x) < table.half_length && std::fabs(y) < 0.7 * table.half_length) return -table.below;
+      return (std::fabs(x + 3.0) < 0.5 && std::fabs(y) < 0.5 ? 0.3 : 0.0) - height;
     });
   });
 }
@@ -124,7 +127,7 @@ Scan lowRoom(std::size_t lasers, double height, double table) {
 TEST(GroundScenes, FindTheFloorBeneathALowRobot) {
   for (const std::size_t lasers : {16U, 32U, 64U})
     for (const double height : {0.13, 0.18, 0.25, 0.4}) {
-      const Scan scan = lowRoom(lasers, height, 0.0);
+      const Scan scan = lowRoom(lasers, height);
       const auto isFloor = [&](const lisco::Return& cell) { return static_cast<double>(cell.z) < 0.001 - height; };
       const std::vector<std::uint8_t> ground = filterAll(scan);
       EXPECT_GT(share(scan, ground, isFloor), 0.97) << lasers << " lasers, " << height;
@@ -133,14 +136,17 @@ TEST(GroundScenes, FindTheFloorBeneathALowRobot) {
 }
 
 TEST(GroundScenes, LeaveATableAroundTheSensor) {
-  for (const std::size_t lasers : {32U, 64U, 128U}) {
-    const Scan scan = lowRoom(lasers, 0.9, 0.6);
-    const auto isTable = [](const lisco::Return& cell) { return std::fabs(cell.z + 0.15F) < 0.001F; };
-    const auto isFloor = [](const lisco::Return& cell) { return cell.z < -0.899F; };
-    const std::vector<std::uint8_t> ground = filterAll(scan);
-    EXPECT_EQ(share(scan, ground, isTable), 0.0) << lasers;
-    EXPECT_GT(share(scan, ground, isFloor), 0.98) << lasers;
-  }
+  for (const std::size_t lasers : {32U, 64U, 128U})
+    for (const Table& table : {Table{0.6, 0.15}, Table{1.6, 0.4}}) {
+      const Scan scan = lowRoom(lasers, 0.9, table);
+      const auto isTable = [&](const lisco::Return& cell) {
+        return std::fabs(static_cast<double>(cell.z) + table.below) < 0.001;
+      };
+      const auto isFloor = [](const lisco::Return& cell) { return cell.z < -0.899F; };
+      const std::vector<std::uint8_t> ground = filterAll(scan);
+      EXPECT_EQ(share(scan, ground, isTable), 0.0) << lasers << " lasers, " << table.below;
+      EXPECT_GT(share(scan, ground, isFloor), 0.98) << lasers << " lasers, " << table.below;
+    }
 }
 
 lisco::GroundParameters estimated(const Scan& scan) {
