@@ -19,8 +19,8 @@ inline constexpr std::size_t kBins = 192;
 struct Cell {
   /// Of the lowest return, so that a return below it has a lower number: its height (see orderedHeight) in the upper
   /// half, its horizontal distance from the sensor in the lower half.
-  std::uint64_t lowest = ~std::uint64_t{0};
-  std::uint64_t levels = 0;  ///< occupied heights: bit i for level i modulo 64
+  std::uint64_t lowest;
+  std::uint64_t levels;  ///< occupied heights: bit i for level i modulo 64
 
   float low() const;  ///< lowest height
   float lowRho() const {
@@ -67,7 +67,7 @@ inline std::size_t binOf(float rho) {
 /// The cells of one azimuth, from the sensor outwards.
 struct Sector {
   std::array<Cell, kBins> cells;
-  std::array<std::uint64_t, kBins / 64> occupied{};  ///< the cells with returns; the others are as when made
+  std::array<std::uint64_t, kBins / 64> occupied{};  ///< the cells with returns; the others hold nothing
 
   bool has(std::size_t bin) const { return (occupied[bin / 64] >> (bin % 64) & 1) != 0; }
 
@@ -77,9 +77,12 @@ struct Sector {
     std::uint32_t rho_bits;
     std::memcpy(&rho_bits, &rho, sizeof rho_bits);
     const std::uint64_t number = std::uint64_t{orderedHeight(height)} << 32 | rho_bits;
-    cell.lowest = number < cell.lowest ? number : cell.lowest;
-    cell.levels |= std::uint64_t{1} << levelOf(height);
-    occupied[bin / 64] |= std::uint64_t{1} << (bin % 64);
+    const std::uint64_t level = std::uint64_t{1} << levelOf(height), bit = std::uint64_t{1} << (bin % 64);
+    std::uint64_t& word = occupied[bin / 64];
+    const bool is_new = (word & bit) == 0;
+    cell.lowest = is_new || number < cell.lowest ? number : cell.lowest;
+    cell.levels = is_new ? level : cell.levels | level;
+    word |= bit;
   }
 };
 
