@@ -313,6 +313,13 @@ TEST(GroundScenes, BeginsAtTheGroundNearby) {
   EXPECT_GT(share(scan, filterAll(scan), [](const lisco::Return& cell) { return cell.z > -1.81F; }), 0.98);
 }
 
+TEST(GroundScenes, ForgetsTheGroundBelowARampThatTheFirstColumnsFaced) {
+  // The ramp falls by 20 %, so that lasers that look steeply down meet it 8 m away; beyond, the ground is level.
+  const Scan scan = scanOfSurface([](double x, double) { return -kHeight - 0.2 * std::clamp(x, 0.0, 7.5); });
+  const std::vector<std::uint8_t> ground = filterAll(scan);
+  EXPECT_GT(share(scan, ground, [](const lisco::Return& cell) { return cell.x < 0.0F; }), 0.97);
+}
+
 TEST(GroundScenes, FindsTheGroundWithoutSomeRowsColumnsAndReturns) {
   std::mt19937 random(4);
   std::uniform_int_distribution<int> one_of(0, 9);

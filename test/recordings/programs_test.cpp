@@ -171,7 +171,7 @@ TEST_F(Programs, LeaveOutTheGroundOfRotationsAsAStreamDoes) {
     const Outcome streamed = runLine(std::string(LISCO_STREAM) + rest + "--rotations 1 --json");
     const Outcome clustered = runLine(std::string(LISCO_CLUSTER) + rest + "--to 0.11");
     const double streams = ground(streamed, "\"ground\":"), clouds = ground(clustered, "  ground    ");
-    EXPECT_GT(streams, 500) << name;
+    EXPECT_GT(streams, 100) << name;
     EXPECT_NEAR(clouds, streams, 0.005 * streams) << name;
   }
 }
@@ -179,11 +179,11 @@ TEST_F(Programs, LeaveOutTheGroundOfRotationsAsAStreamDoes) {
 // The same sensors, on tables.
 TEST_F(Programs, KeepTablesAroundSensorsInStreams) {
   if (!fs::is_directory(data() / "bags")) GTEST_SKIP() << "no recordings in " << data();
-  for (const auto& [name, most] : {std::pair<const char*, double>{"pandar40p", 0.25},
+  for (const auto& [name, most] : {std::pair<const char*, double>{"pandar40p", 0.1},
                                    {"pandarqt64", 0.03},
                                    {"pandarxt16", 0.05},
-                                   {"pandarxt32", 0.05},
-                                   {"vlp16", 0.07}}) {
+                                   {"pandarxt32", 0.02},
+                                   {"vlp16", 0.02}}) {
     const std::string bag = (data() / "bags" / (std::string(name) + ".db3")).string();
     const Outcome streamed = runLine(std::string(LISCO_STREAM) + " " + bag + " -t 0.5 --rotations 1 --json");
     const auto valueOf = [&](const std::string& key) {

@@ -151,6 +151,15 @@ void PlaneEstimator::update() {
     plane_.height = agreed.height;
     known_ = true;
   }
+  fitSlopes();
+  // What showed the plane was each column of few blocks, in one direction; later blocks add one of each direction.
+  if (!height_given_)
+    for (std::size_t i = 0; i < size; ++i) lines_[i].weight /= static_cast<float>(Block::kColumns);
+}
+
+/// Fits the slopes of a plane to those of the lines at its height.
+void PlaneEstimator::fitSlopes() {
+  const std::size_t size = std::min(count_, kMemory);
   // Least squares of slope_x x + slope_y y = slope, drawn to the horizon where directions are few.
   float xx = 1.0F, xy = 0.0F, yy = 1.0F, xs = 0.0F, ys = 0.0F, all = 0.0F;
   for (std::size_t i = 0; i < size; ++i) {

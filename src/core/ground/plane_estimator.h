@@ -50,6 +50,7 @@ class PlaneEstimator {
     float height, weight;
   };
   static Agreed lowestOf(const Line* lines, std::size_t size, float window, float enough);
+  void fitSlopes();
   void refine();
 
   std::array<Line, kMemory> lines_;
