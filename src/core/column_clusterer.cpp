@@ -248,7 +248,9 @@ void ColumnClusterer::Rotation::linkPartitions() {
   linkCollected();
   const std::size_t first = are_linked_ ? partition_count_ - 1 : 0;
   are_linked_ = true;
+  subclusters_.share(partition_count_ - first > 1);  // near returns have joined sets of different partitions
   inParallel(partition_count_ - first, [&](std::size_t i) { partitions_[first + i].linkWithin(subclusters_); });
+  subclusters_.share(false);
   bool is_any_full = false;
   for (std::size_t i = first; i < partition_count_; ++i) {
     for (std::size_t earlier = 0; earlier < i; ++earlier) partitions_[i].linkTo(partitions_[earlier], subclusters_);
