@@ -24,6 +24,14 @@ struct Scan {
 /// What a ray hits: its horizontal distance, or a negative one for nothing.
 using Distance = std::function<double(double azimuth, double slope)>;
 
+/// What a sensor at the origin measures in a direction.
+inline lisco::Return returnOf(double azimuth, double slope, const Distance& distance) {
+  const double rho = distance(azimuth, slope);
+  if (rho < 0.0) return lisco::kNoReturn;
+  return {static_cast<float>(rho * std::cos(azimuth)), static_cast<float>(rho * std::sin(azimuth)),
+          static_cast<float>(rho * slope), 0};
+}
+
 /// A scan of a sensor at the origin, elevations from 10 degrees down to -25.
 inline Scan scanOf(std::size_t lasers, std::size_t columns, const Distance& distance) {
   Scan scan{lasers, columns, {}};
@@ -32,11 +40,7 @@ inline Scan scanOf(std::size_t lasers, std::size_t columns, const Distance& dist
       const double azimuth = 2.0 * M_PI * static_cast<double>(column) / static_cast<double>(columns);
       const double slope =
           std::tan((10.0 - 35.0 * static_cast<double>(laser) / static_cast<double>(lasers)) * M_PI / 180.0);
-      const double rho = distance(azimuth, slope);
-      scan.cells.push_back(rho < 0.0 ? lisco::kNoReturn
-                                     : lisco::Return{static_cast<float>(rho * std::cos(azimuth)),
-                                                     static_cast<float>(rho * std::sin(azimuth)),
-                                                     static_cast<float>(rho * slope), 0});
+      scan.cells.push_back(returnOf(azimuth, slope, distance));
     }
   return scan;
 }

@@ -282,11 +282,7 @@ Scan chainsOf(const Distance& distance) {
       const double below = laser < kChains ? kLowest[laser] : 7.5 - 0.35 * static_cast<double>(laser - kChains);
       const double slope = -std::tan(below * M_PI / 180.0);
       const double azimuth = 2.0 * M_PI * static_cast<double>(column + laser % kChains * 8) / 1600.0;
-      const double rho = distance(azimuth, slope);
-      scan.cells.push_back(rho < 0.0 ? lisco::kNoReturn
-                                     : lisco::Return{static_cast<float>(rho * std::cos(azimuth)),
-                                                     static_cast<float>(rho * std::sin(azimuth)),
-                                                     static_cast<float>(rho * slope), 0});
+      scan.cells.push_back(returnOf(azimuth, slope, distance));
     }
   return scan;
 }
