@@ -54,8 +54,8 @@ class LISCO_EXPORT ColumnClusterer {
   /// Adds several columns at once, read laser by laser as an organized cloud lies in memory. The result is that of
   /// addColumn.
   /// \param cells callable as Return (std::size_t laser, std::size_t column), column in 0..columns-1, or block by block
-  ///        as CellSource has it; called twice for some cells, and by several threads at once if Parameters::threads
-  ///        allows it
+  ///        as CellSource has it; may be called several times for a cell, and by several threads at once if
+  ///        Parameters::threads allows it
   /// \throws as addColumn
   template <typename Cells>
   void addColumns(std::size_t columns, std::size_t lasers, Cells&& cells) {

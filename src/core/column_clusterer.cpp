@@ -161,7 +161,7 @@ void ColumnClusterer::Rotation::divide(std::size_t columns, std::size_t lasers, 
 }
 
 /// Each thread reads its part of the columns, and links its far returns as far as it goes without the others. Near
-/// returns are collected. If the columns drift, all returns are near.
+/// returns are collected. If azimuths drift (SensorHints::drift), all are.
 void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t lasers, const CellSource& cells) {
   if (partition_count_ == 1)
     parts_.assign(1, {0, columns});
@@ -190,6 +190,7 @@ void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hi
   partitions_[i].collectNear();
 }
 
+/// Reads a part; again with all returns near, if far ones are refused.
 void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial) {
   Partition& partition = partitions_[i];
   if (partition.hasFar()) {

@@ -25,7 +25,7 @@ class DisjointSets {
 
   /// createH: makes an element a set of its own, whatever it was before.
   void create(std::uint32_t element) { parents_[element] = element; }
-  /// The same for consecutive ones.
+  /// The same for elements first..end-1.
   void create(std::uint32_t first, std::uint32_t end) {
     std::uint32_t* const parents = parents_.data();
     for (std::uint32_t element = first; element < end; ++element) parents[element] = element;
@@ -73,7 +73,7 @@ class DisjointSets {
   }
 
   /// Whether several threads may call find () and merge () at once. A root changes by compare and swap then (Anderson
-  /// and Woll 1991); an element with a parent has no other thread's update to lose.
+  /// and Woll 1991); other elements only move to an ancestor.
   void share(bool is_shared) { is_shared_ = is_shared; }
 
   /// Two roots, of which the first is now the root of both sets.

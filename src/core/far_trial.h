@@ -7,11 +7,11 @@
 
 namespace lisco {
 
-/// Whether the far returns of a rotation are worth range images: one thread decides it, by the first columns; the
-/// others read theirs as if they were, until they learn that they are not.
+/// Shared decision whether the far returns of a rotation are worth range images. The first part decides it by its first
+/// columns; the others are read with range images meanwhile, and again without if it refuses them.
 class FarTrial {
  public:
-  /// The first call counts.
+  /// Later calls have no effect.
   void decide(bool is_worthwhile) {
     Verdict open = Verdict::kOpen;
     verdict_.compare_exchange_strong(open, is_worthwhile ? Verdict::kWorthwhile : Verdict::kRefused);

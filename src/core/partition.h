@@ -37,7 +37,7 @@ class Partition {
   /// Collects near returns, instead of putting them into voxels as they come: for columns that are read at once.
   void collectNear() { collects_near_ = true; }
   const NearReturns& nearReturns() const { return near_returns_; }
-  /// Makes room for the near returns of some columns, as those collected from the first ones let expect.
+  /// Makes room for the near returns of `columns` columns, if they are as many per column as in those read.
   void reserveNear(std::size_t columns_read, std::size_t columns) {
     near_returns_.returns.grow(near_returns_.count * columns / columns_read);
   }

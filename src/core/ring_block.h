@@ -35,8 +35,8 @@ struct RingBlockInfo {
   std::uint64_t interior;          ///< of these, those whose neighbours are all far
   float lowest, highest;           ///< slope of the far ones; lowest > highest if there are none
   float rho[RingBlock::kColumns];  ///< horizontal distance, metres
-  static constexpr std::size_t kFillStep = 16;  ///< in which runs are written, and may end behind the last column
-  std::uint32_t run[RingBlock::kColumns + kFillStep];  ///< the run of each return; set by Runs::add
+  static constexpr std::size_t kFillStep = 16;  ///< elements written at a time, the last ones behind the last column
+  std::uint32_t run[RingBlock::kColumns + kFillStep];  ///< element of each return's run; set by Runs::add
 };
 
 /// Which returns are far, by their horizontal distance from the sensor, metres.

@@ -40,7 +40,7 @@ void Runs::add(const RingBlock& block, RingBlockInfo& info, std::size_t laser, s
     forEachChain(info.starts, info.returns, [&](std::size_t begin, std::size_t end) {
       const std::uint32_t element = first_element + number;
       subclusters.create(element);
-      // Most runs are shorter than that, and the next one overwrites what is too much.
+      // The next run overwrites what is written behind the end.
       for (std::size_t i = begin; i < end; i += RingBlockInfo::kFillStep)
         std::fill_n(info.run + i, RingBlockInfo::kFillStep, element);
       runs[number++] = {first_cell + static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin), 0};

@@ -54,7 +54,7 @@ class LiscoClusterWriter {
   /** \brief Appends points to the cluster of a subcluster, if its size is accepted. In all, as many points are appended
    * as its size says.
    * \param[in] count at least 1
-   * \param[in] point_at callable as index_t (std::size_t i), i below \a count; called twice for some
+   * \param[in] point_at callable as index_t (std::size_t i), i below \a count; may be called several times
    */
   template <typename SizeOf, typename PointAt>
   void append(std::uint32_t subcluster, SizeOf&& size_of, std::size_t count, PointAt&& point_at) {

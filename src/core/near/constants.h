@@ -18,10 +18,10 @@ inline constexpr double kVoxelSide = 0.9999 / 1.7320508075688772;
 inline constexpr float kMaxFloatNumber = 1 << 20;
 inline constexpr double kMaxDoubleNumber = 2251799813685248.0;
 
-/// Floats that are read behind the last point, by vectors.
+/// Elements that vectors may read behind the last.
 inline constexpr std::size_t kReadBehind = 16;
 
-/// Returns of a run that are copied together, though some of the last may be too many: a branch for each costs more.
+/// Returns that are copied at a time, up to kNearStep - 1 of them behind the last: a branch for each costs more.
 inline constexpr std::size_t kNearStep = 4;
 
 // --- Sorting --------------------------------------------------------------------------------------------------------

@@ -67,7 +67,7 @@ class PlaneLinker {
       linkBricks(plane, brick, other, *near, number + static_cast<std::size_t>(near->key - key));
   }
 
-  /// Links the voxels of a brick with each other: those that are joined with those that are not yet.
+  /// Links the voxels of a brick with each other: each that joins a set is compared with those in no set yet.
   void linkBrick(VoxelPlane& plane, VoxelPlane::Brick& brick) {
     const std::uint32_t first = brick.first_voxel;
     std::uint64_t left = allOf(brick);
@@ -98,7 +98,7 @@ class PlaneLinker {
            subclusters_.find(a.root) == subclusters_.find(b.root);
   }
 
-  /// Links the voxels of two bricks: each of the one that has fewer with all of the other.
+  /// Links the voxels of two bricks: each voxel of the one that has fewer with all of the other.
   /// \param number of the other brick among those near the first
   void linkBricks(VoxelPlane& plane, VoxelPlane::Brick& brick, VoxelPlane& other, VoxelPlane::Brick& near,
                   std::size_t number) {
@@ -121,7 +121,7 @@ class PlaneLinker {
     }
   }
 
-  /// Links a voxel with some of a brick. \return those that are in its set now
+  /// Links a voxel with some of a brick. \return those of them found to be in its set
   /// \param others bit i: voxel first + i
   /// \param root of the voxel
   std::uint64_t linkVoxel(const VoxelPlane& plane, std::uint32_t voxel, VoxelPlane& other, std::uint32_t first,
