@@ -218,8 +218,9 @@ bool ColumnClusterer::Rotation::readFarAndNear(std::size_t i, std::size_t lasers
     if (partition_count_ > 1)
       balancer_.record(first, count, count * lasers * kWorkOfCell + partition.workDone() - before);
     if (i == 0 && first + count == std::min(kTriedColumns, end)) {
-      trial.decide(partition.isFarWorthwhile());
-      partition.reserveNear(first + count, end);
+      const bool is_worthwhile = partition.isFarWorthwhile();
+      trial.decide(is_worthwhile);
+      if (is_worthwhile) partition.reserveNear(first + count, end);
     }
   }
   return trial.await();
