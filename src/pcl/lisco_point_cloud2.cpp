@@ -20,6 +20,7 @@
 #include <pcl/segmentation/lisco_cluster_writer.h>
 
 #include "lisco/return.h"
+#include "pcl/firings.h"
 
 namespace {
 
@@ -110,59 +111,6 @@ bool isLittleEndian() {
   std::uint8_t first = 0;
   std::memcpy(&first, &one, 1);
   return first == 1;
-}
-
-/// Points in the order in which a sensor measured them.
-struct Firings {
-  std::vector<std::uint32_t> column_of_point;
-  std::uint32_t columns = 0;
-};
-
-/// Cuts points into columns: points within most of a firing's duration make one. Several of one row in one firing get
-/// columns side by side, so that no two points have the same row and column.
-/// \param keys the time or azimuth of each point; finite
-/// \param min_step points that differ by less are of one firing
-/// \return no columns if no row has two points that differ
-Firings cutFirings(const std::vector<double>& keys, const std::vector<std::uint32_t>& row_of_point, std::size_t rows,
-                   double min_step) {
-  std::vector<std::uint32_t> order(keys.size());
-  std::iota(order.begin(), order.end(), 0U);
-  if (!std::is_sorted(keys.begin(), keys.end()))
-    std::sort(order.begin(), order.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return std::pair(keys[a], a) < std::pair(keys[b], b); });
-
-  // The step from one firing to the next: the lower quartile of those between a ring's points, since some firings are
-  // without return.
-  std::vector<double> last(rows, std::numeric_limits<double>::quiet_NaN());
-  std::vector<double> steps;
-  steps.reserve(keys.size());
-  for (const std::uint32_t point : order) {
-    double& before = last[row_of_point[point]];
-    if (keys[point] - before > min_step) steps.push_back(keys[point] - before);
-    before = keys[point];
-  }
-  Firings firings;
-  if (steps.empty()) return firings;
-  const auto quarter = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 4);
-  std::nth_element(steps.begin(), quarter, steps.end());
-  constexpr double kFiringShare = 0.75;  // of the time to the next column, within which the lasers of a column fire
-  const double duration = kFiringShare * *quarter;
-
-  firings.column_of_point.resize(keys.size());
-  std::vector<std::uint32_t> next_column(rows, 0);
-  std::uint32_t first_column = 0;
-  double start = keys[order.front()];
-  for (const std::uint32_t point : order) {
-    if (keys[point] - start >= duration) {
-      first_column = firings.columns;
-      start = keys[point];
-    }
-    std::uint32_t& column = next_column[row_of_point[point]];
-    column = std::max(column, first_column);
-    firings.column_of_point[point] = column++;
-    firings.columns = std::max(firings.columns, column);
-  }
-  return firings;
 }
 
 }  // namespace
