@@ -256,7 +256,7 @@ GroundParameters GroundFilter::estimateAndFilter(const GroundParameters& paramet
                                                  std::size_t lasers, const CellSource& cells, std::uint8_t* ground) {
   state_->begin(parameters, 0);  // rejects bad parameters
   const GroundParameters estimated = estimateGroundPlane(columns, lasers, parameters, cells);
-  // Where the whole scan shows no ground, that of a few columns is none.
+  // A scan that shows no ground as a whole has none, though some of its columns may seem to.
   if (std::isnan(estimated.sensor_height))
     std::fill_n(ground, columns * lasers, std::uint8_t{0});
   else

@@ -20,60 +20,61 @@
 
 namespace lisco {
 
-/// Consecutive columns that are read together: a thread's part of a rotation, or a stream's pane. Linked among
-/// themselves; links to other partitions follow later. Run i is element first_element + i of a forest of subclusters.
+/// Consecutive columns that are read and linked together: a thread's part of a rotation, or a stream's pane. Linking
+/// with other partitions comes later. Run i is element first_element + i of a forest of subclusters.
 class Partition {
  public:
-  /// Forgets all. Keeps its memory.
-  /// \param hints without steps_per_turn, all returns are near
+  /// Starts without columns. Keeps its memory.
+  /// \param hints if steps_per_turn is 0, all returns are near
   /// \param columns number of columns expected; more than a turn needs no more memory
   void prepare(const Tolerance& tolerance, const SensorHints& hints, std::size_t columns);
 
-  /// Grows to a number of lasers, which is otherwise done when they are read.
+  /// Makes room in the range image for a number of lasers, before they are read.
   void addLasers(std::size_t lasers) {
     if (image_.inUse()) image_.addLasers(lasers);
   }
 
-  /// Collects near returns, instead of putting them into voxels as they come: for columns that are read at once.
+  /// From now on near returns are collected, to be sorted by VoxelSorter, instead of put into voxels as they come.
   void collectNear() { collects_near_ = true; }
   const NearReturns& nearReturns() const { return near_returns_; }
-  /// Makes room for the near returns of `columns` columns, if they are as many per column as in those read.
+  /// Makes room for the near returns of `columns` columns in all, at the average of the `columns_read` so far.
   void reserveNear(std::size_t columns_read, std::size_t columns) {
     near_returns_.returns.grow(near_returns_.count * columns / columns_read);
   }
-  /// Puts the near returns that were collected into voxels: more columns follow one by one.
+  /// Puts the near returns collected so far, and all that follow, into voxels.
   void stopCollecting(DisjointSets& subclusters);
 
-  /// Reads some columns laser by laser, and links them as far as all lasers have passed them.
-  /// \param first_column of these, in the rotation
-  /// \param first_cell of these, among the cells
+  /// Reads `count` columns laser by laser, and links the sectors that all lasers have passed.
+  /// \param first_cell number of the first column in `cells`
+  /// \param first_column number of the same column in the rotation
   void readColumns(const CellSource& cells, std::size_t first_cell, std::size_t count, std::size_t lasers,
                    std::uint32_t first_column, DisjointSets& subclusters);
 
-  /// Reads some columns laser by laser, which is the order of an organized cloud in memory: where all returns are near.
-  /// \param first column of these, in the rotation and among the cells
+  /// Reads the columns [first, end), each laser from end to end, which is the order of an organized cloud in memory.
+  /// Only without far returns.
+  /// \param first number of a column in `cells` and in the rotation
   void readLasers(const CellSource& cells, std::size_t first, std::size_t end, std::size_t lasers,
                   DisjointSets& subclusters);
 
-  /// Reads a ring block, without linking it.
+  /// Reads a ring block; linkWithin () links it.
   void readRing(RingBlock& block, std::size_t laser, std::uint32_t first_column, std::size_t columns,
                 DisjointSets& subclusters) {
     readRing(block, laser, first_column, columns, subclusters,
              [](const RingBlock&, const RingBlockInfo& info) { return info.returns; });
   }
-  /// \param choose callable as ColumnBits (const RingBlock&, RingBlockInfo&): the returns that may have neighbours; it
-  ///        may add to info.starts
+  /// \param choose callable as ColumnBits (const RingBlock&, RingBlockInfo&), once runs are found and before they are
+  ///        cut: returns those of info.returns that may have neighbours, and may add starts of runs to info.starts
   template <typename Choose>
   void readRing(RingBlock& block, std::size_t laser, std::uint32_t first_column, std::size_t columns,
                 DisjointSets& subclusters, Choose&& choose);
 
-  /// Links what is new within the partition, near and far.
+  /// Links all returns read since the last call among themselves and with those before, near and far.
   void linkWithin(DisjointSets& subclusters);
-  /// Links an earlier partition of the same rotation.
+  /// Links the partition with an earlier one of the same rotation, after linkWithin () of both.
   void linkTo(Partition& earlier, DisjointSets& subclusters);
   /// Links the end of the partition with its beginning, a turn before.
   void linkSeam(DisjointSets& subclusters) { segments_.linkTo(image_, image_, subclusters); }
-  /// Marks all that is near as linked with all other partitions.
+  /// Marks all near returns in voxels as linked with all other partitions: the next linkTo () links newer ones.
   void markLinked() { VoxelLinker::markLinked(voxels_); }
 
   /// Linking of far returns part by part: see SegmentLinker.
@@ -86,7 +87,7 @@ class Partition {
   /// Whether linking far returns, as measured so far, takes less than sorting them would.
   bool isFarWorthwhile() const;
 
-  /// Whether bins save no work: see RangeImage::isFull.
+  /// Whether too many returns are unplaced: see RangeImage::isFull.
   bool isImageFull() const { return image_.isFull(); }
   void stopPlacing() { image_.stopPlacing(); }
 
@@ -105,7 +106,7 @@ class Partition {
   Tolerance tolerance_;
   RangeImage image_;  ///< far returns
   SegmentLinker segments_;
-  // Near returns, and those that are not placed: collected, or in voxels.
+  // Near and unplaced returns: collected, or in voxels.
   bool collects_near_ = false;
   NearReturns near_returns_;
   VoxelGrid voxels_;

@@ -7,8 +7,8 @@
 
 namespace lisco {
 
-/// The element at a place of the values' ascending order, which is partly established. At size / 2 it is the median, of
-/// an even number the upper one.
+/// The element that would be at a place if the values were sorted. Reorders the values. At size / 2 it is the median;
+/// of an even number of values, the upper one.
 /// \param place below the number of values
 template <typename Values>
 auto sortedElement(Values& values, std::size_t place) {

@@ -260,7 +260,7 @@ HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const Column&
   found = hn::And(found, hn::And(valid, hn::Le(height, hn::Add(column.limit, set(kStepUp)))));
   lowerLimit(row, k, column, found);
 
-  // Even so, it is none.
+  // But no ground: first returns that are too high, walls above their feet, rough surfaces where ground is unsure.
   const auto too_high =
       hn::And(column.first, hn::Gt(column.above, grown(kFirstHighest, kFirstHighestGrowth, distance)));
   const auto foot =

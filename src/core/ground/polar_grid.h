@@ -67,7 +67,7 @@ inline std::size_t binOf(float rho) {
 /// The cells of one azimuth, from the sensor outwards.
 struct Sector {
   std::array<Cell, kBins> cells;
-  std::array<std::uint64_t, kBins / 64> occupied{};  ///< the cells with returns; the others hold nothing
+  std::array<std::uint64_t, kBins / 64> occupied{};  ///< bit i: cell i has returns; only then it has a value
 
   bool has(std::size_t bin) const { return (occupied[bin / 64] >> (bin % 64) & 1) != 0; }
 

@@ -12,8 +12,8 @@ namespace {
 
 constexpr float kTurn = static_cast<float>(2.0 * kPi);
 constexpr float kSameAzimuth = 0.022F;  // radians
-constexpr float kNearAzimuth = 0.04F;   // the same, where no row below is so near
-constexpr float kClearly = 0.013F;      // of the slopes of rays
+constexpr float kNearAzimuth = 0.04F;   // radians; for the row below, if none has the same azimuth
+constexpr float kClearly = 0.013F;      // difference of the slopes of rays
 
 /// Brings a difference of azimuths to -pi to pi.
 float wrapped(float angle) {
@@ -81,21 +81,15 @@ void RowOrder::sort() {
   };
   for (std::int32_t i = 0; i < size; ++i) {
     Row row{order_[static_cast<std::size_t>(i)], kNone, kNone, kNone};
-    const auto isBeside = [&](std::int32_t j) { return std::fabs(wrapped(nowAt(i) - nowAt(j))) < kSameAzimuth; };
-    for (std::int32_t j = i - 1; j >= 0 && j >= i - kMost && row.down == kNone; --j)
-      if (isBeside(j)) row.down = j;
-    if (row.down == kNone) {
-      float nearest = kNearAzimuth;
-      for (std::int32_t j = i - 1; j >= 0 && j >= i - kMost; --j) {
-        const float apart = std::fabs(wrapped(nowAt(i) - nowAt(j)));
-        if (apart < nearest) {
-          nearest = apart;
-          row.down = j;
-        }
+    const auto apart = [&](std::int32_t j) { return std::fabs(wrapped(nowAt(i) - nowAt(j))); };
+    float nearest = kNearAzimuth;
+    for (std::int32_t j = i - 1; j >= 0 && j >= i - kMost && nearest >= kSameAzimuth; --j)
+      if (apart(j) < nearest) {
+        nearest = apart(j);
+        row.down = j;
       }
-    }
     for (std::int32_t j = i + 1; j < size && j <= i + kMost && row.above == kNone; ++j)
-      if (isBeside(j)) {
+      if (apart(j) < kSameAzimuth) {
         if (row.up == kNone) row.up = j;
         if (j != row.up && seenAt(j).slope() > seenAt(i).slope() + kClearly) row.above = j;
       }

@@ -57,7 +57,7 @@ class BoxLanes {
   float lo(std::size_t axis) const { return lo_[axis]; }
   float hi(std::size_t axis) const { return hi_[axis]; }
 
-  /// Box::squaredGap
+  /// Box::squaredGap for boxes whose six coordinates are in two registers already.
   static float squaredGap(const BoxLanes& a, const BoxLanes& b) {
     const Lanes above = a.lo_ - b.hi_;
     const Lanes below = b.lo_ - a.hi_;

@@ -210,8 +210,8 @@ bool VoxelSorter::number(const Tolerance& tolerance) {
 void VoxelSorter::cutFragments() {
   const FragmentList::Part& last = fragments_.parts.back();
   const std::size_t size = (last.first / 64 + last.near->count / 64 + 1) * 64;
-  items_.grow(size + 1);  // an item is written behind the last
-  scratch_.grow(size + 1);
+  items_.grow(size);
+  scratch_.grow(size);
   if (fragments_.starts.size() < size / 64) fragments_.starts.resize(size / 64);
   part_sizes_.resize(fragments_.parts.size());
   inParallel(fragments_.parts.size(), [&](std::size_t i) {
