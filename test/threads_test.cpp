@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 // The engine's threads: rotations large enough for them, whose subclusters are those of one thread.
 #include <gtest/gtest.h>
+#include <unistd.h>  // alarm
 
 #include <algorithm>
 #include <array>
@@ -175,6 +176,44 @@ TEST(Threads, LinkManyUnplacedReturns) {
     }
     ASSERT_EQ(difference(clusterings[0], clusterings[1]), "");
   }
+}
+
+// The other threads wait while the first one tries what its far returns cost: columns 5 and 100 are read before it
+// decides. The program ends by a signal if they wait forever.
+TEST(Threads, EndWithAnExceptionOfTheFirst) {
+  struct Thrown {};
+  constexpr unsigned kMaxSeconds = 120;
+  Scan scan(1024, 8);
+  for (std::size_t laser = 0; laser < scan.lasers; ++laser)
+    for (std::size_t column = 0; column < scan.columns; ++column) {
+      const double azimuth = 6.283185307179586 * static_cast<double>(column) / static_cast<double>(scan.columns);
+      scan.set(laser, column,
+               {static_cast<float>(20 * std::cos(azimuth)), static_cast<float>(20 * std::sin(azimuth)),
+                static_cast<float>(0.1 * static_cast<double>(laser))});
+    }
+  lisco::Parameters parameters;
+  parameters.tolerance = 0.11F;  // the returns of one column
+  parameters.sensor.steps_per_turn = 1024;
+  parameters.sensor.elevation_step = 0.005F;
+  lisco::ColumnClusterer alone;
+  lisco::ColumnClusterer together;
+  const Clustering right = clustered(alone, parameters, scan);
+  ASSERT_EQ(right.size(), scan.columns);
+  for (const std::size_t threads : {2, 4, 16})
+    for (const std::size_t faulty : {5, 100, 300, 1000}) {
+      SCOPED_TRACE(std::to_string(threads) + " threads, column " + std::to_string(faulty));
+      parameters.threads = threads;
+      together.begin(parameters);
+      alarm(kMaxSeconds);
+      EXPECT_THROW(together.addColumns(scan.columns, scan.lasers,
+                                       [&](std::size_t laser, std::size_t column) {
+                                         if (column == faulty) throw Thrown();
+                                         return scan.at(laser, column);
+                                       }),
+                   Thrown);
+      alarm(0);
+      EXPECT_EQ(difference(right, clustered(together, parameters, scan)), "");
+    }
 }
 
 TEST(Threads, AreEachCalledOnce) {
