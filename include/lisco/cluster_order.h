@@ -35,10 +35,9 @@ class LISCO_EXPORT ClusterOrder {
     sort();
   }
 
-  /// Number of clusters.
-  std::size_t count() const { return count_; }
-  /// 0 for the largest cluster and so on; kNoCluster if its size is not accepted.
-  /// \param subcluster 0..subclusterCount()-1
+  std::size_t count() const { return count_; }  ///< of clusters
+  /// Of a subcluster, 0..subclusterCount()-1: 0 if it is the largest cluster and so on, kNoCluster if its size is not
+  /// accepted.
   std::int32_t labelOf(std::uint32_t subcluster) const { return label_of_[subcluster]; }
 
  private:

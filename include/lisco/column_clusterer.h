@@ -44,8 +44,7 @@ class LISCO_EXPORT ColumnClusterer {
 
   /// Event "reception of step s".
   /// \param cells cells[l] is what laser l measured; those that are no returns are skipped
-  /// \param lasers number of cells, may differ from column to column; the order of the lasers is free, and for speed
-  ///        the same in each column
+  /// \param lasers number of cells, may differ from column to column; in any order, for speed the same in each column
   /// \throws std::logic_error before begin(); std::invalid_argument if there are more cells than Parameters::lasers
   void addColumn(const Return* cells, std::size_t lasers) {
     addColumns(1, lasers, [cells](std::size_t laser, std::size_t) { return cells[laser]; });
@@ -65,10 +64,8 @@ class LISCO_EXPORT ColumnClusterer {
   /// Event "all steps processed", or a look in between: brings the subclusters up to date with all columns added.
   void update();
 
-  /// Number of subclusters, after update().
-  std::size_t subclusterCount() const;
-  /// Number of returns in a subcluster, after update().
-  /// \param subcluster 0..subclusterCount()-1
+  std::size_t subclusterCount() const;  ///< after update()
+  /// Number of returns in a subcluster, 0..subclusterCount()-1; after update().
   std::uint32_t sizeOf(std::uint32_t subcluster) const;
 
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};  ///< no subcluster
@@ -83,8 +80,7 @@ class LISCO_EXPORT ColumnClusterer {
     visitRuns(RunVisitor(visit));
   }
 
-  /// Number of returns read so far; of all columns added, after update().
-  std::size_t returnCount() const;
+  std::size_t returnCount() const;  ///< read so far; of all columns added, after update()
 
  private:
   void receive(std::size_t columns, std::size_t lasers, const CellSource& cells);
@@ -102,9 +98,9 @@ struct Parameters {
   SensorHints sensor;                    ///< what is known of the sensor
   std::size_t expected_returns = 65536;  ///< for which memory is reserved; more may come
   std::size_t lasers = 0;                ///< largest number of cells of a column; 0: any number
-  /// Columns read together, 1..64. With 64 the work is least, since the returns of a laser lie side by side in a
-  /// cloud's memory; with 1 each column's work is done at once. The work of a block is spread over the columns of the
-  /// next ones. Does not affect results: update() covers every column added.
+  /// Columns read together, 1..64. With 64 the work is least, since the returns of a laser lie side by side in memory;
+  /// it is spread over the columns of the next blocks. With 1 each column's work is done at once. Does not affect
+  /// results: update() covers every column added.
   std::size_t block_columns = 64;
   /// Threads that share the work of the first addColumns () after begin (), which should bring a whole rotation, and of
   /// the update () after it; 0: one for each core. No more are used than kMaxThreads, nor more than one for 64 columns.

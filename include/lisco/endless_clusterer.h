@@ -60,8 +60,8 @@ class LISCO_EXPORT EndlessClusterer {
   /// Takes the next column.
   /// \param cells cells[l] is what laser l measured; those that are no returns are skipped. Source indices are handed
   ///        back within the next turn and a half.
-  /// \param position turns, at least that of the column before, within +-kMaxPosition. It is taken as it is given: the
-  ///        definition above holds at 1e12 turns as it does at 0
+  /// \param position turns, at least that of the column before, within +-kMaxPosition; the definition above
+  ///        holds for it as it is given
   /// \throws std::logic_error before begin (); std::invalid_argument if there are more cells than lasers, or the
   ///         position is less than the one before or out of range
   void addColumn(const Return* cells, std::size_t lasers, double position);
@@ -116,18 +116,12 @@ inline constexpr double kNearMargin = 2e-6;
 /// A cluster that no later column can reach.
 class EndlessCluster {
  public:
-  /// Number of its returns.
-  std::size_t size() const { return size_; }
-  /// Position of its first column, turns.
-  double firstPosition() const { return first_position_; }
-  /// Position of its last column, turns; less than one turn after the first.
-  double lastPosition() const { return last_position_; }
-  /// Columns from this position on could not reach it.
-  double reachEnd() const { return reach_end_; }
-  /// Whether it was delivered for having lasted a whole turn, perhaps before its end.
-  bool isCut() const { return is_cut_; }
-  /// Whether it goes on from a cut one.
-  bool isContinued() const { return is_continued_; }
+  std::size_t size() const { return size_; }                ///< number of its returns
+  double firstPosition() const { return first_position_; }  ///< of its first column, turns
+  double lastPosition() const { return last_position_; }    ///< of its last column, less than one turn after the first
+  double reachEnd() const { return reach_end_; }            ///< columns from this position on could not reach it, turns
+  bool isCut() const { return is_cut_; }  ///< delivered for having lasted a whole turn, perhaps before its end
+  bool isContinued() const { return is_continued_; }  ///< goes on from a cut one
 
   /// Calls visit(source_indices, count) for all its returns, in groups of one laser and columns side by side.
   template <typename Visit>

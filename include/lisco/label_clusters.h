@@ -64,8 +64,7 @@ class LISCO_EXPORT ClusterLabeller {
   ///        LabelParameters::threads allows it
   /// \param labels receives `count` labels, laser by laser; see labelClusters
   /// \return number of clusters
-  /// \throws std::invalid_argument if count is 2^31 or more, lasers do not divide it, or labels are null while it is
-  ///         not 0
+  /// \throws as labelClusters
   template <typename Cells>
   std::size_t label(std::size_t count, Cells&& cells, const LabelParameters& parameters, std::int32_t* labels) {
     return labelAll(count, CellSource(cells), parameters, labels);

@@ -16,9 +16,7 @@ namespace lisco {
 /// One cell of a column: what one laser measured in one step of the rotation (the paper's section II-A), in
 /// Cartesian coordinates.
 struct Return {
-  float x;                     ///< metres, in the cloud's own frame
-  float y;                     ///< the same
-  float z;                     ///< the same
+  float x, y, z;               ///< metres, in the cloud's own frame
   std::uint32_t source_index;  ///< the caller's name for this cell, handed back with its subcluster
 };
 
@@ -33,15 +31,13 @@ inline bool isReturn(float x, float y, float z) {
   return finite && !(x == 0.0F && y == 0.0F && z == 0.0F);
 }
 
-/// Cells of lasers and columns, read by compiled code through one function call per laser and block of columns. Refers
-/// to the callable that it is made of.
+/// Cells of lasers and columns, read by one function call per laser and block of columns. Refers to the callable that
+/// it is made of.
 class CellSource {
  public:
   /// Coordinates (metres) and source indices of consecutive cells of one laser.
   struct Destination {
-    float* x;                     ///< metres
-    float* y;                     ///< the same
-    float* z;                     ///< the same
+    float *x, *y, *z;             ///< metres
     std::uint32_t* source_index;  ///< see Return
   };
 

@@ -53,13 +53,10 @@ class LISCO_EXPORT WindowClusterer {
   /// \throws std::logic_error before begin (), std::invalid_argument if there are more cells than lasers
   bool addColumn(const Return* cells, std::size_t lasers);
 
-  std::size_t columnCount() const;  ///< of the last window
-  std::size_t returnCount() const;  ///< of the last window
-
-  /// Number of subclusters of the last window.
-  std::size_t subclusterCount() const;
-  /// Number of returns in a subcluster of the last window.
-  /// \param subcluster 0..subclusterCount()-1
+  std::size_t columnCount() const;      ///< of the last window
+  std::size_t returnCount() const;      ///< of the last window
+  std::size_t subclusterCount() const;  ///< of the last window
+  /// Number of returns in a subcluster of the last window, 0..subclusterCount()-1.
   std::uint32_t sizeOf(std::uint32_t subcluster) const;
 
   /// Visits all returns of the last window as ColumnClusterer::forEachRun does, until the next window ends.
