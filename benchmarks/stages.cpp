@@ -95,16 +95,15 @@ class StagedExtraction {
 
   /// As LiscoCloudClusterer::collect () does it.
   void collect(const Problem& problem, Clusters& clusters) {
-    writer_.start(clusterer_.subclusterCount(), problem.cloud->header, problem.min_size, problem.max_size, clusters);
+    pcl::detail::LiscoClusterWriter writer(clusterer_, problem.cloud->header, problem.min_size, problem.max_size,
+                                           next_index_, clusters);
     clusterer_.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-      writer_.append(
-          subcluster, [this](std::uint32_t one) { return clusterer_.sizeOf(one); }, count,
-          [cells](std::size_t i) { return static_cast<pcl::index_t>(cells[i]); });
+      writer.append(subcluster, count, [cells](std::size_t i) { return static_cast<pcl::index_t>(cells[i]); });
     });
   }
 
   lisco::ColumnClusterer clusterer_;
-  pcl::detail::LiscoClusterWriter writer_;
+  std::vector<pcl::index_t*> next_index_;
   Clock::time_point latest_;
   std::array<double, kStages> times_{};
 };

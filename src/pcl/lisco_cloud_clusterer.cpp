@@ -19,7 +19,7 @@ class LiscoCloudClusterer::State {
   std::vector<char> is_selected;                   ///< per point of the cloud; where many are selected
   Indices few_points;                              ///< ascending; where few are selected
   std::vector<std::uint32_t> subcluster_of_point;  ///< only where the order of the indices is needed
-  LiscoClusterWriter writer;
+  std::vector<index_t*> next_index;                ///< memory of LiscoClusterWriter
 };
 
 LiscoCloudClusterer::LiscoCloudClusterer() : state_(std::make_unique<State>()) {}
@@ -101,10 +101,8 @@ bool LiscoCloudClusterer::clusterPoints(const Layout& layout, const lisco::CellS
 void LiscoCloudClusterer::collect(const Indices* indices, const PCLHeader& header, uindex_t min_size, uindex_t max_size,
                                   std::vector<PointIndices>& clusters) {
   lisco::ColumnClusterer& clusterer = state_->clusterer;
-  LiscoClusterWriter& writer = state_->writer;
   std::vector<std::uint32_t>& subcluster_of_point = state_->subcluster_of_point;
-  const auto size_of = [&](std::uint32_t subcluster) { return clusterer.sizeOf(subcluster); };
-  writer.start(clusterer.subclusterCount(), header, min_size, max_size, clusters);
+  LiscoClusterWriter writer(clusterer, header, min_size, max_size, state_->next_index, clusters);
 
   // Clusters are in the order of their first points in the indices; within each, indices ascend.
   if (indices && !std::is_sorted(indices->begin(), indices->end())) {
@@ -117,11 +115,11 @@ void LiscoCloudClusterer::collect(const Indices* indices, const PCLHeader& heade
     });
     for (const auto& index : *indices) {
       const std::uint32_t subcluster = subcluster_of_point[static_cast<std::size_t>(index)];
-      if (subcluster != kNone) writer.place(subcluster, size_of);
+      if (subcluster != kNone) writer.place(subcluster);
     }
   }
   clusterer.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-    writer.append(subcluster, size_of, count, [cells](std::size_t i) { return static_cast<index_t>(cells[i]); });
+    writer.append(subcluster, count, [cells](std::size_t i) { return static_cast<index_t>(cells[i]); });
   });
 }
 

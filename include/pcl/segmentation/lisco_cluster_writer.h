@@ -23,31 +23,32 @@ inline void sortLiscoClusters(std::vector<PointIndices>& clusters) {
   std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);
 }
 
-/** \brief Writes subclusters of accepted sizes as PCL's clusters, in the order of their first place (). Keeps its
- * memory.
- */
+/** \brief Appends subclusters of accepted sizes to a vector as PCL's clusters, in the order of their first place (). */
+template <typename Clusterer>
 class LiscoClusterWriter {
  public:
-  /** \brief Starts appending clusters to a vector.
-   * \param[in] subclusters their number, including those of sizes not accepted
+  /** \param[in] clusterer lisco::ColumnClusterer or lisco::WindowClusterer, after update ()
+   * \param next_index memory of the writer, which a caller may keep for the next one
    */
-  void start(std::size_t subclusters, const PCLHeader& header, uindex_t min_size, uindex_t max_size,
-             std::vector<PointIndices>& clusters) {
-    next_index_.assign(subclusters, nullptr);
-    header_ = &header;
-    min_size_ = min_size;
-    max_size_ = max_size;
-    clusters_ = &clusters;
+  LiscoClusterWriter(const Clusterer& clusterer, const PCLHeader& header, uindex_t min_size, uindex_t max_size,
+                     std::vector<index_t*>& next_index, std::vector<PointIndices>& clusters)
+      : clusterer_(clusterer),
+        header_(header),
+        min_size_(min_size),
+        max_size_(max_size),
+        next_index_(next_index),
+        clusters_(clusters) {
+    next_index_.assign(clusterer.subclusterCount(), nullptr);
   }
+  LiscoClusterWriter(const LiscoClusterWriter&) = delete;
+  LiscoClusterWriter& operator=(const LiscoClusterWriter&) = delete;
 
   /** \brief Gives the cluster of a subcluster the next place, unless it has one or its size is not accepted.
-   * \param[in] size_of callable as std::uint32_t (std::uint32_t subcluster): its number of points
    * \return whether the size is accepted
    */
-  template <typename SizeOf>
-  bool place(std::uint32_t subcluster, SizeOf&& size_of) {
+  bool place(std::uint32_t subcluster) {
     index_t*& next = next_index_[subcluster];
-    if (next == nullptr) next = begin(size_of(subcluster));
+    if (next == nullptr) next = begin(clusterer_.sizeOf(subcluster));
     return (next != &ignored_);
   }
 
@@ -56,9 +57,9 @@ class LiscoClusterWriter {
    * \param[in] count at least 1
    * \param[in] point_at callable as index_t (std::size_t i), i below \a count; may be called several times
    */
-  template <typename SizeOf, typename PointAt>
-  void append(std::uint32_t subcluster, SizeOf&& size_of, std::size_t count, PointAt&& point_at) {
-    if (!place(subcluster, size_of)) return;
+  template <typename PointAt>
+  void append(std::uint32_t subcluster, std::size_t count, PointAt&& point_at) {
+    if (!place(subcluster)) return;
     index_t*& next = next_index_[subcluster];
     copy(next, count, point_at);
     next += count;
@@ -83,17 +84,18 @@ class LiscoClusterWriter {
   index_t* begin(std::uint32_t size) {
     static_assert(std::is_nothrow_move_constructible<PointIndices>::value, "clusters that move keep their indices");
     if (size < min_size_ || size > max_size_) return (&ignored_);
-    clusters_->emplace_back();
-    clusters_->back().header = *header_;
-    clusters_->back().indices.resize(size);
-    return (clusters_->back().indices.data());
+    clusters_.emplace_back();
+    clusters_.back().header = header_;
+    clusters_.back().indices.resize(size);
+    return (clusters_.back().indices.data());
   }
 
-  std::vector<index_t*> next_index_;  ///< of each subcluster: where it goes; nullptr: undecided
-  index_t ignored_ = 0;               ///< where those of sizes not accepted would go
-  const PCLHeader* header_ = nullptr;
-  uindex_t min_size_ = 1, max_size_ = 1;
-  std::vector<PointIndices>* clusters_ = nullptr;
+  const Clusterer& clusterer_;
+  const PCLHeader& header_;
+  const uindex_t min_size_, max_size_;
+  std::vector<index_t*>& next_index_;  ///< of each subcluster: where it goes; nullptr: undecided
+  index_t ignored_ = 0;                ///< where those of sizes not accepted would go
+  std::vector<PointIndices>& clusters_;
 };
 
 }  // namespace pcl::detail

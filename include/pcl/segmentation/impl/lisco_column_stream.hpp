@@ -203,14 +203,13 @@ class LiscoReceivedColumns {
       return;
     }
     const std::uint64_t width = end_column - first_column;
-    writer_.start(clusterer.subclusterCount(), settings.getHeader(), settings.getMinClusterSize(),
-                  settings.getMaxClusterSize(), clusters);
+    LiscoClusterWriter writer(clusterer, settings.getHeader(), settings.getMinClusterSize(),
+                              settings.getMaxClusterSize(), next_index_, clusters);
     clusterer.forEachRun([&](const std::uint32_t* names, std::size_t count, std::uint32_t subcluster) {
       const auto cell = store.cellOf(names[0]);  // the others follow it in its row
       const auto first = static_cast<index_t>(cell.row * width + (cell.column - first_column));
-      writer_.append(
-          subcluster, [&](std::uint32_t one) { return clusterer.sizeOf(one); }, count,
-          [first](std::size_t i) { return static_cast<index_t>(first + static_cast<index_t>(i)); });
+      writer.append(subcluster, count,
+                    [first](std::size_t i) { return static_cast<index_t>(first + static_cast<index_t>(i)); });
     });
     sortLiscoClusters(clusters);
   }
@@ -222,7 +221,7 @@ class LiscoReceivedColumns {
 
  private:
   std::size_t max_rows_ = 0;
-  LiscoClusterWriter writer_;
+  std::vector<index_t*> next_index_;  ///< memory of LiscoClusterWriter
   std::vector<lisco::Return> named_column_;
 };
 
