@@ -76,17 +76,12 @@ TEST(WorkBudget, DoesAllWorkAfterAnyRotation) {
   }
 }
 
-struct Share {
-  std::size_t first, end;
-};
-
-std::vector<Share> cut(const lisco::LoadBalancer& balancer, std::size_t count) {
-  std::vector<Share> all;
-  balancer.divide(count, [&](std::size_t share, std::size_t first, std::size_t end) {
-    EXPECT_EQ(share, all.size());
-    all.push_back({first, end});
-  });
-  return all;
+template <typename CellAt>
+std::vector<lisco::LoadBalancer::Part> cut(lisco::LoadBalancer& balancer, std::size_t columns, std::size_t lasers,
+                                           CellAt&& cell_at, std::size_t max_parts) {
+  std::vector<lisco::LoadBalancer::Part> parts;
+  balancer.divide(columns, lasers, lisco::CellSource(cell_at), max_parts, parts);
+  return parts;
 }
 
 TEST(LoadBalancer, AssignsEachColumnOnce) {
@@ -102,13 +97,15 @@ TEST(LoadBalancer, AssignsEachColumnOnce) {
       EXPECT_LT(column, columns);
       return random.chance(kept) ? lisco::Return{1, 2, 3, 0} : lisco::Return{0, 0, 0, 0};
     };
-    balancer.prepare(columns, lasers, lisco::CellSource(cell_at));
-    if (random.chance(0.5))
+    const std::size_t max_parts = 1 + random.below(20);
+    auto all = cut(balancer, columns, lasers, cell_at, max_parts);
+    if (random.chance(0.5)) {
       for (std::size_t first = 0; first < columns; first += 64)
         balancer.record(first, std::min<std::size_t>(64, columns - first), 64 + random.below(100000));
-    const std::size_t count = balancer.partCount(1 + random.below(20));
-    const std::vector<Share> all = cut(balancer, count);
-    ASSERT_EQ(all.size(), count);
+      all = cut(balancer, columns, lasers, cell_at, max_parts);
+    }
+    ASSERT_GE(all.size(), 1U);
+    ASSERT_LE(all.size(), std::clamp<std::size_t>((columns + 63) / 64, 1, max_parts)) << "less than 64 columns each";
     EXPECT_EQ(all.front().first, 0U);
     EXPECT_EQ(all.back().end, columns);
     for (std::size_t i = 1; i < all.size(); ++i) EXPECT_EQ(all[i].first, all[i - 1].end);
@@ -122,26 +119,23 @@ TEST(LoadBalancer, FollowsTheWorkOfTheLastRotation) {
     ++queries;
     return lisco::Return{1, 2, 3, 0};
   };
-  balancer.prepare(1024, 64, lisco::CellSource(cell_at));
+  EXPECT_EQ(cut(balancer, 1024, 64, cell_at, 2)[0].end, 512U);
   EXPECT_GT(queries, 0U);
-  EXPECT_EQ(cut(balancer, 2)[0].end, 512U);
   for (std::size_t first = 0; first < 1024; first += 64) balancer.record(first, 64, first < 256 ? 3000 : 1000);
   queries = 0;
-  balancer.prepare(1024, 64, lisco::CellSource(cell_at));
+  EXPECT_EQ(cut(balancer, 1024, 64, cell_at, 2)[0].end, 256U) << "4 x 3000 and 12 x 1000";
   EXPECT_EQ(queries, 0U);
-  EXPECT_EQ(cut(balancer, 2)[0].end, 256U) << "4 x 3000 and 12 x 1000";
-  balancer.prepare(1024, 32, lisco::CellSource(cell_at));  // another sensor
+  EXPECT_EQ(cut(balancer, 1024, 32, cell_at, 2)[0].end, 512U) << "another sensor";
   EXPECT_GT(queries, 0U);
-  EXPECT_EQ(cut(balancer, 2)[0].end, 512U);
 }
 
 TEST(LoadBalancer, AssignsColumnsWithoutWork) {
   lisco::LoadBalancer balancer;
   const auto cell_at = [](std::size_t, std::size_t) { return lisco::Return{1, 2, 3, 0}; };
-  balancer.prepare(1000, 64, lisco::CellSource(cell_at));
+  EXPECT_EQ(cut(balancer, 1000, 64, cell_at, 3).size(), 3U);
   balancer.record(0, 512, 100);
   balancer.record(512, 488, 0);
-  EXPECT_EQ(cut(balancer, 3).back().end, 1000U);
+  EXPECT_EQ(cut(balancer, 1000, 64, cell_at, 3).back().end, 1000U);
 }
 
 TEST(LoadBalancer, FollowsTheReturnsOfTheFirstRotation) {
@@ -149,8 +143,8 @@ TEST(LoadBalancer, FollowsTheReturnsOfTheFirstRotation) {
   const auto cell_at = [](std::size_t, std::size_t column) {
     return column < 400 ? lisco::Return{1, 2, 3, 0} : lisco::Return{0, 0, 0, 0};
   };
-  balancer.prepare(1600, 64, lisco::CellSource(cell_at));
-  const std::size_t border = cut(balancer, 2)[0].end;  // a return weighs five times as much as an empty cell
+  const std::size_t border =
+      cut(balancer, 1600, 64, cell_at, 2)[0].end;  // a return weighs five times as much as an empty cell
   EXPECT_GT(border, 250U);
   EXPECT_LT(border, 450U);
 }

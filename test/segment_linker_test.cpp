@@ -12,11 +12,13 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/disjoint_sets.h"
+#include "core/far/image_circle.h"
 #include "core/ring_block.h"
 #include "engine.h"
 #include "far_hints.h"
@@ -99,10 +101,17 @@ class Probe {
   void linkAll() {
     bool full = false;
     for (FarPart& part : parts_) part.linker.linkRest(part.image, subclusters_);
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-      for (std::size_t earlier = 0; earlier <= i; ++earlier)
-        parts_[i].linker.linkTo(parts_[i].image, parts_[earlier].image, subclusters_);
-      full = full || parts_[i].image.isFull();
+    lisco::ImageCircle images;
+    images.assign(parts_.size(), [&](std::size_t i) -> const lisco::RangeImage& { return parts_[i].image; });
+    images.forEachPair(
+        [&](std::size_t a, std::size_t b) { parts_[a].linker.linkTo(parts_[a].image, parts_[b].image, subclusters_); });
+    for (FarPart& part : parts_) {
+      part.linker.linkTo(part.image, part.image, subclusters_);
+      for (const lisco::RangeImage::Unplaced& unplaced : part.image.unplaced)
+        images.forEachAround(unplaced, [&](std::size_t i) {
+          lisco::SegmentLinker::linkUnplaced(parts_[i].image, unplaced, subclusters_);
+        });
+      full = full || part.image.isFull();
     }
     if (full)
       for (FarPart& part : parts_) part.image.stopPlacing();
@@ -172,6 +181,67 @@ int reachInBins() {
 TEST(SegmentLinker, ToleranceSpansManyBins) {
   EXPECT_GT(reachInBins(), 30);
   EXPECT_LT(reachInBins(), 48);
+}
+
+// Of many images those whose bins come near enough, each pair once: short ones around the turn, long ones that overlap.
+TEST(ImageCircle, FindsImagesInReach) {
+  constexpr double kBins = 1024;       // of a turn
+  constexpr double kMask = 48;         // bins
+  constexpr double kMostBetween = 60;  // bins: a mask, and some for rounding
+  std::size_t pairs = 0;
+  for (std::uint64_t seed = 1; seed < 1 + timesEffort(200); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const lisco::SensorHints hints = hintsFor(static_cast<int>(kBins), 0.5F, random.chance(0.5));
+    const std::size_t longest = random.chance(0.5) ? 60 : 1500;
+    std::vector<lisco::RangeImage> images(1 + random.below(40));
+    for (lisco::RangeImage& image : images) {
+      image.prepare(lisco::Tolerance(1.0F), hints, 1024);
+      image.started = true;
+      image.placed = random.chance(0.1) ? 0 : 1;
+      image.start_azimuth = random.between(-4, 4);
+      image.end = 1 + random.below(longest);
+    }
+    /// Bins from an image's last one on to an azimuth, in the sense of rotation; below 0 within the image.
+    const auto behind = [&](const lisco::RangeImage& image, double azimuth) {
+      const double turns = static_cast<double>(image.direction) * (azimuth - image.start_azimuth) / (2 * kPi);
+      return (turns - std::floor(turns)) * kBins - static_cast<double>(image.end);
+    };
+    std::set<std::pair<std::size_t, std::size_t>> found;
+    lisco::ImageCircle circle;
+    circle.assign(images.size(), [&](std::size_t i) -> const lisco::RangeImage& { return images[i]; });
+    circle.forEachPair([&](std::size_t a, std::size_t b) {
+      ASSERT_GT(a, b);
+      ASSERT_TRUE(found.emplace(a, b).second) << "visited again";
+    });
+    pairs += found.size();
+    for (std::size_t a = 0; a < images.size(); ++a)
+      for (std::size_t b = 0; b < a; ++b) {
+        const double apart =
+            std::min(behind(images[a], images[b].start_azimuth), behind(images[b], images[a].start_azimuth));
+        const bool are_used = images[a].placed > 0 && images[b].placed > 0;
+        const bool is_found = found.count({a, b}) > 0;
+        ASSERT_TRUE(is_found || !are_used || apart >= kMask) << a << " and " << b;
+        ASSERT_TRUE(!is_found || (are_used && apart < kMostBetween)) << a << " and " << b;
+      }
+    for (int i = 0; i < 20; ++i) {
+      const double azimuth = random.between(-kPi, kPi);
+      std::set<std::size_t> around;
+      circle.forEachAround(
+          {static_cast<float>(10 * std::cos(azimuth)), static_cast<float>(10 * std::sin(azimuth)), 0, 0},
+          [&](std::size_t image) { ASSERT_TRUE(around.insert(image).second); });
+      for (std::size_t image = 0; image < images.size(); ++image) {
+        const double after = behind(images[image], azimuth);
+        const double before = kBins - (after + static_cast<double>(images[image].end));
+        const double apart = std::min(before, after);
+        const bool is_found = around.count(image) > 0;
+        const bool is_used = images[image].placed > 0;
+        ASSERT_TRUE(is_found || !is_used || apart >= kMask) << image;
+        ASSERT_TRUE(!is_found || (is_used && apart < kMostBetween)) << image;
+      }
+    }
+  }
+  EXPECT_GT(pairs, 1000U);
 }
 
 TEST(RangeImage, IsInUseOnlyWithUsableHints) {

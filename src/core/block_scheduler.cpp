@@ -29,6 +29,7 @@ void BlockScheduler::add(const CellSource& cells, std::size_t first, std::size_t
 /// Reads the share of the pending block that falls to a number of columns.
 void BlockScheduler::readPending(std::size_t columns, Partition& partition, DisjointSets& subclusters) {
   if (pending_.columns() == 0) return;
+  partition.addLasers(pending_.lasers());
   columns_since_block_ = std::min(columns_since_block_ + columns, block_columns_);
   for (; pending_laser_ < pending_.lasers() * columns_since_block_ / block_columns_; ++pending_laser_)
     partition.readRing(pending_.ring(pending_laser_), pending_laser_, columns_read_, pending_.columns(), subclusters);

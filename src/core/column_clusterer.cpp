@@ -8,6 +8,7 @@
 
 #include "core/block_scheduler.h"
 #include "core/disjoint_sets.h"
+#include "core/far/image_circle.h"
 #include "core/far_trial.h"
 #include "core/load_balancer.h"
 #include "core/near/voxel_sorter.h"
@@ -43,6 +44,7 @@ class ColumnClusterer::Rotation {
   bool readFarAndNear(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial);
   void receiveInSequence(std::size_t columns, std::size_t lasers, const CellSource& cells);
   void linkPartitions();
+  void linkImages(std::size_t first);
   void linkCollected();
   void stopCollecting();
   void numberSubclusters();
@@ -52,20 +54,16 @@ class ColumnClusterer::Rotation {
   Partition& lastPartition() { return partitions_[partition_count_ - 1]; }
   const Runs& runsOf(std::size_t partition) const { return partitions_[partition].runs; }
 
-  /// A thread's columns: [first, end).
-  struct Part {
-    std::size_t first, end;
-  };
-
   Parameters parameters_;
   Tolerance tolerance_;
   bool usable_ = false;       ///< begun, and left by no exception since
   DisjointSets subclusters_;  ///< of runs
   std::vector<Partition> partitions_;
-  std::size_t partition_count_ = 0;  ///< in use; 0: not divided yet
-  std::vector<Part> parts_;
-  bool are_linked_ = false;  ///< all partitions but the last, with each other
+  std::size_t partition_count_ = 0;        ///< in use; 0: not divided yet
+  std::vector<LoadBalancer::Part> parts_;  ///< of the threads
+  bool are_linked_ = false;                ///< all partitions but the last, with each other
   enum class Near { kCollected, kSorted, kInVoxels } near_ = Near::kInVoxels;  ///< state of the near returns
+  ImageCircle images_;
   VoxelSorter sorter_;
   std::vector<const NearReturns*> near_returns_;
   LoadBalancer balancer_;
@@ -147,16 +145,12 @@ void ColumnClusterer::Rotation::update() {
 
 /// Divides the columns among threads, if there are enough of them.
 void ColumnClusterer::Rotation::divide(std::size_t columns, std::size_t lasers, const CellSource& cells) {
-  std::size_t count = 1;
-  if (parameters_.threads > 1 && columns * lasers >= kWorthThreads) {
-    balancer_.prepare(columns, lasers, cells);
-    count = balancer_.partCount(parameters_.threads);
-  }
-  parts_.resize(count);
-  if (count > 1)
-    balancer_.divide(count, [&](std::size_t part, std::size_t first, std::size_t end) { parts_[part] = {first, end}; });
-  usePartitions(count);
-  for (std::size_t i = 1; i < count; ++i)
+  if (parameters_.threads > 1 && columns * lasers >= kWorthThreads)
+    balancer_.divide(columns, lasers, cells, parameters_.threads, parts_);
+  else
+    parts_.resize(1);
+  usePartitions(parts_.size());
+  for (std::size_t i = 1; i < partition_count_; ++i)
     partitions_[i].first_element = static_cast<std::uint32_t>(lasers * parts_[i].first);  // at most a run for each cell
 }
 
@@ -208,7 +202,6 @@ void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, cons
 bool ColumnClusterer::Rotation::readFarAndNear(std::size_t i, std::size_t lasers, const CellSource& cells,
                                                FarTrial& trial) {
   Partition& partition = partitions_[i];
-  partition.addLasers(lasers);
   const auto [begin, end] = parts_[i];
   for (std::size_t first = begin; first < end; first += RingBlock::kColumns) {
     if (trial.isRefused()) return false;
@@ -229,7 +222,6 @@ bool ColumnClusterer::Rotation::readFarAndNear(std::size_t i, std::size_t lasers
 /// Whole blocks of columns are read at once; single columns are gathered into blocks, whose work is spread.
 void ColumnClusterer::Rotation::receiveInSequence(std::size_t columns, std::size_t lasers, const CellSource& cells) {
   Partition& partition = lastPartition();
-  partition.addLasers(lasers);
   for (std::size_t first = 0; first < columns;) {
     const std::size_t count = std::min(columns - first, scheduler_.columnsLeft());
     const bool is_block = count == parameters_.block_columns || count >= kWorthReadingAtOnce;
@@ -244,7 +236,7 @@ void ColumnClusterer::Rotation::receiveInSequence(std::size_t columns, std::size
   }
 }
 
-/// Links each partition within, by a thread of its own, then with those before it and across the seam.
+/// Links each partition within, by a thread of its own, then with the others.
 void ColumnClusterer::Rotation::linkPartitions() {
   // Partitions share subclusters once they are linked with each other; only the last one receives more columns then.
   linkCollected();
@@ -253,16 +245,27 @@ void ColumnClusterer::Rotation::linkPartitions() {
   subclusters_.share(partition_count_ - first > 1);  // near returns have joined sets of different partitions
   inParallel(partition_count_ - first, [&](std::size_t i) { partitions_[first + i].linkWithin(subclusters_); });
   subclusters_.share(false);
+  linkImages(first);
+  lastPartition().markLinked();  // the others have no voxels: see stopCollecting ()
+}
+
+/// Links far returns of different partitions and across the seam, as far as partitions from `first` on take part: the
+/// images in each other's reach, which are a few for each; each unplaced return with the images around it.
+void ColumnClusterer::Rotation::linkImages(std::size_t first) {
+  images_.assign(partition_count_, [&](std::size_t i) -> const RangeImage& { return partitions_[i].image(); });
+  images_.forEachPair([&](std::size_t later, std::size_t earlier) {
+    if (later >= first) partitions_[later].linkTo(partitions_[earlier], subclusters_);
+  });
   bool is_any_full = false;
-  for (std::size_t i = first; i < partition_count_; ++i) {
-    for (std::size_t earlier = 0; earlier < i; ++earlier) partitions_[i].linkTo(partitions_[earlier], subclusters_);
-    partitions_[i].linkSeam(subclusters_);
-    is_any_full = is_any_full || partitions_[i].isImageFull();
-  }
   for (std::size_t i = 0; i < partition_count_; ++i) {
-    partitions_[i].markLinked();
-    if (is_any_full) partitions_[i].stopPlacing();
+    if (i >= first) partitions_[i].linkSeam(subclusters_);
+    for (const RangeImage::Unplaced& unplaced : partitions_[i].image().unplaced)
+      images_.forEachAround(unplaced, [&](std::size_t other) {
+        if (std::max(i, other) >= first) partitions_[other].linkUnplaced(unplaced, subclusters_);
+      });
+    is_any_full = is_any_full || partitions_[i].image().isFull();
   }
+  for (std::size_t i = 0; is_any_full && i < partition_count_; ++i) partitions_[i].stopPlacing();
 }
 
 /// Links collected near returns, of all partitions at once; in voxels, if they cannot be sorted.
@@ -276,10 +279,12 @@ void ColumnClusterer::Rotation::linkCollected() {
     stopCollecting();
 }
 
+/// Puts all near returns into the voxels of the last partition, which receives the columns that follow.
 void ColumnClusterer::Rotation::stopCollecting() {
   if (near_ == Near::kInVoxels) return;
+  for (std::size_t i = 0; i < partition_count_; ++i) lastPartition().takeCollected(partitions_[i], subclusters_);
+  if (near_ == Near::kSorted) lastPartition().markLinked();
   near_ = Near::kInVoxels;
-  for (std::size_t i = 0; i < partition_count_; ++i) partitions_[i].stopCollecting(subclusters_);
 }
 
 /// Numbers the subclusters by their first runs.

@@ -16,42 +16,29 @@ namespace lisco {
 /// before if that had as many columns and lasers, else estimated from the number of returns.
 class LoadBalancer {
  public:
-  /// Prepares for a rotation.
-  void prepare(std::size_t columns, std::size_t lasers, const CellSource& cells) {
-    const bool is_like_last = lasers == lasers_ && columns == columns_;
-    lasers_ = lasers;
-    columns_ = columns;
-    if (is_like_last) return;
-    weights_.clear();
-    for (std::size_t column = 0; column < columns; column += kGroup) {
-      std::size_t returns = 0;
-      for (std::size_t laser = column / kGroup % kSampled; laser < lasers; laser += kSampled) {
-        const Return cell = cells.at(laser, column);
-        returns += isReturn(cell.x, cell.y, cell.z) ? 1 : 0;
-      }
-      weights_.push_back(static_cast<std::uint32_t>(lasers + kSampled * kReturnWeight * returns));
-    }
-  }
+  /// Columns [first, end).
+  struct Part {
+    std::size_t first, end;
+  };
 
-  /// Number of parts, up to a maximum, that are worth a thread each.
-  std::size_t partCount(std::size_t max_parts) const {
-    return std::clamp<std::size_t>(weights_.size() / kMinGroups, 1, max_parts);
-  }
-
-  /// Calls visit(part, first_column, end_column) for each part.
-  template <typename Visit>
-  void divide(std::size_t parts, Visit&& visit) const {
+  /// Divides a rotation into as many parts as are worth a thread each: 1 to max_parts.
+  /// \param parts receives them, in order
+  void divide(std::size_t columns, std::size_t lasers, const CellSource& cells, std::size_t max_parts,
+              std::vector<Part>& parts) {
+    if (lasers != lasers_ || columns != columns_) weigh(columns, lasers, cells);
+    parts.resize(std::clamp<std::size_t>(weights_.size() / kMinGroups, 1, max_parts));
     const auto all = std::accumulate(weights_.begin(), weights_.end(), std::uint64_t{0});
     std::uint64_t sum = 0;
     std::size_t group = 0;
-    for (std::size_t part = 0; part < parts; ++part) {
+    for (std::size_t part = 0; part < parts.size(); ++part) {
       const std::size_t first = group;
-      while (group < weights_.size() && sum < all * (part + 1) / parts) sum += weights_[group++];
-      visit(part, std::min(first * kGroup, columns_), std::min(group * kGroup, columns_));
+      while (group < weights_.size() && sum < all * (part + 1) / parts.size()) sum += weights_[group++];
+      parts[part] = {std::min(first * kGroup, columns), std::min(group * kGroup, columns)};
     }
   }
 
-  /// Records the work of some columns, in any unit. Threads may call it at the same time, each for its own part.
+  /// Records the work of some columns of the rotation divided last, in any unit. Threads may call it at the same time,
+  /// each for its own part.
   void record(std::size_t first, std::size_t columns, std::size_t work) {
     if (columns == 0) return;
     const std::size_t begin = first / kGroup;
@@ -63,6 +50,21 @@ class LoadBalancer {
   }
 
  private:
+  /// Estimates the work of columns from their returns.
+  void weigh(std::size_t columns, std::size_t lasers, const CellSource& cells) {
+    lasers_ = lasers;
+    columns_ = columns;
+    weights_.clear();
+    for (std::size_t column = 0; column < columns; column += kGroup) {
+      std::size_t returns = 0;
+      for (std::size_t laser = column / kGroup % kSampled; laser < lasers; laser += kSampled) {
+        const Return cell = cells.at(laser, column);
+        returns += isReturn(cell.x, cell.y, cell.z) ? 1 : 0;
+      }
+      weights_.push_back(static_cast<std::uint32_t>(lasers + kSampled * kReturnWeight * returns));
+    }
+  }
+
   static constexpr std::size_t kGroup = 16;        ///< columns weighed together
   static constexpr std::size_t kMinGroups = 4;     ///< of a part: 64 columns
   static constexpr std::size_t kSampled = 4;       ///< one in this many lasers is sampled, in one column of a group

@@ -13,19 +13,6 @@ namespace {
 /// Of a return, beyond what the segment linker counts, in its units of work (benchmarks/suite.sh stages).
 constexpr std::size_t kWorkOfReturn = 2;
 
-/// Joins neighbours in the voxels of two partitions of one rotation.
-class Merger : public PairVisitor {
- public:
-  explicit Merger(DisjointSets& subclusters) : subclusters_(subclusters) {}
-  bool inDifferentSets(std::uint32_t own, std::uint32_t others) override {
-    return subclusters_.find(own) != subclusters_.find(others);
-  }
-  void join(std::uint32_t own, std::uint32_t others) override { subclusters_.merge(own, others); }
-
- private:
-  DisjointSets& subclusters_;
-};
-
 }  // namespace
 
 void Partition::prepare(const Tolerance& tolerance, const SensorHints& hints, std::size_t columns) {
@@ -38,13 +25,14 @@ void Partition::prepare(const Tolerance& tolerance, const SensorHints& hints, st
   segments_.prepare(image_);
 }
 
-void Partition::stopCollecting(DisjointSets& subclusters) {
+void Partition::takeCollected(Partition& other, DisjointSets& subclusters) {
   collects_near_ = false;
-  for (std::size_t first = 0; first < near_returns_.count; first += RingBlock::kColumns) {
-    const std::size_t count = std::min(RingBlock::kColumns, near_returns_.count - first);
+  NearReturns& collected = other.near_returns_;
+  for (std::size_t first = 0; first < collected.count; first += RingBlock::kColumns) {
+    const std::size_t count = std::min(RingBlock::kColumns, collected.count - first);
     info_.starts = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      const NearReturn& near = near_returns_.returns[first + i];
+      const NearReturn& near = collected.returns[first + i];
       block_.x[RingBlock::kMargin + i] = near.x;
       block_.y[RingBlock::kMargin + i] = near.y;
       block_.z[RingBlock::kMargin + i] = near.z;
@@ -53,11 +41,12 @@ void Partition::stopCollecting(DisjointSets& subclusters) {
     }
     voxels_.add(block_, info_, ~bitsFrom(count), subclusters);
   }
-  near_returns_.count = 0;
+  collected.count = 0;
 }
 
 void Partition::readColumns(const CellSource& cells, std::size_t first_cell, std::size_t count, std::size_t lasers,
                             std::uint32_t first_column, DisjointSets& subclusters) {
+  addLasers(lasers);
   for (std::size_t laser = 0; laser < lasers; ++laser) {
     block_.read(0, cells, laser, first_cell, count);
     readRing(block_, laser, first_column, count, subclusters);
@@ -78,12 +67,6 @@ void Partition::readLasers(const CellSource& cells, std::size_t first, std::size
 void Partition::linkWithin(DisjointSets& subclusters) {
   segments_.linkRest(image_, subclusters);
   near_.link(voxels_, subclusters);
-}
-
-void Partition::linkTo(Partition& earlier, DisjointSets& subclusters) {
-  Merger merger(subclusters);
-  segments_.linkTo(image_, earlier.image_, subclusters);
-  VoxelLinker::linkTo(voxels_, earlier.voxels_, VoxelLinker::Part::kNew, merger);
 }
 
 bool Partition::isFarWorthwhile() const {

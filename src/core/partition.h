@@ -29,7 +29,7 @@ class Partition {
   /// \param columns number of columns expected; more than a turn needs no more memory
   void prepare(const Tolerance& tolerance, const SensorHints& hints, std::size_t columns);
 
-  /// Makes room in the range image for a number of lasers, before they are read.
+  /// Makes room in the range image for a number of lasers, before their rings are read.
   void addLasers(std::size_t lasers) {
     if (image_.inUse()) image_.addLasers(lasers);
   }
@@ -41,8 +41,9 @@ class Partition {
   void reserveNear(std::size_t columns_read, std::size_t columns) {
     near_returns_.returns.grow(near_returns_.count * columns / columns_read);
   }
-  /// Puts the near returns collected so far, and all that follow, into voxels.
-  void stopCollecting(DisjointSets& subclusters);
+  /// From now on near returns are put into voxels: first those that a partition of the same rotation, perhaps this one,
+  /// has collected.
+  void takeCollected(Partition& other, DisjointSets& subclusters);
 
   /// Reads `count` columns laser by laser, and links the sectors that all lasers have passed.
   /// \param first_cell number of the first column in `cells`
@@ -70,11 +71,15 @@ class Partition {
 
   /// Links all returns read since the last call among themselves and with those before, near and far.
   void linkWithin(DisjointSets& subclusters);
-  /// Links the partition with an earlier one of the same rotation, after linkWithin () of both.
-  void linkTo(Partition& earlier, DisjointSets& subclusters);
+  /// Links far returns with those of an earlier partition of the same rotation, after linkWithin () of both.
+  void linkTo(Partition& earlier, DisjointSets& subclusters) { segments_.linkTo(image_, earlier.image_, subclusters); }
+  /// Links an unplaced return of the same rotation with the far returns of the partition, after linkWithin () of both.
+  void linkUnplaced(const RangeImage::Unplaced& unplaced, DisjointSets& subclusters) {
+    SegmentLinker::linkUnplaced(image_, unplaced, subclusters);
+  }
   /// Links the end of the partition with its beginning, a turn before.
   void linkSeam(DisjointSets& subclusters) { segments_.linkTo(image_, image_, subclusters); }
-  /// Marks all near returns in voxels as linked with all other partitions: the next linkTo () links newer ones.
+  /// Marks all near returns in voxels as linked with each other and with other partitions.
   void markLinked() { VoxelLinker::markLinked(voxels_); }
 
   /// Linking of far returns part by part: see SegmentLinker.
@@ -82,13 +87,13 @@ class Partition {
   std::size_t farPartsLeft() const { return segments_.partsLeft(image_); }
   std::size_t linkFarPart(DisjointSets& subclusters) { return segments_.linkPart(image_, subclusters); }
 
+  const RangeImage& image() const { return image_; }
   /// False if all returns are near.
   bool hasFar() const { return image_.inUse(); }
   /// Whether linking far returns, as measured so far, takes less than sorting them would.
   bool isFarWorthwhile() const;
 
-  /// Whether too many returns are unplaced: see RangeImage::isFull.
-  bool isImageFull() const { return image_.isFull(); }
+  /// See RangeImage::isFull.
   void stopPlacing() { image_.stopPlacing(); }
 
   /// Work that reading and linking has taken since prepare (), in the segment linker's units.

@@ -215,7 +215,7 @@ void SegmentLinker::linkRest(RangeImage& image, DisjointSets& subclusters) {
 }
 
 void SegmentLinker::linkTo(RangeImage& image, RangeImage& other, DisjointSets& subclusters) {
-  if (!image.started || !other.started) return;
+  if (image.placed == 0 || other.placed == 0) return;
   const bool is_seam = &other == &image;
   const auto turn = static_cast<double>(image.steps);
   const double ahead =
@@ -224,9 +224,7 @@ void SegmentLinker::linkTo(RangeImage& image, RangeImage& other, DisjointSets& s
   const double most = static_cast<double>(image.end) + kMaxReach;
   const auto first = static_cast<int>(std::ceil((least - ahead) / turn));
   const auto last = static_cast<int>(std::floor((most - ahead) / turn));
-  const bool have_bins_in_reach = image.placed > 0 && other.placed > 0 && first <= last;
-  // Most parts of a rotation are out of each other's reach.
-  if (!have_bins_in_reach && image.unplaced.empty() && other.unplaced.empty()) return;
+  if (first > last) return;
   if (!is_seam) {
     image.shareRows(other);
     other.shareRows(image);
@@ -234,14 +232,14 @@ void SegmentLinker::linkTo(RangeImage& image, RangeImage& other, DisjointSets& s
   }
   fit(image);
   image.updateElevations();
-  for (int turns = first; have_bins_in_reach && turns <= last; ++turns)
+  for (int turns = first; turns <= last; ++turns)
     HWY_DYNAMIC_DISPATCH(linkAcross)(image, *this, other, ahead + turn * turns, subclusters);
   forgetSectors();
-  for (const RangeImage::Unplaced& unplaced : other.unplaced)
-    HWY_DYNAMIC_DISPATCH(searchOne)(image, unplaced, subclusters);
-  if (is_seam) return;
-  for (const RangeImage::Unplaced& unplaced : image.unplaced)
-    HWY_DYNAMIC_DISPATCH(searchOne)(other, unplaced, subclusters);
+}
+
+void SegmentLinker::linkUnplaced(RangeImage& image, const RangeImage::Unplaced& unplaced, DisjointSets& subclusters) {
+  image.updateElevations();
+  HWY_DYNAMIC_DISPATCH(searchOne)(image, unplaced, subclusters);
 }
 
 }  // namespace lisco

@@ -50,7 +50,7 @@ struct SegmentLinkerState {
 /// compared first, several at once, which joins most of what belongs together. Then each segment is compared with the
 /// segments in its neighbor mask that are in another subcluster by then: bounds first, returns last.
 ///
-/// Finds all pairs of placed returns; pairs with an unplaced one are found by linkTo (). Serves one image.
+/// Finds all pairs of placed returns; linkUnplaced () finds those with an unplaced one. Serves one image.
 class SegmentLinker : private SegmentLinkerState {
  public:
   /// Starts a rotation, or a part of one. Keeps its memory.
@@ -72,6 +72,8 @@ class SegmentLinker : private SegmentLinkerState {
   /// Links the returns of the image with those of another one of the same rotation; or, of itself, those at its end
   /// with those a turn before. After linkRest () of both.
   void linkTo(RangeImage& image, RangeImage& other, DisjointSets& subclusters);
+  /// Links a return that is unplaced, in this image or another one of the same rotation, with the returns of the image.
+  static void linkUnplaced(RangeImage& image, const RangeImage::Unplaced& unplaced, DisjointSets& subclusters);
 
   /// Work done since prepare (), about in comparisons of registers.
   std::size_t workDone() const { return work; }
