@@ -42,7 +42,7 @@ constexpr LaneInts kLaneInts{};
 constexpr float kWallWidth = 0.05F, kWallGrowth = 0.003F;  // by which returns of an upright surface differ in distance
 constexpr float kKerb = 0.15F;                             // highest one
 constexpr float kKerbWidth = 0.1F, kBeyondKerb = 1.0F;     // least and most way up to the ground beyond a kerb
-constexpr float kMostAbove = 3.0F;                         // what is higher hangs over
+constexpr float kMaxAbove = 3.0F;                          // what is higher hangs over
 constexpr float kSteep = 0.6F;                             // slope of a surface that is no ground
 constexpr float kSurfaceStep = 0.2F, kSurfaceGrowth = 0.04F;  // returns of one surface are nearer to each other
 constexpr float kLineStep = 0.3F, kLineSpan = 2.0F;           // least lengths of a line of three returns
@@ -104,11 +104,11 @@ HWY_INLINE Above lookUp(const FollowedRow& row, std::size_t k, Floats rho, Float
   const auto up_step = hn::Sub(up_rho, rho), above_step = hn::Sub(above_rho, rho);
   const auto up_rise = hn::Sub(up_height, height), above_rise = hn::Sub(above_height, height);
   const auto isWall = [&](Mask is, Floats step, Floats rise) {
-    return hn::And(hn::And(is, hn::And(hn::Gt(rise, set(0.05F)), hn::Lt(rise, set(kMostAbove)))),
+    return hn::And(hn::And(is, hn::And(hn::Gt(rise, set(0.05F)), hn::Lt(rise, set(kMaxAbove)))),
                    hn::Lt(hn::Abs(step), wall_width));
   };
   const auto isSteep = [&](Mask is, Floats step, Floats rise) {
-    return hn::And(hn::And(is, hn::And(hn::Gt(rise, set(0.1F)), hn::Lt(rise, set(kMostAbove)))),
+    return hn::And(hn::And(is, hn::And(hn::Gt(rise, set(0.1F)), hn::Lt(rise, set(kMaxAbove)))),
                    hn::And(hn::Gt(step, set(-0.2F)), hn::Gt(rise, hn::Mul(set(kSteep), step))));
   };
   Above above;

@@ -23,7 +23,7 @@ namespace HWY_NAMESPACE {
 constexpr float kKnown = 1.5F;        // most slack of what may contradict
 constexpr float kWellKnown = 0.15F;   // most slack of what decides
 constexpr float kNearlyKnown = 0.5F;  // most slack of what decides where the ground seems to go on
-constexpr float kAtMap = 0.09F, kMostSlack = 0.03F, kLevelAtMap = 0.05F;
+constexpr float kAtMap = 0.09F, kMaxSlack = 0.03F, kLevelAtMap = 0.05F;
 constexpr float kSure = 0.05F;         // slack and height, even where a surface rises
 constexpr float kFoot = 0.03F;         // height, even at the foot of a wall
 constexpr float kAboveMap = 0.15F;     // contradicts
@@ -43,7 +43,7 @@ constexpr float kReflection = 0.5F;     // below the ground
 constexpr float kReflectedFrom = 1.0F;  // below the highest possible ground
 constexpr float kNearBelow = 0.1F;
 constexpr float kAdvance = 0.02F;
-constexpr float kBaseline = 1.5F, kBaselineGrowth = 0.1F, kLeastBaseline = 0.3F;
+constexpr float kBaseline = 1.5F, kBaselineGrowth = 0.1F, kMinBaseline = 0.3F;
 
 /// The ground that the map has where a return is.
 struct Mapped {
@@ -153,9 +153,9 @@ HWY_INLINE void advance(const FollowedRow& row, std::size_t k, Mask reached, Flo
   next_rho = select(far, rho, next_rho);
   next_height = select(far, height, next_height);
   const auto way = hn::Sub(rho, back_rho);
-  auto slope = hn::Div(hn::Sub(height, back_height), hn::Max(way, set(kLeastBaseline)));
+  auto slope = hn::Div(hn::Sub(height, back_height), hn::Max(way, set(kMinBaseline)));
   slope = hn::Min(hn::Max(slope, hn::Neg(max_slope)), max_slope);
-  slope = select(hn::And(reached, hn::Gt(way, set(kLeastBaseline))), slope, load(before.slope));
+  slope = select(hn::And(reached, hn::Gt(way, set(kMinBaseline))), slope, load(before.slope));
   store(select(reached, rho, load(before.rho)), now.rho);
   store(select(reached, height, load(before.height)), now.height);
   store(slope, now.slope);
@@ -206,7 +206,7 @@ HWY_INLINE Mask goesOn(const Above& above, Floats slope) {
 HWY_INLINE Mask foundByMap(const Mapped& map, const Above& above, Mask flat, Mask expected) {
   const auto off = hn::Abs(map.above);
   const auto well_known = hn::And(hn::And(hn::Lt(map.slack, set(kWellKnown)), hn::Or(hn::Not(above.surface), expected)),
-                                  hn::Lt(off, hn::Add(set(kAtMap), hn::Min(map.slack, set(kMostSlack)))));
+                                  hn::Lt(off, hn::Add(set(kAtMap), hn::Min(map.slack, set(kMaxSlack)))));
   const auto known = hn::And(hn::And(hn::Lt(map.slack, set(kNearlyKnown)), hn::And(flat, goesOn(above, map.slope))),
                              hn::Lt(off, hn::Add(set(kLevelAtMap), map.slack)));
   return hn::Or(well_known, known);

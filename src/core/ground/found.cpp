@@ -10,7 +10,7 @@ namespace lisco::ground {
 namespace {
 
 // Least part of the ground among a row's returns and those of the rows next to it.
-constexpr std::uint32_t kLeastGround = 2, kOfReturns = 7;
+constexpr std::uint32_t kMinGround = 2, kOfReturns = 7;
 
 }  // namespace
 
@@ -29,7 +29,7 @@ void dropScattered(const std::vector<RowOrder::Row>& rows, std::vector<Found>& f
       ground += countBits(row.ground);
       returns += countBits(static_cast<ColumnBits>(row.ground | row.higher));
     }
-    found[i].is_scattered = ground * kOfReturns < returns * kLeastGround;
+    found[i].is_scattered = ground * kOfReturns < returns * kMinGround;
   }
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (!found[i].is_scattered) continue;

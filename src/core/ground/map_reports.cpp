@@ -33,10 +33,10 @@ constexpr BinInts kBinInts{};
 constexpr float kAlong = 0.05F;        // metres per metre, by which the ground may rise unseen between two returns
 constexpr float kBeyond = 0.1F;        // metres per metre, the same beyond the last one
 constexpr float kBeyondStart = 0.02F;  // metres, the same
-constexpr float kMostBeyond = 1.5F;    // metres
+constexpr float kMaxBeyond = 1.5F;     // metres
 constexpr float kStep = 0.25F;         // metres; higher ones are no ground, even if they were found to be
 constexpr float kTrendGain = 0.3F;
-constexpr float kMostTrend = 0.005F;    // metres per metre of distance
+constexpr float kMaxTrend = 0.005F;     // metres per metre of distance
 constexpr float kMarginSame = 0.01F;    // metres
 constexpr float kMarginRay = 0.1F;      // metres
 constexpr float kMarginHidden = 0.05F;  // metres
@@ -94,7 +94,7 @@ HWY_INLINE void addTrend(GroundMap::Sector& sector, const Stretch& stretch, floa
   const float slack = kAlong * std::max(0.0F, std::min(at - stretch.from_rho, stretch.rho - at));
   if (before > stretch.height / stretch.rho * at + kMarginHidden || slack > sector.slack[bin] + kMarginSame) return;
   const float gain = (turns_left ? kTrendGain : -kTrendGain) / sector.age[bin];
-  const float most = kMostTrend * stretch.rho;
+  const float most = kMaxTrend * stretch.rho;
   sector.trend[bin] = std::clamp(sector.trend[bin] + gain * (offset + slope * at - before), -most, most);
 }
 
@@ -129,7 +129,7 @@ HWY_INLINE void addStretch(GroundMap::Sector& sector, const Stretch& stretch, fl
 
 /// Expects the ground to go on beyond a stretch.
 HWY_INLINE void extend(GroundMap::Sector& sector, const Stretch& stretch, Middles middles) {
-  const float farthest = stretch.rho + (kMostBeyond - kBeyondStart) / kBeyond;
+  const float farthest = stretch.rho + (kMaxBeyond - kBeyondStart) / kBeyond;
   const auto slackAt = [&](BinVector at) HWY_ATTR {
     return hn::Add(set(kBeyondStart), hn::Mul(set(kBeyond), hn::Sub(at, set(stretch.rho))));
   };
@@ -139,7 +139,7 @@ HWY_INLINE void extend(GroundMap::Sector& sector, const Stretch& stretch, Middle
     const Cells cells{sector, bin};
     const auto slack = slackAt(cells.load(middles));
     const auto entered =
-        hn::And(mask, hn::And(hn::Le(slack, set(kMostBeyond)), hn::Lt(slack, cells.load(sector.slack))));
+        hn::And(mask, hn::And(hn::Le(slack, set(kMaxBeyond)), hn::Lt(slack, cells.load(sector.slack))));
     cells.store(entered, set(stretch.height - stretch.slope * stretch.rho), sector.offset);
     cells.store(entered, set(stretch.slope), sector.slope);
     cells.store(entered, slack, sector.slack);

@@ -12,7 +12,7 @@ namespace lisco::ground {
 namespace {
 
 constexpr float kNear = 25.0F;          // metres; beyond, the ground may be higher or lower
-constexpr std::size_t kMostCells = 48;  // of a column
+constexpr std::size_t kMaxCells = 48;   // of a column
 constexpr float kMinReach = 1.12F;      // of a cell's distance by that of the one before
 constexpr float kSameSlope = 0.08F;     // metres per metre
 constexpr float kLevel = 0.1F;          // metres per metre
@@ -61,11 +61,11 @@ void PlaneEstimator::add(const Block& block, std::size_t column) {
   const float length = std::max(std::sqrt(sum.x * sum.x + sum.y * sum.y), 1e-3F);
   const Direction direction{sum.x / length, sum.y / length};
 
-  std::array<Low, kMostCells> lows;
+  std::array<Low, kMaxCells> lows;
   std::size_t size = 0;
   forEachBin(sector, [&](std::size_t bin) {
     const Cell& cell = sector.cells[bin];
-    if (size < kMostCells && isBare(cell.low(), cell.levels)) lows[size++] = {cell.lowRho(), cell.low()};
+    if (size < kMaxCells && isBare(cell.low(), cell.levels)) lows[size++] = {cell.lowRho(), cell.low()};
   });
   const auto beyond = [&](std::size_t i) {
     std::size_t j = i + 1;
@@ -85,7 +85,7 @@ void PlaneEstimator::add(const Block& block, std::size_t column) {
     return is_below;
   };
   // Lines through three cells, or through two that are nearly level.
-  std::array<Line, kMostCells> lines{};
+  std::array<Line, kMaxCells> lines{};
   std::size_t line_count = 0;
   for (std::size_t i = 0; i < size; ++i) {
     const std::size_t j = beyond(i);

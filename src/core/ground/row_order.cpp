@@ -71,7 +71,7 @@ void RowOrder::sort() {
     return slope_a != slope_b ? slope_a < slope_b : a < b;
   });
   rows_.clear();
-  constexpr std::int32_t kMost = 64;  // rows, looked through
+  constexpr std::int32_t kMaxApart = 64;  // in the order of rows, of two that are compared
   const auto size = static_cast<std::int32_t>(order_.size());
   const auto seenAt = [&](std::int32_t at) -> const Seen& {
     return seen_[static_cast<std::size_t>(order_[static_cast<std::size_t>(at)])];
@@ -83,12 +83,12 @@ void RowOrder::sort() {
     Row row{order_[static_cast<std::size_t>(i)], kNone, kNone, kNone};
     const auto apart = [&](std::int32_t j) { return std::fabs(wrapped(nowAt(i) - nowAt(j))); };
     float nearest = kNearAzimuth;
-    for (std::int32_t j = i - 1; j >= 0 && j >= i - kMost && nearest >= kSameAzimuth; --j)
+    for (std::int32_t j = i - 1; j >= 0 && j >= i - kMaxApart && nearest >= kSameAzimuth; --j)
       if (apart(j) < nearest) {
         nearest = apart(j);
         row.down = j;
       }
-    for (std::int32_t j = i + 1; j < size && j <= i + kMost && row.above == kNone; ++j)
+    for (std::int32_t j = i + 1; j < size && j <= i + kMaxApart && row.above == kNone; ++j)
       if (apart(j) < kSameAzimuth) {
         if (row.up == kNone) row.up = j;
         if (j != row.up && seenAt(j).slope() > seenAt(i).slope() + kClearly) row.above = j;
