@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "core/pi.h"
 #include "io/text.h"
 
 namespace lisco_apps {
@@ -92,7 +93,7 @@ class Canvas {
   }
   void circle(double x, double y, double radius, double line_width) {
     cairo_new_path(context_.get());
-    cairo_arc(context_.get(), x, y, radius, 0, 2 * M_PI);
+    cairo_arc(context_.get(), x, y, radius, 0, 2 * lisco::kPi);
     stroke(line_width);
   }
   void line(double x0, double y0, double x1, double y1, double line_width) {

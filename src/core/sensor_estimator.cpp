@@ -12,6 +12,44 @@
 namespace lisco {
 namespace {
 
+// Constants of the estimate. They tell clear cases apart: each of them halved or doubled changes the mean time of
+// organized clouds (at rest, moved, deskewed, over one turn, dual returns) by less than 3 % (benchmarks/suite.sh
+// recordings).
+
+/// Spread of a laser's slopes in steps between lasers, up to which a frame is not improved. More: masks cover more
+/// lasers than they need; less: a frame is fitted to clouds that have one, which takes longer.
+constexpr double kTidy = 0.25;
+/// Ratio of spreads from which on another frame is better. More: frames that save little; less: a displaced sensor is
+/// taken for one at (0, 0, 0).
+constexpr double kClearlyBetter = 0.5;
+/// The spread that is good enough, in steps between lasers, where no other frame may have seen the cloud.
+constexpr double kClear = 1.0;
+
+/// Pairs of adjacent returns, and of returns further apart in a row, that an estimate needs. More: small and sparse
+/// clouds get no hints; fewer: chance decides the medians.
+constexpr std::size_t kMinPairs = 8;
+/// Of the azimuth from column to column, radians; below, the cloud does not turn. Less than any sensor's.
+constexpr double kMinStep = 1e-4;
+/// Median deviation of azimuths in steps; beyond, columns are no steps of a turn. More: clouds of cameras get a range
+/// image; less: clouds that jitter get none.
+constexpr double kMaxDeviation = 0.5;
+/// Part of the pairs that jitter and drift less than the hints say. More: moved objects and bad returns decide; less: a
+/// sensor that moves in a part of the turn is taken for one at rest.
+constexpr double kSteadyShare = 0.75;
+/// Part of the returns beyond SensorHints::far_distance, from which on a range image is worth its memory.
+constexpr double kFarShare = 0.2;
+
+/// Cells of a cloud, below which a range image takes longer to prepare than it saves.
+constexpr std::size_t kMinCells = 4096;
+/// Cells that are sampled, and the rows they are in. More: the estimate takes longer; fewer: chance decides.
+constexpr std::size_t kSamples = 128;
+constexpr std::size_t kSampledRows = 8;
+/// If fewer than 1 / kFewReturns of these are returns, other rows are sampled: with dual returns, the rows of second
+/// returns alternate with those of first ones.
+constexpr std::size_t kFewReturns = 4;
+/// Of a turn, 1 / kMinTurn; a cloud of less would leave the range image mostly empty.
+constexpr std::size_t kMinTurn = 4;
+
 /// Of a point as seen from the sensor, radians.
 struct Direction {
   double azimuth, elevation;
@@ -51,9 +89,6 @@ std::array<double, 3> toDouble(const std::array<float, 3>& point) {
 /// Chooses the origin from which the lasers' slopes spread least: (0, 0, 0), the declared one if that is clearly
 /// better, or the one that fits best if that is. \return false if none may have seen the cloud
 bool SensorEstimator::estimateFrame(const std::array<float, 3>& declared_origin, SensorHints& hints) const {
-  constexpr double kTidy = 0.25;          // of a step between lasers: a better frame saves nothing
-  constexpr double kClearlyBetter = 0.5;  // as a ratio of spreads
-  constexpr double kClear = 1.0;          // steps between lasers, if there is nothing to compare with
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
   for (const auto* pairs : {&along_row_, &along_column_})
@@ -81,7 +116,6 @@ bool SensorEstimator::estimateFrame(const std::array<float, 3>& declared_origin,
 }
 
 SensorHints SensorEstimator::estimate(const std::array<float, 3>& declared_origin) const {
-  constexpr std::size_t kMinPairs = 8;
   SensorHints hints;
   if (along_row_.size() + along_column_.size() < kMinPairs || further_.size() < kMinPairs) return hints;
 
@@ -112,12 +146,9 @@ SensorHints SensorEstimator::estimate(const std::array<float, 3>& declared_origi
   const auto step = static_cast<double>(median(turns, 0.0F));
   Sample<double> deviations;
   for (const double turn : turns) deviations.push_back(std::fabs(turn - step));
-  constexpr double kMinStep = 1e-4;      // radians
-  constexpr double kMaxDeviation = 0.5;  // median, in steps: beyond, the columns are no steps of a turn
   if (std::fabs(step) > kMinStep && static_cast<double>(median(deviations, 0.0F)) < kMaxDeviation * std::fabs(step))
     hints.steps_per_turn = static_cast<int>(std::lround(2.0 * kPi / std::fabs(step)));
   hints.clockwise = step < 0;
-  constexpr double kSteadyShare = 0.75;  // part of the pairs that jitter and drift less
   if (hints.steps_per_turn > 0)
     hints.drift =
         static_cast<float>(quantile(deviations, kSteadyShare) / std::fabs(step)) * static_cast<float>(kDriftColumns);
@@ -128,24 +159,18 @@ SensorHints SensorEstimator::estimate(const std::array<float, 3>& declared_origi
   if (!jitters.empty() && hints.steps_per_turn > 0)
     hints.jitter = static_cast<float>(quantile(jitters, kSteadyShare) / std::fabs(step));
 
-  constexpr double kFew = 0.2;  // share of the returns beyond SensorHints::far_distance
   Sample<double> distances;
   for (const Pair& pair : along_row_)
     distances.push_back(std::hypot(static_cast<double>(pair.a.x) - static_cast<double>(origin[0]),
                                    static_cast<double>(pair.a.y) - static_cast<double>(origin[1])));
-  const auto few = static_cast<std::size_t>(kFew * static_cast<double>(distances.size()));
+  const auto few = static_cast<std::size_t>(kFarShare * static_cast<double>(distances.size()));
   if (!distances.empty()) hints.far_distance = static_cast<float>(sortedElement(distances, distances.size() - 1 - few));
   return hints;
 }
 
 SensorHints estimateSensor(std::size_t columns, std::size_t lasers, const std::array<float, 3>& declared_origin,
                            const CellSource& cells) {
-  constexpr std::size_t kSmall = 4096;  // cells, below which a range image is not worth its preparation
-  constexpr std::size_t kSampledRows = 8;
-  constexpr std::size_t kSamples = 128;
-  constexpr std::size_t kFew = 4;       // of the samples: 1 / kFew
-  constexpr std::size_t kMinShare = 4;  // of a turn: 1 / kMinShare; less would leave the range image mostly empty
-  if (lasers < 2 || columns * lasers < kSmall) return SensorHints();
+  if (lasers < 2 || columns * lasers < kMinCells) return SensorHints();
   const auto valid = [](const Return& cell) { return isReturn(cell.x, cell.y, cell.z); };
 
   const std::size_t row_step = std::max<std::size_t>(1, lasers / kSampledRows);
@@ -185,8 +210,9 @@ SensorHints estimateSensor(std::size_t columns, std::size_t lasers, const std::a
   };
   SensorHints hints = estimateFrom(row_step / 2);
   // These may be the rows of second returns, of which few rays have one.
-  if (hints.steps_per_turn == 0 && row_step > 1 && returns * kFew < samples) hints = estimateFrom(row_step / 2 - 1);
-  if (static_cast<std::size_t>(hints.steps_per_turn) > kMinShare * columns) hints.steps_per_turn = 0;
+  if (hints.steps_per_turn == 0 && row_step > 1 && returns * kFewReturns < samples)
+    hints = estimateFrom(row_step / 2 - 1);
+  if (static_cast<std::size_t>(hints.steps_per_turn) > kMinTurn * columns) hints.steps_per_turn = 0;
   return hints;
 }
 
