@@ -16,7 +16,9 @@ namespace lisco {
 /// One cell of a column: what one laser measured in one step of the rotation (the paper's section II-A), in
 /// Cartesian coordinates.
 struct Return {
-  float x, y, z;               ///< metres, in the cloud's own frame
+  float x;                     ///< metres, in the cloud's own frame
+  float y;                     ///< the same
+  float z;                     ///< the same
   std::uint32_t source_index;  ///< the caller's name for this cell, handed back with its subcluster
 };
 
@@ -37,7 +39,9 @@ class CellSource {
  public:
   /// Coordinates (metres) and source indices of consecutive cells of one laser.
   struct Destination {
-    float *x, *y, *z;             ///< metres
+    float* x;                     ///< metres
+    float* y;                     ///< the same
+    float* z;                     ///< the same
     std::uint32_t* source_index;  ///< see Return
   };
 
