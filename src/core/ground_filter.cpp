@@ -90,7 +90,7 @@ void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t 
   waiting_ = ready_ = ready_end_ = visited_ = 0;
   block_number_ = 0;
   is_told_ = true;
-  plane_estimator_.begin(parameters, max_slope_);
+  plane_estimator_.begin(parameters, max_slope_, lasers);
   begun_ = true;
 }
 
@@ -143,7 +143,7 @@ void GroundFilter::State::visitNext(const Visitor& visit) {
 
 /// Reads more columns at a time than are decided together: the returns of a laser lie side by side in a cloud's memory.
 void GroundFilter::State::addAll(std::size_t columns, const CellSource& cells, std::uint8_t* ground) {
-  constexpr std::size_t kRead = 64;
+  constexpr std::size_t kRead = 128;
   std::array<std::uint32_t, kRead> source_indices;
   received_.resize(lasers_, kRead);
   std::fill_n(ground, columns * lasers_, std::uint8_t{0});
@@ -202,7 +202,7 @@ GroundParameters estimateGroundPlane(std::size_t columns, std::size_t lasers, Gr
   Block block;
   block.resize(lasers);
   PlaneEstimator estimator;
-  estimator.begin(parameters, maxSlope(parameters));
+  estimator.begin(parameters, maxSlope(parameters), lasers);
   const std::size_t samples = std::min(columns, PlaneEstimator::kMemory);
   for (std::size_t sample = 0; sample < samples; ++sample) {
     const std::size_t to = sample % Block::kColumns;

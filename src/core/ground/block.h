@@ -27,12 +27,15 @@ struct Block {
   static constexpr std::size_t kColumns = 8;
   static constexpr float kMinRho = 0.05F;  ///< metres; nearer returns are not looked at
 
-  std::vector<float> x, y;            ///< from the sensor, metres
+  std::vector<float> x, y;            ///< from the sensor, metres; of cells without a return, any number
   std::vector<float> rho;             ///< horizontal distance from the sensor, metres; 0: no return
   std::vector<float> height;          ///< above the sensor's horizon, metres
-  std::vector<float> azimuth;         ///< radians, 0 to 2 pi, within 0.004
   std::vector<std::uint8_t> returns;  ///< of each laser, the columns with rho > kMinRho, as bits
   std::size_t size = 0;               ///< number of elements, without those of noRow ()
+
+  /// By laser, x, y, rho and height of the last of its returns; arrays are longer than there are lasers by up to
+  /// kColumns - 1. If there is none, rho is not above kMinRho.
+  std::vector<float> last_x, last_y, last_rho, last_height;
 
   /// A row without returns, beyond the lasers.
   std::size_t noRow() const { return size / kColumns; }

@@ -37,9 +37,10 @@ struct FollowSetting {
   const Block* block;
   const RowOrder::Row* rows;
   std::size_t size;
-  float max_slope;                      ///< of ground, metres per metre
-  const GroundMap::Sector* const* map;  ///< for each row
-  const Passed* starts;                 ///< for each row with none below: what is known before it
+  float max_slope;               ///< of ground, metres per metre
+  const GroundMap::Sector* map;  ///< all sectors
+  const std::uint32_t* sectors;  ///< for each row, its sector
+  const Passed* starts;          ///< for each row with none below: what is known before it
 };
 
 /// What they show, for each row.

@@ -35,7 +35,8 @@ constexpr float kMinWeight = 6.0F;      // of the lines that show a plane
 
 }  // namespace
 
-void PlaneEstimator::begin(const GroundParameters& parameters, float max_slope) {
+void PlaneEstimator::begin(const GroundParameters& parameters, float max_slope, std::size_t lasers) {
+  for (auto* values : {&rho_, &height_, &x_, &y_}) values->resize(std::max(values->size(), lasers));
   const SensorHints& sensor = parameters.sensor;
   const bool origin_known = sensor.steps_per_turn != 0 || sensor.origin != std::array<float, 3>{};
   highest_ = origin_known ? -0.2F : 0.5F;  // otherwise the ground may be as high as the cloud's origin
@@ -50,31 +51,50 @@ void PlaneEstimator::add(const Block& block, std::size_t column) {
   struct Low {
     float rho, height;
   };
+  // Written always, counted if near.
+  std::size_t count = 0;
+  for (std::size_t i = column; i < block.size; i += Block::kColumns) {
+    const float rho = block.rho[i];
+    rho_[count] = rho;
+    height_[count] = block.height[i];
+    x_[count] = block.x[i];
+    y_[count] = block.y[i];
+    count += static_cast<std::size_t>((rho > Block::kMinRho) & (rho < kNear));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    x_[i] /= rho_[i];
+    y_[i] /= rho_[i];
+  }
   Sector sector;  // of all azimuths: lasers of a column may be staggered
   Direction sum{0.0F, 0.0F};
-  for (std::size_t i = column; i < block.size; i += Block::kColumns)
-    if (block.rho[i] > Block::kMinRho && block.rho[i] < kNear) {
-      sector.add(block.rho[i], block.height[i]);
-      sum.x += block.x[i] / block.rho[i];
-      sum.y += block.y[i] / block.rho[i];
-    }
+  for (std::size_t i = 0; i < count; ++i) {
+    sector.add(rho_[i], height_[i]);
+    sum.x += x_[i];
+    sum.y += y_[i];
+  }
   const float length = std::max(std::sqrt(sum.x * sum.x + sum.y * sum.y), 1e-3F);
   const Direction direction{sum.x / length, sum.y / length};
 
-  std::array<Low, kMostCells> lows;
+  std::array<Low, kMostCells + 1> lows;
   std::size_t size = 0;
   forEachBin(sector, [&](std::size_t bin) {
     const Cell& cell = sector.cells[bin];
-    if (size < kMostCells && isBare(cell.low(), cell.levels)) lows[size++] = {cell.lowRho(), cell.low()};
+    lows[size] = {cell.lowRho(), cell.low()};
+    size += static_cast<std::size_t>((size < kMostCells) & isBare(cell.low(), cell.levels));
   });
-  const auto beyond = [&](std::size_t i) {
-    std::size_t j = i + 1;
+  // For each of these, the first clearly beyond it, and the slope to there.
+  std::array<std::size_t, kMostCells + 1> beyond;
+  std::array<float, kMostCells> slopes;
+  beyond[size] = size;
+  for (std::size_t i = 0, j = 0; i < size; ++i) {
+    j = std::max(j, i + 1);
     while (j < size && lows[j].rho < kMinReach * lows[i].rho) ++j;
-    return j;
-  };
+    beyond[i] = j;
+  }
   const auto slopeOf = [&](std::size_t i, std::size_t j) {
     return (lows[j].height - lows[i].height) / (lows[j].rho - lows[i].rho);
   };
+  for (std::size_t i = 0; i < size && beyond[i] < size; ++i) slopes[i] = slopeOf(i, beyond[i]);
   // Whether the column has returns below a line, as those of the floor are beyond a table.
   const auto isPassedBelow = [&](float height, float slope) {
     bool is_below = false;
@@ -88,12 +108,12 @@ void PlaneEstimator::add(const Block& block, std::size_t column) {
   std::array<Line, kMostCells> lines{};
   std::size_t line_count = 0;
   for (std::size_t i = 0; i < size; ++i) {
-    const std::size_t j = beyond(i);
+    const std::size_t j = beyond[i];
     if (j == size) break;
-    float slope = slopeOf(i, j);
+    float slope = slopes[i];
     float weight = 0.5F;
-    const std::size_t k = beyond(j);
-    if (k < size && std::fabs(slopeOf(j, k) - slope) < kSameSlope && std::fabs(slope) < max_slope_) {
+    const std::size_t k = beyond[j];
+    if (k < size && std::fabs(slopes[j] - slope) < kSameSlope && std::fabs(slope) < max_slope_) {
       slope = slopeOf(i, k);
       weight = 1.0F;
     } else if (std::fabs(slope) > kLevel) {

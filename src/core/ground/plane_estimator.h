@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include "core/ground/block.h"
 #include "core/ground/direction.h"
@@ -25,8 +26,9 @@ class PlaneEstimator {
  public:
   static constexpr std::size_t kMemory = 64;  ///< columns
 
-  /// Forgets all columns. A height that is not NaN is not estimated.
-  void begin(const GroundParameters& parameters, float max_slope);
+  /// Forgets all columns. A height that is not NaN is not estimated. Allocates only if there are more lasers than ever
+  /// before.
+  void begin(const GroundParameters& parameters, float max_slope, std::size_t lasers);
 
   /// Adds what a column shows, if it shows ground clearly; forgets the oldest of kMemory.
   void add(const Block& block, std::size_t column);
@@ -53,6 +55,7 @@ class PlaneEstimator {
   void fitSlopes();
   void refine();
 
+  std::vector<float> rho_, height_, x_, y_;  // of a column's near returns; then the directions towards them
   std::array<Line, kMemory> lines_;
   std::size_t count_ = 0;  // ever added
   Plane plane_;

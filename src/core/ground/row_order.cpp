@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "core/ground/polar_grid.h"
 #include "core/pi.h"
 
 namespace lisco::ground {
@@ -22,84 +24,93 @@ float wrapped(float angle) {
   return angle < -0.5F * kTurn ? angle + kTurn : angle;
 }
 
+std::int32_t rowOf(std::uint64_t key) {
+  return static_cast<std::int32_t>(key & 0x7FFFFFFFU);
+}
+
 }  // namespace
 
 void RowOrder::begin(std::size_t lasers) {
-  seen_.assign(lasers, Seen());
+  lasers_ = lasers;
+  latest_.begin(lasers);
   rows_.clear();
   rows_.reserve(lasers);
+  order_.clear();
   order_.reserve(lasers);
-  now_.assign(lasers, 0.0F);
+  rays_.resize(lasers);
   block_ = sort_at_ = 0;
   turn_ = 0.0F;
 }
 
 void RowOrder::update(const Block& block) {
   ++block_;
-  bool is_new = false;
-  float turned = 0.0F;
-  int count = 0;
-  for (std::size_t row = 0; row < seen_.size(); ++row) {
-    if (block.returns[row] == 0) continue;
-    const std::size_t at = row * Block::kColumns + 31 - static_cast<std::size_t>(__builtin_clz(block.returns[row]));
-    Seen& seen = seen_[row];
-    const float azimuth = block.azimuth[at];
-    if (seen.block == 0) is_new = true;
-    if (seen.block != 0 && seen.block + 1 == block_) {
-      turned += wrapped(azimuth - seen.azimuth);
-      ++count;
-    }
-    seen = {block.x[at], block.y[at], block.rho[at], block.height[at], azimuth, block_};
+  const Turned turned = latest_.update(block, block_);
+  if (turned.rows > 0) {
+    const float angle = std::accumulate(turned.angles.begin(), turned.angles.end(), 0.0F);
+    turn_ += (angle / static_cast<float>(turned.rows) - turn_) * (turn_ == 0.0F ? 1.0F : 0.25F);
   }
-  if (count > 0) turn_ += (turned / static_cast<float>(count) - turn_) * (turn_ == 0.0F ? 1.0F : 0.25F);
-  if (is_new || block_ >= sort_at_) {
+  if (turned.has_new || block_ >= sort_at_) {
     sort();
-    sort_at_ = std::min(2 * block_, block_ + 32);
+    sort_at_ = block_ + std::min(block_, 32U);
   }
 }
 
+bool RowOrder::areBeside(const Ray& a, const Ray& b) {
+  const float apart = std::fabs(a.azimuth - b.azimuth);
+  if (apart > kTurn) return std::fabs(wrapped(apart)) < kSameAzimuth;
+  return (apart < kSameAzimuth) | (kTurn - apart < kSameAzimuth);
+}
+
 void RowOrder::sort() {
-  order_.clear();
-  for (std::size_t row = 0; row < seen_.size(); ++row) {
-    if (seen_[row].block == 0) continue;
-    order_.push_back(static_cast<std::int32_t>(row));
-    now_[row] = seen_[row].azimuth + turn_ * static_cast<float>(block_ - seen_[row].block);
+  const auto keyOf = [&](std::size_t row) {
+    // A slope of -0 is one of 0.
+    return std::uint64_t{orderedHeight(latest_.height[row] / latest_.rho[row] + 0.0F)} << 32 | row;
+  };
+  // Mostly the order is that of the last time.
+  for (std::uint64_t& key : order_) key = keyOf(static_cast<std::size_t>(rowOf(key)));
+  if (order_.size() < lasers_) {
+    order_.clear();
+    for (std::size_t row = 0; row < lasers_; ++row)
+      if (latest_.block[row] != 0) order_.push_back(keyOf(row));
   }
-  std::sort(order_.begin(), order_.end(), [&](std::int32_t a, std::int32_t b) {
-    const float slope_a = seen_[static_cast<std::size_t>(a)].slope(),
-                slope_b = seen_[static_cast<std::size_t>(b)].slope();
-    return slope_a != slope_b ? slope_a < slope_b : a < b;
-  });
+  if (!std::is_sorted(order_.begin(), order_.end())) std::sort(order_.begin(), order_.end());
+
+  const auto size = static_cast<std::int32_t>(order_.size());
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const auto row = static_cast<std::size_t>(rowOf(order_[i]));
+    rays_[i] = {latest_.azimuth[row] + turn_ * static_cast<float>(block_ - latest_.block[row]),
+                latest_.height[row] / latest_.rho[row]};
+  }
   rows_.clear();
   constexpr std::int32_t kMost = 64;  // rows, looked through
-  const auto size = static_cast<std::int32_t>(order_.size());
-  const auto seenAt = [&](std::int32_t at) -> const Seen& {
-    return seen_[static_cast<std::size_t>(order_[static_cast<std::size_t>(at)])];
+  const auto rayAt = [&](std::int32_t at) -> const Ray& { return rays_[static_cast<std::size_t>(at)]; };
+  const auto rowAt = [&](std::int32_t at) {
+    return at == kNone ? static_cast<std::int32_t>(lasers_) : rowOf(order_[static_cast<std::size_t>(at)]);
   };
-  const auto nowAt = [&](std::int32_t at) {
-    return now_[static_cast<std::size_t>(order_[static_cast<std::size_t>(at)])];
-  };
+  std::int32_t clearly = 0;  // the first row clearly above row i
   for (std::int32_t i = 0; i < size; ++i) {
-    Row row{order_[static_cast<std::size_t>(i)], kNone, kNone, kNone};
-    const auto isBeside = [&](std::int32_t j) { return std::fabs(wrapped(nowAt(i) - nowAt(j))) < kSameAzimuth; };
-    for (std::int32_t j = i - 1; j >= 0 && j >= i - kMost && row.down == kNone; --j)
-      if (isBeside(j)) row.down = j;
-    if (row.down == kNone) {
+    std::int32_t down = kNone;
+    for (std::int32_t j = i - 1; j >= 0 && j >= i - kMost && down == kNone; --j)
+      if (areBeside(rayAt(i), rayAt(j))) down = j;
+    if (down == kNone) {
       float nearest = kNearAzimuth;
       for (std::int32_t j = i - 1; j >= 0 && j >= i - kMost; --j) {
-        const float apart = std::fabs(wrapped(nowAt(i) - nowAt(j)));
+        const float apart = std::fabs(wrapped(rayAt(i).azimuth - rayAt(j).azimuth));
         if (apart < nearest) {
           nearest = apart;
-          row.down = j;
+          down = j;
         }
       }
     }
-    for (std::int32_t j = i + 1; j < size && j <= i + kMost && row.above == kNone; ++j)
-      if (isBeside(j)) {
-        if (row.up == kNone) row.up = j;
-        if (j != row.up && seenAt(j).slope() > seenAt(i).slope() + kClearly) row.above = j;
-      }
-    rows_.push_back(row);
+    while (clearly < size && rayAt(clearly).slope <= rayAt(i).slope + kClearly) ++clearly;
+    const auto nextBeside = [&](std::int32_t from) {
+      for (std::int32_t j = from; j < size && j <= i + kMost; ++j)
+        if (areBeside(rayAt(i), rayAt(j))) return j;
+      return kNone;
+    };
+    const std::int32_t up = nextBeside(i + 1);
+    const std::int32_t above = up == kNone ? kNone : nextBeside(std::max(up + 1, clearly));
+    rows_.push_back({rowAt(i), down, up, rowAt(up), rowAt(above)});
   }
 }
 
