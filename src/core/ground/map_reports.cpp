@@ -57,22 +57,26 @@ HWY_INLINE BinVector set(float value) {
   return hn::Set(kBinFloats, value);
 }
 
-/// Calls visit(bin, mask) for the bins from first to last, some at a time: those of the mask, from `bin` on.
+/// Calls visit(bin, mask, is_last) for the bins from first to last, some at a time: those of the mask, from `bin` on.
 template <typename Visit>
 HWY_INLINE void forBins(std::int32_t first, std::int32_t last, Visit&& visit) {
   constexpr auto kTogether = static_cast<std::int32_t>(hn::MaxLanes(kBinFloats));
   const auto step = hn::Set(kBinInts, kTogether);
   const auto before = hn::Set(kBinInts, first - 1), after = hn::Set(kBinInts, last + 1);
+  const auto end = hn::Set(kBinInts, last);
   std::int32_t bin = first & -kTogether;
   auto bins = hn::Add(hn::Iota(kBinInts, 0), hn::Set(kBinInts, bin));
   for (; bin <= last; bin += kTogether, bins = hn::Add(bins, step))
-    visit(static_cast<std::size_t>(bin),
-          hn::RebindMask(kBinFloats, hn::And(hn::Gt(bins, before), hn::Gt(after, bins))));
+    visit(static_cast<std::size_t>(bin), hn::RebindMask(kBinFloats, hn::And(hn::Gt(bins, before), hn::Gt(after, bins))),
+          hn::RebindMask(kBinFloats, hn::Eq(bins, end)));
 }
 
 /// The values of a sector's cells from a bin on.
 struct Cells {
   HWY_INLINE BinVector load(const GroundMap::Values& values) const { return hn::LoadU(kBinFloats, &values[bin]); }
+  HWY_INLINE void store(BinVector value, GroundMap::Values& values) const {
+    hn::StoreU(value, kBinFloats, &values[bin]);
+  }
   HWY_INLINE void store(BinMask mask, BinVector value, GroundMap::Values& values) const {
     hn::StoreU(hn::IfThenElse(mask, value, load(values)), kBinFloats, &values[bin]);
   }
@@ -85,14 +89,6 @@ struct Cells {
 };
 
 using Middles = const GroundMap::Values&;
-
-/// Of the two, without the branches that std::min and std::max may become.
-HWY_INLINE float lesserOf(float a, float b) {
-  return b < a ? b : a;
-}
-HWY_INLINE float greaterOf(float a, float b) {
-  return a < b ? b : a;
-}
 
 /// GroundMap::binOf
 HWY_INLINE hn::Vec<BinInts> binsOf(BinVector rho) {
@@ -200,7 +196,7 @@ HWY_INLINE void measureStretches(MapReports::Stretches& stretches, std::size_t c
 /// Forgets what is above a ray.
 HWY_INLINE void seeThrough(GroundMap::Sector& sector, const MapReports::Rays& rays, std::size_t i, Middles middles) {
   const auto slope = set(rays.slope[i]);
-  forBins(rays.first[i], rays.end[i] - 1, [&](std::size_t bin, BinMask mask) HWY_ATTR {
+  forBins(rays.first[i], rays.end[i] - 1, [&](std::size_t bin, BinMask mask, BinMask /*is_last*/) HWY_ATTR {
     const Cells cells{sector, bin};
     const auto middle = cells.load(middles);
     const auto ray = hn::Add(hn::Mul(slope, middle), set(kMarginRay));
@@ -208,45 +204,39 @@ HWY_INLINE void seeThrough(GroundMap::Sector& sector, const MapReports::Rays& ra
   });
 }
 
-/// Updates the trend in the bin of the farthest return, without branches on what is known there.
-HWY_INLINE void addTrend(GroundMap::Sector& sector, const MapReports::Stretches& stretches, std::size_t i,
-                         bool turns_left, Middles middles) {
-  const auto bin = static_cast<std::size_t>(stretches.last[i]);
-  const float rho = stretches.rho[i], at = middles[bin];
-  const float before = sector.heightAt(bin, at), age = sector.age[bin];
-  const float slack = kAlong * greaterOf(0.0F, lesserOf(at - stretches.from_rho[i], rho - at));
-  const bool is_known = (sector.slack[bin] < 1.0F) & (age > 0.0F);
-  const bool is_hidden = before > stretches.ray[i] * at + kMarginHidden;
-  const bool is_worse = slack > sector.slack[bin] + kMarginSame;
-  const float gain = (turns_left ? kTrendGain : -kTrendGain) / greaterOf(age, 1.0F);
-  const float most = kMostTrend * rho, trend = sector.trend[bin];
-  const float updated = trend + gain * (stretches.offset[i] + stretches.slope[i] * at - before);
-  sector.trend[bin] = is_known & !is_hidden & !is_worse ? lesserOf(greaterOf(updated, -most), most) : trend;
-}
-
+/// Enters a stretch, and updates the trend in the bin of its end.
 HWY_INLINE void addStretch(GroundMap::Sector& sector, const MapReports::Stretches& stretches, std::size_t i,
-                           Middles middles) {
+                           float trend_gain, Middles middles) {
   const auto ray = set(stretches.ray[i]), from_rho = set(stretches.from_rho[i]), rho = set(stretches.rho[i]);
   const auto offset = set(stretches.offset[i]), slope = set(stretches.slope[i]);
+  const auto most = hn::Mul(set(kMostTrend), rho), gain = set(trend_gain);
   // Where ground is doubted that was there before, its slack is at least this, and more than before.
   const auto no_doubt = hn::Set(kBinInts, static_cast<std::int32_t>(stretches.is_doubted[i]) - 1);
   const auto doubt = hn::MaskFromVec(hn::BitCast(kBinFloats, hn::Not(no_doubt)));
-  forBins(stretches.first[i], stretches.last[i], [&](std::size_t bin, BinMask mask) HWY_ATTR {
+  forBins(stretches.first[i], stretches.last[i], [&](std::size_t bin, BinMask mask, BinMask is_end) HWY_ATTR {
     const Cells cells{sector, bin};
     const auto at = cells.load(middles);
     const auto inside = hn::Min(hn::Sub(at, from_rho), hn::Sub(rho, at));
     const auto slack = hn::Mul(set(kAlong), hn::Max(hn::Zero(kBinFloats), inside));
-    const auto before = cells.load(sector.slack);
+    const auto before = cells.load(sector.slack), height = cells.heightAt(at);
     // The return would have been hidden.
-    const auto is_hidden = hn::Gt(cells.heightAt(at), hn::Add(hn::Mul(ray, at), set(kMarginHidden)));
+    const auto is_hidden = hn::Gt(height, hn::Add(hn::Mul(ray, at), set(kMarginHidden)));
     const auto is_better = hn::Le(slack, hn::Add(before, set(kMarginSame)));
     const auto doubted = hn::Min(hn::Add(hn::Max(slack, before), set(kDoubt)), set(GroundMap::kUnknown));
     const auto entered = hn::And(mask, hn::Or(is_hidden, is_better));
-    cells.store(hn::And(mask, is_hidden), hn::Zero(kBinFloats), sector.trend);
+
+    const auto age = cells.load(sector.age), trend = cells.load(sector.trend);
+    const auto is_known = hn::And(hn::Lt(before, set(1.0F)), hn::Gt(age, hn::Zero(kBinFloats)));
+    const auto updates = hn::And(hn::And(is_end, is_known), hn::AndNot(is_hidden, is_better));
+    const auto rise = hn::Sub(hn::Add(offset, hn::Mul(slope, at)), height);
+    const auto update = hn::Mul(hn::Div(gain, hn::Max(age, set(1.0F))), rise);
+    const auto updated = hn::Min(hn::Max(hn::Add(trend, update), hn::Neg(most)), most);
+    const auto kept = hn::IfThenElse(updates, updated, trend);
+    cells.store(hn::IfThenElse(hn::And(mask, is_hidden), hn::Zero(kBinFloats), kept), sector.trend);
     cells.store(entered, hn::IfThenElse(hn::AndNot(is_hidden, doubt), doubted, slack), sector.slack);
     cells.store(entered, offset, sector.offset);
     cells.store(entered, slope, sector.slope);
-    cells.store(entered, hn::Zero(kBinFloats), sector.age);
+    cells.store(hn::IfThenElse(entered, hn::Zero(kBinFloats), age), sector.age);
   });
 }
 
@@ -258,18 +248,19 @@ HWY_INLINE void extend(GroundMap::Sector& sector, const MapReports::Stretches& s
   const float offset = stretches.height[i] - slope * rho;
   const auto first = static_cast<std::int32_t>(GroundMap::binOf(rho)) + 1;
   if (first >= static_cast<std::int32_t>(GroundMap::kBins)) return;
-  forBins(first, static_cast<std::int32_t>(GroundMap::binOf(farthest)), [&](std::size_t bin, BinMask mask) HWY_ATTR {
-    const Cells cells{sector, bin};
-    const auto way = hn::Sub(cells.load(middles), set(rho));
-    const auto slack = hn::Add(set(kBeyondStart), hn::Mul(set(kBeyond), way));
-    const auto entered =
-        hn::And(mask, hn::And(hn::Le(slack, set(kMostBeyond)), hn::Lt(slack, cells.load(sector.slack))));
-    cells.store(entered, set(offset), sector.offset);
-    cells.store(entered, set(slope), sector.slope);
-    cells.store(entered, slack, sector.slack);
-    cells.store(entered, hn::Zero(kBinFloats), sector.trend);
-    cells.store(entered, hn::Zero(kBinFloats), sector.age);
-  });
+  forBins(first, static_cast<std::int32_t>(GroundMap::binOf(farthest)),
+          [&](std::size_t bin, BinMask mask, BinMask /*is_last*/) HWY_ATTR {
+            const Cells cells{sector, bin};
+            const auto way = hn::Sub(cells.load(middles), set(rho));
+            const auto slack = hn::Add(set(kBeyondStart), hn::Mul(set(kBeyond), way));
+            const auto entered =
+                hn::And(mask, hn::And(hn::Le(slack, set(kMostBeyond)), hn::Lt(slack, cells.load(sector.slack))));
+            cells.store(entered, set(offset), sector.offset);
+            cells.store(entered, set(slope), sector.slope);
+            cells.store(entered, slack, sector.slack);
+            cells.store(entered, hn::Zero(kBinFloats), sector.trend);
+            cells.store(entered, hn::Zero(kBinFloats), sector.age);
+          });
 }
 
 void enterReports(const Shown& shown, MapReports& reports, GroundMap::Sector* sectors) {
@@ -281,14 +272,14 @@ void enterReports(const Shown& shown, MapReports& reports, GroundMap::Sector* se
   collectStretches(shown, reports, stretch_count);
   measureRays(rays, ray_count);
   measureStretches(stretches, stretch_count, shown.setting.max_slope);
+  const float trend_gain = shown.turns_left ? kTrendGain : -kTrendGain;
   std::size_t stretch = 0;
   for (std::size_t i = 0; i < ray_count; ++i) {
     GroundMap::Sector& sector = sectors[rays.sector[i]];
     if (rays.first[i] < rays.end[i]) seeThrough(sector, rays, i, middles);
     if (rays.has_ground[i] == 0) continue;
     if (stretches.last[stretch] >= 0) {
-      addTrend(sector, stretches, stretch, shown.turns_left, middles);
-      addStretch(sector, stretches, stretch, middles);
+      addStretch(sector, stretches, stretch, trend_gain, middles);
     }
     ++stretch;
   }
