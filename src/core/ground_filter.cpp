@@ -50,7 +50,7 @@ class GroundFilter::State {
   void visitNext(const Visitor& visit);
   void decide(std::size_t first, std::size_t count, std::uint8_t* ground, std::size_t stride);
   void tellMap();
-  void estimatePlane();
+  void estimatePlane(std::size_t first);
 
   GroundParameters parameters_;
   float max_slope_ = 0.0F;
@@ -167,7 +167,7 @@ void GroundFilter::State::decide(std::size_t first, std::size_t count, std::uint
   ++block_number_;
   block_.measure(received_, first, parameters_.sensor);
   order_.update(block_);
-  estimatePlane();
+  estimatePlane(first);
   is_told_ = !plane_estimator_.isKnown();
   if (plane_estimator_.isKnown())
     follower_.follow(block_, order_, plane_estimator_.plane(), map_, static_cast<std::uint32_t>(block_number_), ground,
@@ -180,11 +180,12 @@ void GroundFilter::State::tellMap() {
   is_told_ = true;
 }
 
-void GroundFilter::State::estimatePlane() {
+/// \param first of the columns received that the block has
+void GroundFilter::State::estimatePlane(std::size_t first) {
   constexpr std::uint64_t kEstimatePeriod = 4;  // blocks
   if (plane_estimator_.isKnown() && block_number_ % kEstimatePeriod != 0) return;
   const std::size_t count = plane_estimator_.isKnown() ? 1 : Block::kColumns;
-  for (std::size_t column = 0; column < count; ++column) plane_estimator_.add(block_, column);
+  for (std::size_t column = 0; column < count; ++column) plane_estimator_.add(block_, received_, first, column);
   plane_estimator_.update();
 }
 
@@ -216,7 +217,7 @@ GroundParameters estimateGroundPlane(std::size_t columns, std::size_t lasers, Gr
     }
     if (to + 1 < Block::kColumns && sample + 1 < samples) continue;
     block.measure(sampled, 0, parameters.sensor);
-    for (std::size_t i = 0; i <= to; ++i) estimator.add(block, i);
+    for (std::size_t i = 0; i <= to; ++i) estimator.add(block, sampled, 0, i);
   }
   estimator.update();
   if (!estimator.isKnown()) return parameters;

@@ -3,6 +3,7 @@
 #include "core/ground/block.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/ground/targets.h"
@@ -31,11 +32,11 @@ void measureRows(ground::Block& block, const ground::Columns& columns, std::size
   const std::size_t rows = block.size / ground::Block::kColumns;
   const auto least = set(ground::Block::kMinRho);
   // Looked up once: the bytes of `returns` may be stored to any pointer.
+  const std::array<float, 3> origin = sensor.origin;
+  const std::array<float, 2> tilt = sensor.tilt;
   const float* const x_from = columns.x.data() + first;
   const float* const y_from = columns.y.data() + first;
   const float* const z_from = columns.z.data() + first;
-  float* const block_x = block.x.data();
-  float* const block_y = block.y.data();
   float* const block_rho = block.rho.data();
   float* const block_height = block.height.data();
   float* const last_x = block.last_x.data();
@@ -52,9 +53,9 @@ void measureRows(ground::Block& block, const ground::Columns& columns, std::size
       const auto x_read = hn::LoadU(kRow, x_from + from);
       const auto y_read = hn::LoadU(kRow, y_from + from);
       const auto z_read = hn::LoadU(kRow, z_from + from);
-      const auto x = hn::Sub(x_read, set(sensor.origin[0]));
-      const auto y = hn::Sub(y_read, set(sensor.origin[1]));
-      const auto z = hn::Sub(z_read, set(sensor.origin[2]));
+      const auto x = hn::Sub(x_read, set(origin[0]));
+      const auto y = hn::Sub(y_read, set(origin[1]));
+      const auto z = hn::Sub(z_read, set(origin[2]));
       // As integers, the magnitudes of floats are in their order, and those of NaN above all.
       const auto magnitude = [](RowVector value) HWY_ATTR { return hn::BitCast(kRowInts, hn::Abs(value)); };
       const auto largest = hn::Max(hn::Max(magnitude(x), magnitude(y)), magnitude(z));
@@ -66,18 +67,16 @@ void measureRows(ground::Block& block, const ground::Columns& columns, std::size
       std::uint8_t bits[8] = {};
       hn::StoreMaskBits(kRow, hn::Gt(rho, least), bits);
       returns |= static_cast<unsigned>(bits[0]) << k;
-      const auto horizon = hn::Add(hn::Mul(set(sensor.tilt[0]), x), hn::Mul(set(sensor.tilt[1]), y));
+      const auto horizon = hn::Add(hn::Mul(set(tilt[0]), x), hn::Mul(set(tilt[1]), y));
       const auto height = hn::IfThenElseZero(is_return, hn::Sub(z, horizon));
       hn::StoreU(height, kRow, block_height + to);
-      hn::StoreU(x, kRow, block_x + to);
-      hn::StoreU(y, kRow, block_y + to);
     }
     block_returns[row] = static_cast<std::uint8_t>(returns);
-    const std::size_t last = row * ground::Block::kColumns + 31 - static_cast<std::size_t>(__builtin_clz(returns | 1U));
-    last_x[row] = block_x[last];
-    last_y[row] = block_y[last];
-    last_rho[row] = block_rho[last];
-    last_height[row] = block_height[last];
+    const std::size_t last = 31 - static_cast<std::size_t>(__builtin_clz(returns | 1U));
+    last_x[row] = x_from[row * stride + last] - origin[0];
+    last_y[row] = y_from[row * stride + last] - origin[1];
+    last_rho[row] = block_rho[row * ground::Block::kColumns + last];
+    last_height[row] = block_height[row * ground::Block::kColumns + last];
   }
 }
 
@@ -105,7 +104,7 @@ void Columns::clear(std::size_t column, std::size_t lasers) {
 void Block::resize(std::size_t lasers) {
   size = lasers * kColumns;
   returns.resize(std::max(returns.size(), lasers));
-  for (auto* values : {&x, &y, &rho, &height}) {
+  for (auto* values : {&rho, &height}) {
     values->resize(std::max(values->size(), size + kColumns));
     std::fill_n(values->begin() + static_cast<std::ptrdiff_t>(size), kColumns, 0.0F);
   }

@@ -27,7 +27,6 @@ struct Block {
   static constexpr std::size_t kColumns = 8;
   static constexpr float kMinRho = 0.05F;  ///< metres; nearer returns are not looked at
 
-  std::vector<float> x, y;            ///< from the sensor, metres; of cells without a return, any number
   std::vector<float> rho;             ///< horizontal distance from the sensor, metres; 0: no return
   std::vector<float> height;          ///< above the sensor's horizon, metres
   std::vector<std::uint8_t> returns;  ///< of each laser, the columns with rho > kMinRho, as bits

@@ -366,14 +366,18 @@ void followRows(const FollowSetting& setting, const FollowResult& result) {
       found[i] = {};
       continue;
     }
-    constexpr auto kColumns = static_cast<std::ptrdiff_t>(Block::kColumns);
-    const std::ptrdiff_t at = row.row * kColumns, up = row.up_row * kColumns, above = row.above_row * kColumns;
-    const FollowedRow followed{rho + at,         height + at,
-                               rho + up,         height + up,
-                               rho + above,      height + above,
-                               map + sectors[i], &before,
-                               &passed[i],       &reached[before.followed],
-                               &reached[i],      i};
+    const std::ptrdiff_t at = row.row * static_cast<std::ptrdiff_t>(Block::kColumns);
+    const FollowedRow followed{rho + at,
+                               height + at,
+                               rho,
+                               height,
+                               &row,
+                               map + sectors[i],
+                               &before,
+                               &passed[i],
+                               &reached[before.followed],
+                               &reached[i],
+                               i};
     found[i] = followRow(followed, steepest);
   }
 }

@@ -41,24 +41,25 @@ void PlaneEstimator::begin(const GroundParameters& parameters, float max_slope, 
   const bool origin_known = sensor.steps_per_turn != 0 || sensor.origin != std::array<float, 3>{};
   highest_ = origin_known ? -0.2F : 0.5F;  // otherwise the ground may be as high as the cloud's origin
   max_slope_ = max_slope;
+  origin_ = sensor.origin;
   height_given_ = known_ = !std::isnan(parameters.sensor_height);
   plane_ = {known_ ? -parameters.sensor_height : 0.0F, parameters.slope[0] - sensor.tilt[0],
             parameters.slope[1] - sensor.tilt[1]};
   count_ = 0;
 }
 
-void PlaneEstimator::add(const Block& block, std::size_t column) {
+void PlaneEstimator::add(const Block& block, const Columns& columns, std::size_t first, std::size_t column) {
   struct Low {
     float rho, height;
   };
   // Written always, counted if near.
   std::size_t count = 0;
-  for (std::size_t i = column; i < block.size; i += Block::kColumns) {
+  for (std::size_t i = column, from = first + column; i < block.size; i += Block::kColumns, from += columns.stride) {
     const float rho = block.rho[i];
     rho_[count] = rho;
     height_[count] = block.height[i];
-    x_[count] = block.x[i];
-    y_[count] = block.y[i];
+    x_[count] = columns.x[from] - origin_[0];
+    y_[count] = columns.y[from] - origin_[1];
     count += static_cast<std::size_t>((rho > Block::kMinRho) & (rho < kNear));
   }
   for (std::size_t i = 0; i < count; ++i) {

@@ -30,8 +30,9 @@ class PlaneEstimator {
   /// before.
   void begin(const GroundParameters& parameters, float max_slope, std::size_t lasers);
 
-  /// Adds what a column shows, if it shows ground clearly; forgets the oldest of kMemory.
-  void add(const Block& block, std::size_t column);
+  /// Adds what a column of a block shows, if it shows ground clearly; forgets the oldest of kMemory.
+  /// \param columns those that the block was measured from, `first` its first one
+  void add(const Block& block, const Columns& columns, std::size_t first, std::size_t column);
 
   /// Updates the plane by the columns added; it stays as it is, if they show too little.
   void update();
@@ -63,6 +64,7 @@ class PlaneEstimator {
   bool height_given_ = false;
   float highest_ = 0.0F;  // metres
   float max_slope_ = 0.0F;
+  std::array<float, 3> origin_{};  // of the sensor
 };
 
 }  // namespace lisco::ground
