@@ -7,26 +7,103 @@
 #include <numeric>
 
 #include "core/ground/polar_grid.h"
+#include "core/ground/targets.h"
 #include "core/pi.h"
 
-namespace lisco::ground {
-namespace {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/ground/row_order.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace lisco {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using ground::RowOrder;
+
+using AzimuthFloats = hn::CappedTag<float, RowOrder::kPadding>;
+constexpr AzimuthFloats kAzimuths{};
+constexpr auto kStep = static_cast<std::int32_t>(hn::MaxLanes(kAzimuths));
 
 constexpr float kTurn = static_cast<float>(2.0 * kPi);
 constexpr float kSameAzimuth = 0.022F;  // radians
 constexpr float kNearAzimuth = 0.04F;   // the same, where no row below is so near
 constexpr float kClearly = 0.013F;      // of the slopes of rays
+constexpr std::int32_t kMost = 64;      // rows, looked through
 
-/// Brings a difference of azimuths to -pi to pi.
-float wrapped(float angle) {
-  if (std::fabs(angle) > kTurn) angle -= kTurn * std::floor(angle / kTurn);
-  if (angle >= 0.5F * kTurn) return angle - kTurn;
-  return angle < -0.5F * kTurn ? angle + kTurn : angle;
+/// Of the azimuths from position j on, those beside another one, as bits.
+HWY_INLINE unsigned besideAt(const float* azimuths, std::int32_t j, float azimuth) {
+  const auto apart = hn::Abs(hn::Sub(hn::LoadU(kAzimuths, azimuths + j), hn::Set(kAzimuths, azimuth)));
+  const auto nearer = hn::Min(apart, hn::Sub(hn::Set(kAzimuths, kTurn), apart));
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(kAzimuths, hn::Lt(nearer, hn::Set(kAzimuths, kSameAzimuth)), bits);
+  return bits[0];
 }
 
-std::int32_t rowOf(std::uint64_t key) {
-  return static_cast<std::int32_t>(key & 0x7FFFFFFFU);
+/// The first position before `end` with an azimuth beside that of i, or kNone.
+HWY_INLINE std::int32_t nextBeside(const float* azimuths, std::int32_t i, std::int32_t from, std::int32_t end) {
+  for (std::int32_t j = from; j < end; j += kStep) {
+    const unsigned bits = besideAt(azimuths, j, azimuths[i]);
+    const std::int32_t found = j + __builtin_ctz(bits | 0x100U);
+    if (bits != 0) return found < end ? found : RowOrder::kNone;
+  }
+  return RowOrder::kNone;
 }
+
+/// The last position below i with an azimuth beside its own; else the one with the nearest, or kNone.
+HWY_INLINE std::int32_t lastBeside(const float* azimuths, std::int32_t i) {
+  const std::int32_t first = std::max(0, i - kMost);
+  for (std::int32_t j = i - kStep; j > first - kStep; j -= kStep) {
+    const unsigned bits = besideAt(azimuths, j, azimuths[i]);
+    const std::int32_t found = j + 31 - __builtin_clz(bits | 1U);
+    if (bits != 0) {
+      if (found >= first) return found;
+      break;
+    }
+  }
+  std::int32_t down = RowOrder::kNone;
+  float nearest = kNearAzimuth;
+  for (std::int32_t j = i - 1; j >= first; --j) {
+    const float apart = std::fabs(azimuths[i] - azimuths[j]), nearer = std::min(apart, kTurn - apart);
+    if (nearer < nearest) {
+      nearest = nearer;
+      down = j;
+    }
+  }
+  return down;
+}
+
+/// Finds the rows below and above each.
+/// \param row_of the rows in the block, by position; that of kNone is `none`
+void linkRows(const float* azimuths, const float* slopes, const std::uint64_t* keys, std::int32_t none,
+              std::vector<RowOrder::Row>& rows) {
+  const auto rowAt = [=](std::int32_t at) { return at == RowOrder::kNone ? none : RowOrder::rowOf(keys[at]); };
+  const auto size = static_cast<std::int32_t>(rows.size());
+  std::int32_t clearly = 0;  // the first row clearly above row i
+  for (std::int32_t i = 0; i < size; ++i) {
+    while (clearly < size && slopes[clearly] <= slopes[i] + kClearly) ++clearly;
+    const std::int32_t end = std::min(size, i + kMost + 1);
+    const std::int32_t up = nextBeside(azimuths, i, i + 1, end);
+    const std::int32_t above =
+        up == RowOrder::kNone ? RowOrder::kNone : nextBeside(azimuths, i, std::max(up + 1, clearly), end);
+    rows[static_cast<std::size_t>(i)] = {rowAt(i), lastBeside(azimuths, i), up, rowAt(up), rowAt(above)};
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lisco
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lisco {
+
+HWY_EXPORT(linkRows);
+
+namespace ground {
+namespace {
+
+constexpr float kTurn = static_cast<float>(2.0 * kPi);
 
 }  // namespace
 
@@ -37,7 +114,8 @@ void RowOrder::begin(std::size_t lasers) {
   rows_.reserve(lasers);
   order_.clear();
   order_.reserve(lasers);
-  rays_.resize(lasers);
+  azimuths_.resize(std::max(azimuths_.size(), lasers + 2 * kPadding));
+  slopes_.resize(std::max(slopes_.size(), lasers));
   block_ = sort_at_ = 0;
   turn_ = 0.0F;
 }
@@ -55,12 +133,6 @@ void RowOrder::update(const Block& block) {
   }
 }
 
-bool RowOrder::areBeside(const Ray& a, const Ray& b) {
-  const float apart = std::fabs(a.azimuth - b.azimuth);
-  if (apart > kTurn) return std::fabs(wrapped(apart)) < kSameAzimuth;
-  return (apart < kSameAzimuth) | (kTurn - apart < kSameAzimuth);
-}
-
 void RowOrder::sort() {
   const auto keyOf = [&](std::size_t row) {
     // A slope of -0 is one of 0.
@@ -75,43 +147,17 @@ void RowOrder::sort() {
   }
   if (!std::is_sorted(order_.begin(), order_.end())) std::sort(order_.begin(), order_.end());
 
-  const auto size = static_cast<std::int32_t>(order_.size());
+  float* const azimuths = azimuths_.data() + kPadding;
   for (std::size_t i = 0; i < order_.size(); ++i) {
     const auto row = static_cast<std::size_t>(rowOf(order_[i]));
-    rays_[i] = {latest_.azimuth[row] + turn_ * static_cast<float>(block_ - latest_.block[row]),
-                latest_.height[row] / latest_.rho[row]};
+    const float azimuth = latest_.azimuth[row] + turn_ * static_cast<float>(block_ - latest_.block[row]);
+    azimuths[i] = azimuth - kTurn * std::floor(azimuth / kTurn);
+    slopes_[i] = latest_.height[row] / latest_.rho[row];
   }
-  rows_.clear();
-  constexpr std::int32_t kMost = 64;  // rows, looked through
-  const auto rayAt = [&](std::int32_t at) -> const Ray& { return rays_[static_cast<std::size_t>(at)]; };
-  const auto rowAt = [&](std::int32_t at) {
-    return at == kNone ? static_cast<std::int32_t>(lasers_) : rowOf(order_[static_cast<std::size_t>(at)]);
-  };
-  std::int32_t clearly = 0;  // the first row clearly above row i
-  for (std::int32_t i = 0; i < size; ++i) {
-    std::int32_t down = kNone;
-    for (std::int32_t j = i - 1; j >= 0 && j >= i - kMost && down == kNone; --j)
-      if (areBeside(rayAt(i), rayAt(j))) down = j;
-    if (down == kNone) {
-      float nearest = kNearAzimuth;
-      for (std::int32_t j = i - 1; j >= 0 && j >= i - kMost; --j) {
-        const float apart = std::fabs(wrapped(rayAt(i).azimuth - rayAt(j).azimuth));
-        if (apart < nearest) {
-          nearest = apart;
-          down = j;
-        }
-      }
-    }
-    while (clearly < size && rayAt(clearly).slope <= rayAt(i).slope + kClearly) ++clearly;
-    const auto nextBeside = [&](std::int32_t from) {
-      for (std::int32_t j = from; j < size && j <= i + kMost; ++j)
-        if (areBeside(rayAt(i), rayAt(j))) return j;
-      return kNone;
-    };
-    const std::int32_t up = nextBeside(i + 1);
-    const std::int32_t above = up == kNone ? kNone : nextBeside(std::max(up + 1, clearly));
-    rows_.push_back({rowAt(i), down, up, rowAt(up), rowAt(above)});
-  }
+  rows_.resize(order_.size());
+  HWY_DYNAMIC_DISPATCH(linkRows)(azimuths, slopes_.data(), order_.data(), static_cast<std::int32_t>(lasers_), rows_);
 }
 
-}  // namespace lisco::ground
+}  // namespace ground
+}  // namespace lisco
+#endif

@@ -17,6 +17,7 @@ namespace lisco::ground {
 class RowOrder {
  public:
   static constexpr std::int32_t kNone = -1;
+  static constexpr std::size_t kPadding = 8;  ///< elements, the most that are looked at together
 
   struct Row {
     std::int32_t row;        ///< in the block
@@ -38,22 +39,21 @@ class RowOrder {
     return {latest_.x[i] / latest_.rho[i], latest_.y[i] / latest_.rho[i]};
   }
 
+  /// The row of one of the order's keys.
+  static std::int32_t rowOf(std::uint64_t key) { return static_cast<std::int32_t>(key & 0x7FFFFFFFU); }
+
   bool turnsLeft() const { return turn_ > 0.0F; }
 
  private:
-  /// The latest return of a row in the order.
-  struct Ray {
-    float azimuth;  // turned to the latest block, radians
-    float slope;
-  };
   void sort();
-  static bool areBeside(const Ray& a, const Ray& b);
 
   std::size_t lasers_ = 0;
   LatestReturns latest_;
   std::vector<Row> rows_;
   std::vector<std::uint64_t> order_;  // slope and row; see orderedHeight
-  std::vector<Ray> rays_;
+  // By position in the order, of the latest return: its azimuth, turned to the latest block, behind and before more
+  // elements than a vector has; and the slope of its ray.
+  std::vector<float> azimuths_, slopes_;
   std::uint32_t block_ = 0;
   std::uint32_t sort_at_ = 0;
   float turn_ = 0.0F;  // of the azimuth per block, radians
