@@ -37,6 +37,8 @@ constexpr float kMinWeight = 6.0F;      // of the lines that show a plane
 
 void PlaneEstimator::begin(const GroundParameters& parameters, float max_slope, std::size_t lasers) {
   for (auto* values : {&rho_, &height_, &x_, &y_}) values->resize(std::max(values->size(), lasers));
+  for (auto* values : {&bins_, &levels_}) values->resize(std::max(values->size(), lasers));
+  lowest_.resize(std::max(lowest_.size(), lasers));
   const SensorHints& sensor = parameters.sensor;
   const bool origin_known = sensor.steps_per_turn != 0 || sensor.origin != std::array<float, 3>{};
   highest_ = origin_known ? -0.2F : 0.5F;  // otherwise the ground may be as high as the cloud's origin
@@ -66,10 +68,15 @@ void PlaneEstimator::add(const Block& block, const Columns& columns, std::size_t
     x_[i] /= rho_[i];
     y_[i] /= rho_[i];
   }
+  for (std::size_t i = 0; i < count; ++i) {
+    bins_[i] = binOf(rho_[i]);
+    levels_[i] = levelOf(height_[i]);
+  }
+  for (std::size_t i = 0; i < count; ++i) lowest_[i] = ground::lowestOf(rho_[i], height_[i]);
   Sector sector;  // of all azimuths: lasers of a column may be staggered
   Direction sum{0.0F, 0.0F};
   for (std::size_t i = 0; i < count; ++i) {
-    sector.add(rho_[i], height_[i]);
+    sector.add(bins_[i], lowest_[i], levels_[i]);
     sum.x += x_[i];
     sum.y += y_[i];
   }

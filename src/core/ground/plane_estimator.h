@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "core/ground/block.h"
@@ -57,6 +58,8 @@ class PlaneEstimator {
   void refine();
 
   std::vector<float> rho_, height_, x_, y_;  // of a column's near returns; then the directions towards them
+  std::vector<std::uint64_t> lowest_;        // as in Cell
+  std::vector<std::uint32_t> bins_, levels_;
   std::array<Line, kMemory> lines_;
   std::size_t count_ = 0;  // ever added
   Plane plane_;
