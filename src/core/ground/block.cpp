@@ -39,6 +39,7 @@ void measureRows(ground::Block& block, const ground::Columns& columns, std::size
   const float* const z_from = columns.z.data() + first;
   float* const block_rho = block.rho.data();
   float* const block_height = block.height.data();
+  std::uint32_t* const last_columns = block.last.data();
   float* const last_x = block.last_x.data();
   float* const last_y = block.last_y.data();
   float* const last_rho = block.last_rho.data();
@@ -73,6 +74,7 @@ void measureRows(ground::Block& block, const ground::Columns& columns, std::size
     }
     block_returns[row] = static_cast<std::uint8_t>(returns);
     const std::size_t last = 31 - static_cast<std::size_t>(__builtin_clz(returns | 1U));
+    last_columns[row] = static_cast<std::uint32_t>(last);
     last_x[row] = x_from[row * stride + last] - origin[0];
     last_y[row] = y_from[row * stride + last] - origin[1];
     last_rho[row] = block_rho[row * ground::Block::kColumns + last];
@@ -104,6 +106,7 @@ void Columns::clear(std::size_t column, std::size_t lasers) {
 void Block::resize(std::size_t lasers) {
   size = lasers * kColumns;
   returns.resize(std::max(returns.size(), lasers));
+  last.resize(std::max(last.size(), lasers));
   for (auto* values : {&rho, &height}) {
     values->resize(std::max(values->size(), size + kColumns));
     std::fill_n(values->begin() + static_cast<std::ptrdiff_t>(size), kColumns, 0.0F);

@@ -35,6 +35,7 @@ struct Block {
   /// By laser, x, y, rho and height of the last of its returns; arrays are longer than there are lasers by up to
   /// kColumns - 1. If there is none, rho is not above kMinRho.
   std::vector<float> last_x, last_y, last_rho, last_height;
+  std::vector<std::uint32_t> last;  ///< by laser, the column of that return; 0 if there is none
 
   /// A row without returns, beyond the lasers.
   std::size_t noRow() const { return size / kColumns; }

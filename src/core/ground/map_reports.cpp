@@ -103,7 +103,7 @@ std::size_t collectRays(const Shown& shown, MapReports& reports, std::size_t& st
   const FollowSetting setting = shown.setting;
   const Passed* const passed = shown.result.passed;
   const Found* const found = shown.result.found;
-  const std::uint8_t* const returns = setting.block->returns.data();
+  const std::uint32_t* const last = setting.block->last.data();
   const float* const last_rho = setting.block->last_rho.data();
   const float* const last_height = setting.block->last_height.data();
   float* const from_rho = reports.rays.from.data();
@@ -115,21 +115,22 @@ std::size_t collectRays(const Shown& shown, MapReports& reports, std::size_t& st
   // One more than the number of the stretch; 0: none.
   std::uint32_t* const latest = reports.latest.data() + 1;
   latest[RowOrder::kNone] = 0;
-  std::size_t ray = 0, stretch = 0;
+  std::uint32_t ray = 0, stretch = 0;
   for (std::size_t i = 0; i < setting.size; ++i) {
     const RowOrder::Row& row = setting.rows[i];
     const Passed& before = row.down == RowOrder::kNone ? setting.starts[i] : passed[row.down];
-    const bool has_ground = found[i].reached != 0;
-    const float from = before.reach[lastOf(returns[row.row])], to = last_rho[row.row];
+    const std::uint32_t has_ground = found[i].reached != 0 ? 1 : 0;
+    const float from = before.reach[last[row.row]], to = last_rho[row.row];
     from_rho[ray] = from;
     to_rho[ray] = to;
     to_height[ray] = last_height[row.row];
     sector[ray] = setting.sectors[i];
-    with_ground[ray] = has_ground ? 1 : 0;
-    ray += static_cast<std::size_t>((to > from) | has_ground);
+    with_ground[ray] = has_ground;
+    ray += static_cast<std::uint32_t>(to > from) | has_ground;
     ground[stretch] = static_cast<std::uint32_t>(i);
-    stretch += static_cast<std::size_t>(has_ground);
-    latest[i] = has_ground ? static_cast<std::uint32_t>(stretch) : latest[row.down];
+    stretch += has_ground;
+    const std::uint32_t below = latest[row.down];
+    latest[i] = below ^ ((below ^ stretch) & (0U - has_ground));  // a choice that is no branch
   }
   stretch_count = stretch;
   return ray;
