@@ -88,7 +88,7 @@ void Follower::prepare(const RowOrder& order, const Plane& plane, GroundMap& map
   std::int32_t prepared = -1;
   for (std::size_t i = 0; i < size; ++i) {
     if (rows[i].down == RowOrder::kNone) {
-      starts_[i] = {starts_.size() + i, {}, {}, 0};
+      starts_[i] = {{}, {}, starts_.size() + i, 0};
       starts_[i].limit.fill(plane.height + kStartLimit);
       setStart(plane, plane.slopeTowards(order.directionOf(rows[i].row)), followed_[starts_[i].followed]);
     }

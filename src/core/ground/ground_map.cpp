@@ -61,7 +61,7 @@ constexpr float kAcross = 0.06F;       // metres per metre, by which the ground 
 }  // namespace
 
 const GroundMap::Values& GroundMap::middles() {
-  static const Values values = [] {
+  alignas(64) static const Values values = [] {
     Values all;
     for (std::size_t bin = 0; bin < all.size(); ++bin) {
       const std::int32_t bits = (static_cast<std::int32_t>(bin) + kFirstBin) << kBinShift;

@@ -27,7 +27,7 @@ class GroundMap {
   using Values = std::array<float, kBins>;
 
   /// The cells of a sector of azimuth: the ground is at offset + slope * distance.
-  struct Sector {
+  struct alignas(64) Sector {
     Values offset{};  ///< metres
     Values slope{};   ///< metres per metre
     Values slack;     ///< metres by which the ground may differ; kUnknown: nothing is known

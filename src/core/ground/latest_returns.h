@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include "core/aligned_vector.h"
 
 #include "core/ground/block.h"
 
@@ -20,10 +20,10 @@ struct Turned {
 
 /// The latest return of each row. Arrays are by row, and longer than there are rows.
 struct LatestReturns {
-  std::vector<float> x, y, rho, height;  ///< as in Block
-  std::vector<float> azimuth;            ///< radians, 0 to 2 pi, within 0.004
-  std::vector<std::int32_t> sector;      ///< of the azimuth
-  std::vector<std::uint32_t> block;      ///< number of the block with the return; 0: none yet
+  AlignedVector<float> x, y, rho, height;  ///< as in Block
+  AlignedVector<float> azimuth;            ///< radians, 0 to 2 pi, within 0.004
+  AlignedVector<std::int32_t> sector;      ///< of the azimuth
+  AlignedVector<std::uint32_t> block;      ///< number of the block with the return; 0: none yet
 
   void begin(std::size_t lasers);
   /// Enters a block's returns.

@@ -177,8 +177,9 @@ HWY_INLINE void measureRays(MapReports::Rays& rays, std::size_t count) {
 /// Computes the bins of the stretches, and the lines that are entered.
 HWY_INLINE void measureStretches(MapReports::Stretches& stretches, std::size_t count, float max_slope) {
   for (std::size_t i = 0; i < count; i += hn::MaxLanes(kBinFloats)) {
-    const auto load = [i](const std::vector<float>& values) HWY_ATTR { return hn::LoadU(kBinFloats, &values[i]); };
-    const auto store = [i](BinVector value, std::vector<float>& to) HWY_ATTR { hn::StoreU(value, kBinFloats, &to[i]); };
+    const auto load = [i](const AlignedVector<float>& values) HWY_ATTR { return hn::LoadU(kBinFloats, &values[i]); };
+    const auto store = [i](BinVector value, AlignedVector<float>& to)
+                           HWY_ATTR { hn::StoreU(value, kBinFloats, &to[i]); };
     const auto from_rho = load(stretches.from_rho), rho = load(stretches.rho), height = load(stretches.height);
     const auto length = hn::Sub(rho, from_rho), rise = hn::Sub(height, load(stretches.from_height));
     const auto most = set(max_slope);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/aligned_vector.h"
 #include "core/ground/follow_rows.h"
 #include "core/ground/ground_map.h"
 
@@ -24,21 +25,21 @@ struct Shown {
 struct MapReports {
   /// Rays of the latest column of the rows: each passes above the ground from one distance to another.
   struct Rays {
-    std::vector<float> from, to, height;    ///< height where it ends
-    std::vector<float> slope;               ///< of the ray
-    std::vector<std::int32_t> first, end;   ///< the bins in between
-    std::vector<std::uint32_t> sector;      ///< of the map
-    std::vector<std::uint32_t> has_ground;  ///< it shows the next of the stretches, too: 1, else 0
+    AlignedVector<float> from, to, height;   ///< height where it ends
+    AlignedVector<float> slope;              ///< of the ray
+    AlignedVector<std::int32_t> first, end;  ///< the bins in between
+    std::vector<std::uint32_t> sector;       ///< of the map
+    std::vector<std::uint32_t> has_ground;   ///< it shows the next of the stretches, too: 1, else 0
   };
   /// Ground found from one distance to another.
   struct Stretches {
-    std::vector<float> from_rho, from_height, rho, height;
-    std::vector<float> long_slope;          ///< of the ground up to rho, over a longer way
-    std::vector<float> slope, offset, ray;  ///< of the line that is entered, and of the ray to its end
-    std::vector<std::int32_t> first, last;  ///< bins; if it is no ground, the last one is -1
-    std::vector<std::uint32_t> sector;      ///< of the map
-    std::vector<std::uint32_t> is_doubted;  ///< it is not where the ground before lets expect it
-    std::vector<std::uint32_t> is_last;     ///< behind one more: no ground has been found beyond
+    AlignedVector<float> from_rho, from_height, rho, height;
+    AlignedVector<float> long_slope;          ///< of the ground up to rho, over a longer way
+    AlignedVector<float> slope, offset, ray;  ///< of the line that is entered, and of the ray to its end
+    AlignedVector<std::int32_t> first, last;  ///< bins; if it is no ground, the last one is -1
+    std::vector<std::uint32_t> sector;        ///< of the map
+    std::vector<std::uint32_t> is_doubted;    ///< it is not where the ground before lets expect it
+    std::vector<std::uint32_t> is_last;       ///< behind one more: no ground has been found beyond
   };
   Rays rays;
   Stretches stretches;
