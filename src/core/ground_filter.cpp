@@ -50,7 +50,7 @@ class GroundFilter::State {
   void visitNext(const Visitor& visit);
   void decide(std::size_t first, std::size_t count, std::uint8_t* ground, std::size_t stride);
   void tellMap();
-  void estimatePlane();
+  void estimatePlane(std::size_t first);
 
   GroundParameters parameters_;
   float max_slope_ = 0.0F;
@@ -90,7 +90,7 @@ void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t 
   waiting_ = ready_ = ready_end_ = visited_ = 0;
   block_number_ = 0;
   is_told_ = true;
-  plane_estimator_.begin(parameters, max_slope_);
+  plane_estimator_.begin(parameters, max_slope_, lasers);
   begun_ = true;
 }
 
@@ -143,7 +143,7 @@ void GroundFilter::State::visitNext(const Visitor& visit) {
 
 /// Reads more columns at a time than are decided together: the returns of a laser lie side by side in a cloud's memory.
 void GroundFilter::State::addAll(std::size_t columns, const CellSource& cells, std::uint8_t* ground) {
-  constexpr std::size_t kRead = 64;
+  constexpr std::size_t kRead = 128;
   std::array<std::uint32_t, kRead> source_indices;
   received_.resize(lasers_, kRead);
   std::fill_n(ground, columns * lasers_, std::uint8_t{0});
@@ -167,7 +167,7 @@ void GroundFilter::State::decide(std::size_t first, std::size_t count, std::uint
   ++block_number_;
   block_.measure(received_, first, parameters_.sensor);
   order_.update(block_);
-  estimatePlane();
+  estimatePlane(first);
   is_told_ = !plane_estimator_.isKnown();
   if (plane_estimator_.isKnown())
     follower_.follow(block_, order_, plane_estimator_.plane(), map_, static_cast<std::uint32_t>(block_number_), ground,
@@ -180,11 +180,12 @@ void GroundFilter::State::tellMap() {
   is_told_ = true;
 }
 
-void GroundFilter::State::estimatePlane() {
+/// \param first of the columns received that the block has
+void GroundFilter::State::estimatePlane(std::size_t first) {
   constexpr std::uint64_t kEstimatePeriod = 4;  // blocks
   if (plane_estimator_.isKnown() && block_number_ % kEstimatePeriod != 0) return;
   const std::size_t count = plane_estimator_.isKnown() ? 1 : Block::kColumns;
-  for (std::size_t column = 0; column < count; ++column) plane_estimator_.add(block_, column);
+  for (std::size_t column = 0; column < count; ++column) plane_estimator_.add(block_, received_, first, column);
   plane_estimator_.update();
 }
 
@@ -202,7 +203,7 @@ GroundParameters estimateGroundPlane(std::size_t columns, std::size_t lasers, Gr
   Block block;
   block.resize(lasers);
   PlaneEstimator estimator;
-  estimator.begin(parameters, maxSlope(parameters));
+  estimator.begin(parameters, maxSlope(parameters), lasers);
   const std::size_t samples = std::min(columns, PlaneEstimator::kMemory);
   for (std::size_t sample = 0; sample < samples; ++sample) {
     const std::size_t to = sample % Block::kColumns;
@@ -216,7 +217,7 @@ GroundParameters estimateGroundPlane(std::size_t columns, std::size_t lasers, Gr
     }
     if (to + 1 < Block::kColumns && sample + 1 < samples) continue;
     block.measure(sampled, 0, parameters.sensor);
-    for (std::size_t i = 0; i <= to; ++i) estimator.add(block, i);
+    for (std::size_t i = 0; i <= to; ++i) estimator.add(block, sampled, 0, i);
   }
   estimator.update();
   if (!estimator.isKnown()) return parameters;

@@ -97,7 +97,7 @@ bool SensorEstimator::estimateFrame(const std::array<float, 3>& declared_origin,
   bool found = false;
   double spread = kClear / kClearlyBetter;
   for (const auto& origin : {std::array<float, 3>{0.0F, 0.0F, 0.0F}, declared_origin}) {
-    if ((found && spread < kTidy) || !mayHaveSeen(origin, box)) continue;
+    if ((found && (spread < kTidy || origin == hints.origin)) || !mayHaveSeen(origin, box)) continue;
     const double seen = frame_.spread({toDouble(origin), {}});
     if (found && !(seen < kClearlyBetter * spread)) continue;
     hints.origin = origin;

@@ -56,10 +56,9 @@ constexpr float kSameRay = 0.003F;                     // difference of the slop
 struct FollowedRow {
   const float* rho;
   const float* height;
-  const float* up_rho;  ///< of the row above; zeros if there is none
-  const float* up_height;
-  const float* above_rho;  ///< of a row clearly above
-  const float* above_height;
+  const float* block_rho;  ///< of all rows
+  const float* block_height;
+  const RowOrder::Row* row;
   const GroundMap::Sector* sector;
   const Passed* before;  ///< of the rows below
   Passed* passed;
@@ -96,10 +95,12 @@ struct Above {
 HWY_INLINE Above lookUp(const FollowedRow& row, std::size_t k, Floats rho, Floats height, Floats max_slope) {
   const auto least = set(Block::kMinRho);
   const auto wall_width = grown(kWallWidth, kWallGrowth, rho);
-  const auto up_rho = hn::LoadU(kLanes, row.up_rho + k);
-  const auto up_height = hn::LoadU(kLanes, row.up_height + k);
-  const auto above_rho = hn::LoadU(kLanes, row.above_rho + k);
-  const auto above_height = hn::LoadU(kLanes, row.above_height + k);
+  constexpr auto kColumns = static_cast<std::ptrdiff_t>(Block::kColumns);
+  const std::ptrdiff_t up = row.row->up_row * kColumns, over = row.row->above_row * kColumns;
+  const auto up_rho = hn::LoadU(kLanes, row.block_rho + up + k);
+  const auto up_height = hn::LoadU(kLanes, row.block_height + up + k);
+  const auto above_rho = hn::LoadU(kLanes, row.block_rho + over + k);
+  const auto above_height = hn::LoadU(kLanes, row.block_height + over + k);
   const auto is_up = hn::Gt(up_rho, least), is_above = hn::Gt(above_rho, least);
   const auto up_step = hn::Sub(up_rho, rho), above_step = hn::Sub(above_rho, rho);
   const auto up_rise = hn::Sub(up_height, height), above_rise = hn::Sub(above_height, height);

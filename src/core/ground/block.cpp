@@ -3,10 +3,10 @@
 #include "core/ground/block.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/ground/targets.h"
-#include "core/pi.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/ground/block.cpp"
@@ -23,60 +23,62 @@ namespace hn = hwy::HWY_NAMESPACE;
 using RowFloats = hn::CappedTag<float, ground::Block::kColumns>;
 using RowVector = hn::Vec<RowFloats>;
 constexpr RowFloats kRow{};
-
-/// Radians, 0 to 2 pi, within 0.004.
-HWY_INLINE RowVector azimuthOf(RowVector x, RowVector y) {
-  constexpr float kOctant = static_cast<float>(kPi / 4.0);
-  const auto set = [](float value) HWY_ATTR { return hn::Set(kRow, value); };
-  const auto zero = hn::Zero(kRow);
-  const auto east = hn::Abs(x), north = hn::Abs(y);
-  const auto ratio = hn::Div(hn::Min(east, north), hn::Add(hn::Max(east, north), set(1e-30F)));
-  auto octants = hn::Mul(ratio, hn::Sub(set(1.2732F), hn::Mul(set(0.2732F), ratio)));
-  octants = hn::IfThenElse(hn::Gt(north, east), hn::Sub(set(2.0F), octants), octants);
-  octants = hn::IfThenElse(hn::Lt(x, zero), hn::Sub(set(4.0F), octants), octants);
-  octants = hn::IfThenElse(hn::Lt(y, zero), hn::Sub(set(8.0F), octants), octants);
-  return hn::Mul(octants, set(kOctant));
-}
+constexpr hn::RebindToSigned<RowFloats> kRowInts{};
 
 void measureRows(ground::Block& block, const ground::Columns& columns, std::size_t first, const SensorHints& sensor) {
   constexpr float kMaxCoordinate = 1e6F;  // metres; beyond, coordinates are no measurements
   const auto set = [](float value) { return hn::Set(kRow, value); };
-  const auto zero = hn::Zero(kRow);
-  const auto most = set(kMaxCoordinate);
+  const auto most = hn::BitCast(kRowInts, set(kMaxCoordinate));
   const std::size_t rows = block.size / ground::Block::kColumns;
   const auto least = set(ground::Block::kMinRho);
+  // Looked up once: the bytes of `returns` may be stored to any pointer.
+  const std::array<float, 3> origin = sensor.origin;
+  const std::array<float, 2> tilt = sensor.tilt;
+  const float* const x_from = columns.x.data() + first;
+  const float* const y_from = columns.y.data() + first;
+  const float* const z_from = columns.z.data() + first;
+  float* const block_rho = block.rho.data();
+  float* const block_height = block.height.data();
+  std::uint32_t* const last_columns = block.last.data();
+  float* const last_x = block.last_x.data();
+  float* const last_y = block.last_y.data();
+  float* const last_rho = block.last_rho.data();
+  float* const last_height = block.last_height.data();
+  std::uint8_t* const block_returns = block.returns.data();
+  const std::size_t stride = columns.stride;
   for (std::size_t row = 0; row < rows; ++row) {
     unsigned returns = 0;
     for (std::size_t k = 0; k < ground::Block::kColumns; k += hn::Lanes(kRow)) {
-      const std::size_t from = row * columns.stride + first + k;
+      const std::size_t from = row * stride + k;
       const std::size_t to = row * ground::Block::kColumns + k;
-      const auto x_read = hn::LoadU(kRow, columns.x.data() + from);
-      const auto y_read = hn::LoadU(kRow, columns.y.data() + from);
-      const auto z_read = hn::LoadU(kRow, columns.z.data() + from);
-      auto x = hn::Sub(x_read, set(sensor.origin[0]));
-      auto y = hn::Sub(y_read, set(sensor.origin[1]));
-      auto z = hn::Sub(z_read, set(sensor.origin[2]));
-      const auto finite =
-          hn::And(hn::Lt(hn::Abs(x), most), hn::And(hn::Lt(hn::Abs(y), most), hn::Lt(hn::Abs(z), most)));
-      const auto none = hn::And(hn::Eq(x_read, zero), hn::And(hn::Eq(y_read, zero), hn::Eq(z_read, zero)));
-      const auto valid = hn::AndNot(none, finite);
-      x = hn::IfThenElseZero(valid, x);
-      y = hn::IfThenElseZero(valid, y);
-      z = hn::IfThenElseZero(valid, z);
+      const auto x_read = hn::LoadU(kRow, x_from + from);
+      const auto y_read = hn::LoadU(kRow, y_from + from);
+      const auto z_read = hn::LoadU(kRow, z_from + from);
+      const auto x = hn::Sub(x_read, set(origin[0]));
+      const auto y = hn::Sub(y_read, set(origin[1]));
+      const auto z = hn::Sub(z_read, set(origin[2]));
+      // As integers, the magnitudes of floats are in their order, and those of NaN above all.
+      const auto magnitude = [](RowVector value) HWY_ATTR { return hn::BitCast(kRowInts, hn::Abs(value)); };
+      const auto largest = hn::Max(hn::Max(magnitude(x), magnitude(y)), magnitude(z));
+      const auto any = hn::BitCast(kRowInts, hn::Abs(hn::Or(hn::Or(x_read, y_read), z_read)));
+      const auto is_return = hn::RebindMask(kRow, hn::AndNot(hn::Eq(any, hn::Zero(kRowInts)), hn::Lt(largest, most)));
       const auto squared = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
-      const auto rho = hn::Sqrt(squared);
-      hn::StoreU(rho, kRow, block.rho.data() + to);
+      const auto rho = hn::Sqrt(hn::IfThenElseZero(is_return, squared));
+      hn::StoreU(rho, kRow, block_rho + to);
       std::uint8_t bits[8] = {};
       hn::StoreMaskBits(kRow, hn::Gt(rho, least), bits);
       returns |= static_cast<unsigned>(bits[0]) << k;
-      const auto horizon = hn::Add(hn::Mul(set(sensor.tilt[0]), x), hn::Mul(set(sensor.tilt[1]), y));
-      const auto height = hn::Sub(z, horizon);
-      hn::StoreU(height, kRow, block.height.data() + to);
-      hn::StoreU(x, kRow, block.x.data() + to);
-      hn::StoreU(y, kRow, block.y.data() + to);
-      hn::StoreU(azimuthOf(x, y), kRow, block.azimuth.data() + to);
+      const auto horizon = hn::Add(hn::Mul(set(tilt[0]), x), hn::Mul(set(tilt[1]), y));
+      const auto height = hn::IfThenElseZero(is_return, hn::Sub(z, horizon));
+      hn::StoreU(height, kRow, block_height + to);
     }
-    block.returns[row] = static_cast<std::uint8_t>(returns);
+    block_returns[row] = static_cast<std::uint8_t>(returns);
+    const std::size_t last = 31 - static_cast<std::size_t>(__builtin_clz(returns | 1U));
+    last_columns[row] = static_cast<std::uint32_t>(last);
+    last_x[row] = x_from[row * stride + last] - origin[0];
+    last_y[row] = y_from[row * stride + last] - origin[1];
+    last_rho[row] = block_rho[row * ground::Block::kColumns + last];
+    last_height[row] = block_height[row * ground::Block::kColumns + last];
   }
 }
 
@@ -104,9 +106,14 @@ void Columns::clear(std::size_t column, std::size_t lasers) {
 void Block::resize(std::size_t lasers) {
   size = lasers * kColumns;
   returns.resize(std::max(returns.size(), lasers));
-  for (auto* values : {&x, &y, &rho, &height, &azimuth}) {
+  last.resize(std::max(last.size(), lasers));
+  for (auto* values : {&rho, &height}) {
     values->resize(std::max(values->size(), size + kColumns));
     std::fill_n(values->begin() + static_cast<std::ptrdiff_t>(size), kColumns, 0.0F);
+  }
+  for (auto* values : {&last_x, &last_y, &last_rho, &last_height}) {
+    values->resize(std::max(values->size(), lasers + kColumns - 1));
+    std::fill_n(values->begin() + static_cast<std::ptrdiff_t>(lasers), kColumns - 1, 0.0F);
   }
 }
 

@@ -6,13 +6,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/aligned_vector.h"
 #include "lisco/sensor_hints.h"
 
 namespace lisco::ground {
 
 /// Returns as received, laser by laser: cell (laser, column) is element laser * stride + column.
 struct Columns {
-  std::vector<float> x, y, z;  ///< metres
+  AlignedVector<float> x, y, z;  ///< metres
   std::size_t stride = 0;
 
   /// Allocates only if there are more cells than ever before.
@@ -27,12 +28,15 @@ struct Block {
   static constexpr std::size_t kColumns = 8;
   static constexpr float kMinRho = 0.05F;  ///< metres; nearer returns are not looked at
 
-  std::vector<float> x, y;            ///< from the sensor, metres
-  std::vector<float> rho;             ///< horizontal distance from the sensor, metres; 0: no return
-  std::vector<float> height;          ///< above the sensor's horizon, metres
-  std::vector<float> azimuth;         ///< radians, 0 to 2 pi, within 0.004
+  AlignedVector<float> rho;           ///< horizontal distance from the sensor, metres; 0: no return
+  AlignedVector<float> height;        ///< above the sensor's horizon, metres
   std::vector<std::uint8_t> returns;  ///< of each laser, the columns with rho > kMinRho, as bits
   std::size_t size = 0;               ///< number of elements, without those of noRow ()
+
+  /// By laser, x, y, rho and height of the last of its returns; arrays are longer than there are lasers by up to
+  /// kColumns - 1. If there is none, rho is not above kMinRho.
+  AlignedVector<float> last_x, last_y, last_rho, last_height;
+  std::vector<std::uint32_t> last;  ///< by laser, the column of that return; 0 if there is none
 
   /// A row without returns, beyond the lasers.
   std::size_t noRow() const { return size / kColumns; }

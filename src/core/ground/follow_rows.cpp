@@ -55,15 +55,25 @@ HWY_INLINE Mapped lookDown(const GroundMap::Sector& sector, Floats rho, Floats h
   const auto exponent = hn::ShiftRight<GroundMap::kBinShift>(hn::BitCast(kLaneInts, hn::Mul(rho, rho)));
   auto bin = hn::Sub(exponent, hn::Set(kLaneInts, GroundMap::kFirstBin));
   bin = hn::Min(hn::Max(bin, hn::Zero(kLaneInts)), hn::Set(kLaneInts, static_cast<std::int32_t>(GroundMap::kBins) - 1));
-  // Mostly all returns are in one bin.
-  const auto farthest = hn::MaxOfLanes(kLaneInts, hn::IfThenElseZero(hn::RebindMask(kLaneInts, valid), bin));
   Floats offset;
   Mapped mapped;
-  if (hn::AllFalse(kLanes, hn::And(valid, hn::RebindMask(kLanes, hn::Ne(bin, farthest))))) {
-    const auto at = static_cast<std::size_t>(hn::GetLane(farthest));
-    offset = set(sector.offset[at]);
-    mapped.slope = set(sector.slope[at]);
-    mapped.slack = set(sector.slack[at]);
+  // Mostly all returns are within as many bins as a vector has lanes.
+  constexpr std::size_t kStep = hn::MaxLanes(kLanes);
+  const auto most = hn::Set(kLaneInts, static_cast<std::int32_t>(GroundMap::kBins - kStep));
+  const auto nearest =
+      hn::MinOfLanes(kLaneInts, hn::IfThenElse(hn::RebindMask(kLaneInts, valid), hn::Min(bin, most), most));
+  const auto from_nearest = hn::Sub(bin, nearest);
+  const auto is_far = hn::Gt(from_nearest, hn::Set(kLaneInts, static_cast<std::int32_t>(kStep) - 1));
+  if (kStep > 1 && hn::AllFalse(kLanes, hn::And(valid, hn::RebindMask(kLanes, is_far)))) {
+    const auto first = static_cast<std::size_t>(hn::GetLane(nearest));
+    // Lanes without a return look up any of these bins.
+    const auto lanes =
+        hn::IndicesFromVec(kLanes, hn::And(from_nearest, hn::Set(kLaneInts, static_cast<std::int32_t>(kStep) - 1)));
+    const auto look = [&](const GroundMap::Values& values)
+                          HWY_ATTR { return hn::TableLookupLanes(hn::LoadU(kLanes, &values[first]), lanes); };
+    offset = look(sector.offset);
+    mapped.slope = look(sector.slope);
+    mapped.slack = look(sector.slack);
   } else {
     offset = hn::GatherIndex(kLanes, sector.offset.data(), bin);
     mapped.slope = hn::GatherIndex(kLanes, sector.slope.data(), bin);
@@ -185,7 +195,7 @@ HWY_INLINE Found passObjects(const FollowedRow& row, std::size_t k, const Column
     obstacles |= bitsOf(hn::And(rises(column, lookUp(row, k, column.rho, column.height, steepest)), column.valid), k);
   lowerLimit(row, k, column, hn::Lt(column.rho, hn::Zero(kLanes)));
   const auto higher = hn::And(column.valid, hn::Gt(column.above, set(kHigher)));
-  return {0, 0, 0, 0, bitsOf(higher, k), false};
+  return {0, 0, 0, 0, bitsOf(higher, k)};
 }
 
 /// What is found of a part of a row, all of whose returns are on the ground.
@@ -194,7 +204,7 @@ HWY_INLINE Found passGround(const FollowedRow& row, std::size_t k, const Column&
   lowerLimit(row, k, column, column.valid);
   const std::uint8_t ground = bitsOf(column.valid, k), reached_bits = bitsOf(reached, k);
   row.passed->obstacles = static_cast<std::uint8_t>(row.passed->obstacles & ~reached_bits);
-  return {ground, reached_bits, ground, ground, 0, false};
+  return {ground, reached_bits, ground, ground, 0};
 }
 
 /// The ground seems to go on along a slope beyond a return.
@@ -279,8 +289,7 @@ HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const Column&
   const auto higher = hn::And(hn::AndNot(found, valid), hn::Gt(column.above, set(kHigher)));
   const std::uint8_t reached_bits = bitsOf(reached, k);
   row.passed->obstacles = static_cast<std::uint8_t>((row.passed->obstacles & ~reached_bits) | bitsOf(object, k));
-  return {
-      bitsOf(hn::Or(found, below), k), reached_bits, bitsOf(confirmed, k), bitsOf(known, k), bitsOf(higher, k), false};
+  return {bitsOf(hn::Or(found, below), k), reached_bits, bitsOf(confirmed, k), bitsOf(known, k), bitsOf(higher, k)};
 }
 
 HWY_INLINE void add(const Found& part, Found& found) {
@@ -337,33 +346,39 @@ HWY_INLINE Found followRow(const FollowedRow& row, Floats steepest) {
 
 void followRows(const FollowSetting& setting, const FollowResult& result) {
   const auto steepest = set(setting.max_slope);
-  const Block& block = *setting.block;
-  const auto cellsOf = [&](const std::vector<float>& values, std::int32_t at) {
-    const std::size_t row = at == RowOrder::kNone ? block.noRow() : static_cast<std::size_t>(setting.rows[at].row);
-    return values.data() + row * Block::kColumns;
-  };
-  for (std::size_t i = 0; i < setting.size; ++i) {
-    const RowOrder::Row& row = setting.rows[i];
-    const auto at = static_cast<std::int32_t>(i);
-    const Passed& before = row.down == RowOrder::kNone ? setting.starts[i] : result.passed[row.down];
-    if (block.returns[static_cast<std::size_t>(row.row)] == 0) {
-      result.passed[i] = before;
-      result.found[i] = {};
+  // Looked up once: the bytes that are stored may be those of any pointer.
+  const float* const rho = setting.block->rho.data();
+  const float* const height = setting.block->height.data();
+  const std::uint8_t* const returns = setting.block->returns.data();
+  const RowOrder::Row* const rows = setting.rows;
+  const GroundMap::Sector* const map = setting.map;
+  const std::uint32_t* const sectors = setting.sectors;
+  const Passed* const starts = setting.starts;
+  Passed* const passed = result.passed;
+  ground::Followed* const reached = result.followed;
+  Found* const found = result.found;
+  const std::size_t size = setting.size;
+  for (std::size_t i = 0; i < size; ++i) {
+    const RowOrder::Row& row = rows[i];
+    const Passed& before = row.down == RowOrder::kNone ? starts[i] : passed[row.down];
+    if (returns[row.row] == 0) {
+      passed[i] = before;
+      found[i] = {};
       continue;
     }
-    const FollowedRow followed{cellsOf(block.rho, at),
-                               cellsOf(block.height, at),
-                               cellsOf(block.rho, row.up),
-                               cellsOf(block.height, row.up),
-                               cellsOf(block.rho, row.above),
-                               cellsOf(block.height, row.above),
-                               setting.map[i],
+    const std::ptrdiff_t at = row.row * static_cast<std::ptrdiff_t>(Block::kColumns);
+    const FollowedRow followed{rho + at,
+                               height + at,
+                               rho,
+                               height,
+                               &row,
+                               map + sectors[i],
                                &before,
-                               &result.passed[i],
-                               &result.followed[before.followed],
-                               &result.followed[i],
+                               &passed[i],
+                               &reached[before.followed],
+                               &reached[i],
                                i};
-    result.found[i] = followRow(followed, steepest);
+    found[i] = followRow(followed, steepest);
   }
 }
 

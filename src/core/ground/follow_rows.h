@@ -17,7 +17,7 @@ namespace lisco::ground {
 using Lanes = std::array<float, Block::kColumns>;
 
 /// The ground that the rows of a block up to one of them have shown, per column.
-struct Followed {
+struct alignas(sizeof(Lanes)) Followed {
   Lanes rho, height;            ///< of the ground reached; rho is 0 before the first return on it
   Lanes slope;                  ///< of the ground up to there
   Lanes back_rho, back_height;  ///< ground further inwards, from which the slope is measured
@@ -25,10 +25,10 @@ struct Followed {
 };
 
 /// What the rows up to one of them have shown.
-struct Passed {
-  std::size_t followed;    ///< number of the Followed, in FollowResult
+struct alignas(sizeof(Lanes)) Passed {
   Lanes reach;             ///< distance of the farthest return
   Lanes limit;             ///< no ground is higher than this, beneath the sensor, but for the steepest slope
+  std::size_t followed;    ///< number of the Followed, in FollowResult
   std::uint8_t obstacles;  ///< columns in which objects hide the ground beyond the ground reached, as bits
 };
 
@@ -37,9 +37,10 @@ struct FollowSetting {
   const Block* block;
   const RowOrder::Row* rows;
   std::size_t size;
-  float max_slope;                      ///< of ground, metres per metre
-  const GroundMap::Sector* const* map;  ///< for each row
-  const Passed* starts;                 ///< for each row with none below: what is known before it
+  float max_slope;               ///< of ground, metres per metre
+  const GroundMap::Sector* map;  ///< all sectors
+  const std::uint32_t* sectors;  ///< for each row, its sector
+  const Passed* starts;          ///< for each row with none below: what is known before it
 };
 
 /// What they show, for each row.

@@ -12,20 +12,14 @@ namespace {
 
 constexpr float kStartLimit = 0.2F;  // metres above the ground beneath the sensor
 
-/// The highest of the bits that are set, of at least one.
-std::size_t lastOf(std::uint8_t bits) {
-  return 31 - static_cast<std::size_t>(__builtin_clz(bits));
-}
-
 /// A byte for each of eight bits, 0 or 1, the lowest one first.
 std::array<std::uint8_t, 8> bytesOf(std::uint8_t bits) {
-  static constexpr auto table = [] {
-    std::array<std::array<std::uint8_t, 8>, 256> all{};
-    for (std::size_t i = 0; i < all.size(); ++i)
-      for (std::size_t k = 0; k < 8; ++k) all[i][k] = i >> k & 1;
-    return all;
-  }();
-  return table[bits];
+  constexpr std::uint64_t kEach = 0x0101010101010101, kBits = 0x8040201008040201, kBelow = 0x7F7F7F7F7F7F7F7F;
+  const std::uint64_t apart = bits * kEach & kBits;  // bit i in byte i
+  const std::uint64_t ones = (apart + kBelow) >> 7 & kEach;
+  std::array<std::uint8_t, 8> bytes;
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(ones >> 8 * i);
+  return bytes;
 }
 
 /// Ground as far as it is known before the first row of a chain.
@@ -43,11 +37,11 @@ void Follower::begin(std::size_t lasers, float max_slope) {
     followed_.resize(2 * lasers);
     passed_.resize(lasers);
     sectors_.resize(lasers);
-    sector_numbers_.resize(lasers);
-    found_.resize(lasers);
-    last_ground_.resize(lasers);
-    reports_.reserve(lasers);
+    with_ground_.resize(lasers);
+    scattered_.resize(lasers);
+    found_.resize(lasers + 1);
   }
+  reports_.begin(lasers);
   max_slope_ = max_slope;
 }
 
@@ -55,11 +49,25 @@ void Follower::follow(const Block& block, const RowOrder& order, const Plane& pl
                       std::uint32_t number, std::uint8_t* ground, std::size_t columns, std::size_t stride) {
   const auto& rows = order.rows();
   prepare(order, plane, map, number);
-  followRows({&block, rows.data(), rows.size(), max_slope_, sectors_.data(), starts_.data()},
-             {passed_.data(), followed_.data(), found_.data()});
-  dropScattered(rows, found_);
+  followRows(settingOf(block, order, map), result());
+  // Written always, counted if there is ground.
+  std::size_t count = 0;
+  Found* const found = result().found;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::array<std::uint8_t, 8> decisions = bytesOf(found_[i].ground);
+    with_ground_[count] = static_cast<std::int32_t>(i);
+    count += static_cast<std::size_t>(found[i].ground != 0);
+  }
+  dropScattered(rows.data(), found, with_ground_, count, scattered_);
+  write(rows.data(), count, ground, columns, stride);
+}
+
+void Follower::write(const RowOrder::Row* rows, std::size_t count, std::uint8_t* ground, std::size_t columns,
+                     std::size_t stride) const {
+  const std::int32_t* const with_ground = with_ground_.data();
+  const Found* const found = found_.data() + 1;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::int32_t i = with_ground[k];
+    const std::array<std::uint8_t, 8> decisions = bytesOf(found[i].ground);
     std::uint8_t* const to = ground + static_cast<std::size_t>(rows[i].row) * stride;
     if (columns == Block::kColumns)
       std::memcpy(to, decisions.data(), Block::kColumns);
@@ -69,61 +77,30 @@ void Follower::follow(const Block& block, const RowOrder& order, const Plane& pl
 }
 
 void Follower::tell(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map) {
-  for (std::size_t i = 0; i < order.rows().size(); ++i) sectors_[i] = map.sectors() + sector_numbers_[i];
-  report(block, order, plane);
-  enterReports(reports_, max_slope_, order.turnsLeft());
+  reports_.enter({settingOf(block, order, map), result(), plane.height, order.turnsLeft()}, map.sectors());
 }
 
 void Follower::prepare(const RowOrder& order, const Plane& plane, GroundMap& map, std::uint32_t number) {
-  const auto& rows = order.rows();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
+  const RowOrder::Row* const rows = order.rows().data();
+  const std::int32_t* const sector_of = order.sectors();
+  std::uint32_t* const sectors = sectors_.data();
+  const std::size_t size = order.rows().size();
+  std::int32_t prepared = -1;
+  for (std::size_t i = 0; i < size; ++i) {
     if (rows[i].down == RowOrder::kNone) {
-      starts_[i] = {starts_.size() + i, {}, {}, 0};
+      starts_[i] = {{}, {}, starts_.size() + i, 0};
       starts_[i].limit.fill(plane.height + kStartLimit);
       setStart(plane, plane.slopeTowards(order.directionOf(rows[i].row)), followed_[starts_[i].followed]);
     }
-    sectors_[i] = &map.sectorAt(order.azimuthOf(rows[i].row), number, plane);
-    sector_numbers_[i] = static_cast<std::size_t>(sectors_[i] - map.sectors());
+    const std::int32_t sector = sector_of[rows[i].row];
+    if (sector != prepared) map.look(static_cast<std::size_t>(sector), number, plane);
+    prepared = sector;
+    sectors[i] = static_cast<std::uint32_t>(sector);
   }
 }
 
-/// Reports what the latest column of each row has shown.
-void Follower::report(const Block& block, const RowOrder& order, const Plane& plane) {
-  const auto& rows = order.rows();
-  reports_.clear();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const RowOrder::Row& row = rows[i];
-    const bool is_first = row.down == RowOrder::kNone;
-    last_ground_[i] = is_first ? RowOrder::kNone : last_ground_[static_cast<std::size_t>(row.down)];
-    const std::uint8_t returns = block.returns[static_cast<std::size_t>(row.row)], reached = found_[i].reached;
-    if (returns == 0) continue;
-    const std::size_t k = lastOf(returns), cell = static_cast<std::size_t>(row.row) * Block::kColumns + k;
-    const float rho = block.rho[cell], reach = before(row, i).reach[k];
-    if (rho <= reach && reached == 0) continue;
-    // Filled in its place: a copy of fields just written waits for them.
-    reports_.emplace_back();
-    Report& report = reports_.back();
-    report.sector = sectors_[i];
-    report.seen_from = reach;
-    report.seen_to = rho;
-    report.seen_height = block.height[cell];
-    report.has_ground = reached != 0;
-    report.is_last = true;
-    if (reached != 0) {
-      const std::size_t last = lastOf(reached);
-      const Followed& now = followed_[passed_[i].followed];
-      const Followed& inwards = followed_[before(row, i).followed];
-      Stretch& stretch = report.stretch;
-      stretch.from_rho = is_first ? 0.0F : inwards.rho[last];
-      stretch.from_height = is_first ? plane.height : inwards.height[last];
-      stretch.rho = now.rho[last];
-      stretch.height = now.height[last];
-      stretch.slope = now.slope[last];
-      stretch.is_doubted = (found_[i].confirmed >> last & 1) == 0;
-      if (last_ground_[i] != RowOrder::kNone) reports_[static_cast<std::size_t>(last_ground_[i])].is_last = false;
-      last_ground_[i] = static_cast<std::int32_t>(reports_.size()) - 1;
-    }
-  }
+FollowSetting Follower::settingOf(const Block& block, const RowOrder& order, const GroundMap& map) const {
+  return {&block, order.rows().data(), order.rows().size(), max_slope_, map.sectors(), sectors_.data(), starts_.data()};
 }
 
 }  // namespace lisco::ground

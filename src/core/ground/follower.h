@@ -23,8 +23,8 @@ class Follower {
   void begin(std::size_t lasers, float max_slope);
   /// \param number of the block, from 1 on
   /// \param map tells of the blocks before
-  /// \param ground receives a byte for each of the first `columns` cells of the lasers in the order, 1 on the ground,
-  ///        else 0, in rows of `stride`
+  /// \param ground receives 1 for each of the first `columns` cells of the lasers that is on the ground, in rows of
+  ///        `stride`; 0 or nothing for the others
   void follow(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map, std::uint32_t number,
               std::uint8_t* ground, std::size_t columns, std::size_t stride);
   /// Tells the map of the block just followed.
@@ -32,22 +32,21 @@ class Follower {
 
  private:
   void prepare(const RowOrder& order, const Plane& plane, GroundMap& map, std::uint32_t number);
-  void report(const Block& block, const RowOrder& order, const Plane& plane);
-  /// What is known before a row.
-  const Passed& before(const RowOrder::Row& row, std::size_t position) const {
-    return row.down == RowOrder::kNone ? starts_[position] : passed_[static_cast<std::size_t>(row.down)];
-  }
+
+  void write(const RowOrder::Row* rows, std::size_t count, std::uint8_t* ground, std::size_t columns,
+             std::size_t stride) const;
+  FollowSetting settingOf(const Block& block, const RowOrder& order, const GroundMap& map) const;
+  FollowResult result() { return {passed_.data(), followed_.data(), found_.data() + 1}; }
 
   // By position in the order.
-  std::vector<GroundMap::Sector*> sectors_;
-  std::vector<std::size_t> sector_numbers_;  // a copy has a map of its own
-  std::vector<Passed> starts_;               // of rows with none below: what is known before
-  std::vector<Followed> followed_;           // then those of the starts
+  std::vector<std::uint32_t> sectors_;  // of the map
+  std::vector<Passed> starts_;          // of rows with none below: what is known before
+  std::vector<Followed> followed_;      // then those of the starts
   std::vector<Passed> passed_;
-  std::vector<Found> found_;
-  std::vector<std::int32_t> last_ground_;  // of the reports: latest one with ground, or RowOrder::kNone
+  std::vector<Found> found_;  // behind that of position -1
+  std::vector<std::int32_t> with_ground_, scattered_;
 
-  std::vector<Report> reports_;
+  MapReports reports_;
   float max_slope_ = 0.0F;
 };
 

@@ -12,29 +12,28 @@ namespace {
 // Least part of the ground among a row's returns and those of the rows next to it.
 constexpr std::uint32_t kMinGround = 2, kOfReturns = 7;
 
+/// The bits of a row in the lowest byte, and of the rows next to it in the next ones.
+std::uint32_t together(std::uint8_t row, std::uint8_t down, std::uint8_t up) {
+  return std::uint32_t{row} | std::uint32_t{down} << 8 | std::uint32_t{up} << 16;
+}
+
 }  // namespace
 
-void dropScattered(const std::vector<RowOrder::Row>& rows, std::vector<Found>& found) {
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    found[i].is_scattered = false;
-    if (found[i].ground == 0) continue;
-    const auto higherAt = [&](std::int32_t position) {
-      return position == RowOrder::kNone ? 0 : found[static_cast<std::size_t>(position)].higher;
-    };
-    if ((found[i].higher | higherAt(rows[i].down) | higherAt(rows[i].up)) == 0) continue;
-    std::uint32_t ground = 0, returns = 0;
-    for (const std::int32_t position : {static_cast<std::int32_t>(i), rows[i].down, rows[i].up}) {
-      if (position == RowOrder::kNone) continue;
-      const Found& row = found[static_cast<std::size_t>(position)];
-      ground += countBits(row.ground);
-      returns += countBits(static_cast<ColumnBits>(row.ground | row.higher));
-    }
-    found[i].is_scattered = ground * kOfReturns < returns * kMinGround;
+void dropScattered(const RowOrder::Row* rows, Found* found, const std::vector<std::int32_t>& with_ground,
+                   std::size_t count, std::vector<std::int32_t>& scattered) {
+  std::size_t dropped = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::int32_t i = with_ground[k], down = rows[i].down, up = rows[i].up;
+    if ((found[i].higher | found[down].higher | found[up].higher) == 0) continue;
+    const std::uint32_t ground = together(found[i].ground, found[down].ground, found[up].ground);
+    const std::uint32_t higher = together(found[i].higher, found[down].higher, found[up].higher);
+    scattered[dropped] = i;
+    dropped += countBits(ground) * kOfReturns < countBits(ground | higher) * kMinGround ? 1 : 0;
   }
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (!found[i].is_scattered) continue;
-    found[i].ground &= found[i].known;
-    found[i].reached &= found[i].known;
+  for (std::size_t k = 0; k < dropped; ++k) {
+    Found& row = found[scattered[k]];
+    row.ground &= row.known;
+    row.reached &= row.known;
   }
 }
 

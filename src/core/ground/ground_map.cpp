@@ -5,8 +5,53 @@
 #include <cmath>
 
 #include "core/ground/direction.h"
+#include "core/ground/targets.h"
 
-namespace lisco::ground {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/ground/ground_map.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace lisco {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using ground::GroundMap;
+
+/// Starts a sector with what is known some sectors away.
+/// \param sectors how many; negative: clockwise
+/// \param slope by which that of the ground is higher
+/// \param per_metre what is added to the slack at each metre
+void copySector(const GroundMap::Sector& from, float sectors, float slope, float per_metre, GroundMap::Sector& to) {
+  constexpr hn::CappedTag<float, 8> kBins{};
+  const auto set = [&](float value) HWY_ATTR { return hn::Set(kBins, value); };
+  const GroundMap::Values& middles = GroundMap::middles();
+  const auto turned = set(sectors), aged = set(std::fabs(sectors)), steeper = set(slope), growth = set(per_metre);
+  for (std::size_t bin = 0; bin < GroundMap::kBins; bin += hn::MaxLanes(kBins)) {
+    const auto load = [bin, kBins](const GroundMap::Values& values) HWY_ATTR { return hn::LoadU(kBins, &values[bin]); };
+    const auto store = [bin, kBins](hn::Vec<decltype(kBins)> value, GroundMap::Values& values)
+                           HWY_ATTR { hn::StoreU(value, kBins, &values[bin]); };
+    const auto trend = load(from.trend);
+    store(hn::Add(load(from.offset), hn::Mul(trend, turned)), to.offset);
+    store(hn::Add(load(from.slope), steeper), to.slope);
+    store(trend, to.trend);
+    store(hn::Add(load(from.age), aged), to.age);
+    const auto slack = hn::Add(load(from.slack), hn::Mul(growth, load(middles)));
+    store(hn::Min(slack, set(GroundMap::kUnknown)), to.slack);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lisco
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lisco {
+
+HWY_EXPORT(copySector);
+
+namespace ground {
 namespace {
 
 constexpr std::uint32_t kRecent = 16;  // blocks, of a sector beside
@@ -16,7 +61,7 @@ constexpr float kAcross = 0.06F;       // metres per metre, by which the ground 
 }  // namespace
 
 const GroundMap::Values& GroundMap::middles() {
-  static const Values values = [] {
+  alignas(64) static const Values values = [] {
     Values all;
     for (std::size_t bin = 0; bin < all.size(); ++bin) {
       const std::int32_t bits = (static_cast<std::int32_t>(bin) + kFirstBin) << kBinShift;
@@ -49,17 +94,12 @@ void GroundMap::renew(std::size_t number, std::uint32_t block, const Plane& plan
     const float slope =
         plane.slopeTowards(directionOf(number)) - plane.slopeTowards(directionOf(from_left ? left : right));
     const float per_metre = kAcross * kSectorWidth * sectors;
-    const float* const middle = middles().data();
-    for (std::size_t bin = 0; bin < kBins; ++bin) {
-      sector.offset[bin] = from.offset[bin] + from.trend[bin] * turned;
-      sector.slope[bin] = from.slope[bin] + slope;
-      sector.trend[bin] = from.trend[bin];
-      sector.age[bin] = from.age[bin] + sectors;
-      sector.slack[bin] = std::min(from.slack[bin] + per_metre * middle[bin], kUnknown);
-    }
+    HWY_DYNAMIC_DISPATCH(copySector)(from, turned, slope, per_metre, sector);
     return;
   }
   sector = Sector();
 }
 
-}  // namespace lisco::ground
+}  // namespace ground
+}  // namespace lisco
+#endif

@@ -27,7 +27,7 @@ class GroundMap {
   using Values = std::array<float, kBins>;
 
   /// The cells of a sector of azimuth: the ground is at offset + slope * distance.
-  struct Sector {
+  struct alignas(64) Sector {
     Values offset{};  ///< metres
     Values slope{};   ///< metres per metre
     Values slack;     ///< metres by which the ground may differ; kUnknown: nothing is known
@@ -50,18 +50,17 @@ class GroundMap {
   /// Distances in the middle of the bins, metres.
   static const Values& middles();
 
-  /// The sector of an azimuth (radians, 0 to 2 pi). If it was last seen in another rotation, it starts with what is
-  /// known beside it.
-  Sector& sectorAt(float azimuth, std::uint32_t block, const Plane& plane) {
-    constexpr float kSectorsPerRadian = 1.0F / kSectorWidth;
-    const auto number = static_cast<std::size_t>(static_cast<std::uint32_t>(azimuth * kSectorsPerRadian)) % kSectors;
-    if (latest_[number] == 0 || block - latest_[number] > kFresh) renew(number, block, plane);
-    latest_[number] = block;
-    return sectors_[number];
+  /// Prepares a sector for a block's returns. If it was last seen in another rotation, it starts with what is known
+  /// beside it.
+  void look(std::size_t sector, std::uint32_t block, const Plane& plane) {
+    if (latest_[sector] == block) return;
+    if (latest_[sector] == 0 || block - latest_[sector] > kFresh) renew(sector, block, plane);
+    latest_[sector] = block;
   }
 
   /// All kSectors sectors.
   Sector* sectors() { return sectors_.data(); }
+  const Sector* sectors() const { return sectors_.data(); }
 
  private:
   static constexpr float kSectorWidth = 6.2831853F / static_cast<float>(kSectors);  // radians

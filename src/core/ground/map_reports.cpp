@@ -19,9 +19,15 @@ namespace lisco {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
+using ground::Block;
+using ground::Followed;
+using ground::FollowSetting;
+using ground::Found;
 using ground::GroundMap;
-using ground::Report;
-using ground::Stretch;
+using ground::MapReports;
+using ground::Passed;
+using ground::RowOrder;
+using ground::Shown;
 
 using BinFloats = hn::CappedTag<float, 8>;
 using BinInts = hn::RebindToSigned<BinFloats>;
@@ -42,24 +48,35 @@ constexpr float kMarginRay = 0.1F;      // metres
 constexpr float kMarginHidden = 0.05F;  // metres
 constexpr float kDoubt = 0.01F;         // metres
 
+/// The highest of the bits that are set; the lowest if none is.
+HWY_INLINE std::size_t lastOf(std::uint8_t bits) {
+  return 31 - static_cast<std::size_t>(__builtin_clz(bits | 1U));
+}
+
 HWY_INLINE BinVector set(float value) {
   return hn::Set(kBinFloats, value);
 }
 
-/// Calls visit(bin, mask) for the bins from first to last, some at a time: those of the mask, from `bin` on.
+/// Calls visit(bin, mask, is_last) for the bins from first to last, some at a time: those of the mask, from `bin` on.
 template <typename Visit>
-HWY_INLINE void forBins(std::size_t first, std::size_t last, Visit&& visit) {
-  constexpr std::size_t kTogether = hn::MaxLanes(kBinFloats);
-  const auto int32 = [](std::size_t value) HWY_ATTR { return hn::Set(kBinInts, static_cast<std::int32_t>(value)); };
-  for (std::size_t bin = first - first % kTogether; bin <= last; bin += kTogether) {
-    const auto bins = hn::Add(hn::Iota(kBinInts, 0), int32(bin));
-    visit(bin, hn::RebindMask(kBinFloats, hn::And(hn::Gt(bins, int32(first - 1)), hn::Lt(bins, int32(last + 1)))));
-  }
+HWY_INLINE void forBins(std::int32_t first, std::int32_t last, Visit&& visit) {
+  constexpr auto kTogether = static_cast<std::int32_t>(hn::MaxLanes(kBinFloats));
+  const auto step = hn::Set(kBinInts, kTogether);
+  const auto before = hn::Set(kBinInts, first - 1), after = hn::Set(kBinInts, last + 1);
+  const auto end = hn::Set(kBinInts, last);
+  std::int32_t bin = first & -kTogether;
+  auto bins = hn::Add(hn::Iota(kBinInts, 0), hn::Set(kBinInts, bin));
+  for (; bin <= last; bin += kTogether, bins = hn::Add(bins, step))
+    visit(static_cast<std::size_t>(bin), hn::RebindMask(kBinFloats, hn::And(hn::Gt(bins, before), hn::Gt(after, bins))),
+          hn::RebindMask(kBinFloats, hn::Eq(bins, end)));
 }
 
 /// The values of a sector's cells from a bin on.
 struct Cells {
   HWY_INLINE BinVector load(const GroundMap::Values& values) const { return hn::LoadU(kBinFloats, &values[bin]); }
+  HWY_INLINE void store(BinVector value, GroundMap::Values& values) const {
+    hn::StoreU(value, kBinFloats, &values[bin]);
+  }
   HWY_INLINE void store(BinMask mask, BinVector value, GroundMap::Values& values) const {
     hn::StoreU(hn::IfThenElse(mask, value, load(values)), kBinFloats, &values[bin]);
   }
@@ -73,89 +90,203 @@ struct Cells {
 
 using Middles = const GroundMap::Values&;
 
-HWY_INLINE void seeThrough(const Report& report, Middles middles) {
-  const std::size_t first = GroundMap::binOf(report.seen_from) + 1, end = GroundMap::binOf(report.seen_to);
-  if (first >= end) return;
-  const float slope = report.seen_height / report.seen_to;
-  forBins(first, end - 1, [&](std::size_t bin, BinMask mask) HWY_ATTR {
-    const Cells cells{*report.sector, bin};
+/// GroundMap::binOf
+HWY_INLINE hn::Vec<BinInts> binsOf(BinVector rho) {
+  const auto int32 = [](std::int32_t value) HWY_ATTR { return hn::Set(kBinInts, value); };
+  const auto bits = hn::ShiftRight<GroundMap::kBinShift>(hn::BitCast(kBinInts, hn::Mul(rho, rho)));
+  const auto bin = hn::Sub(bits, int32(GroundMap::kFirstBin));
+  return hn::Min(hn::Max(bin, hn::Zero(kBinInts)), int32(static_cast<std::int32_t>(GroundMap::kBins) - 1));
+}
+
+/// Collects what the rays have shown: written always, counted where they show something. \return number of rays
+std::size_t collectRays(const Shown& shown, MapReports& reports, std::size_t& stretch_count) {
+  const FollowSetting setting = shown.setting;
+  const Passed* const passed = shown.result.passed;
+  const Found* const found = shown.result.found;
+  const std::uint32_t* const last = setting.block->last.data();
+  const float* const last_rho = setting.block->last_rho.data();
+  const float* const last_height = setting.block->last_height.data();
+  float* const from_rho = reports.rays.from.data();
+  float* const to_rho = reports.rays.to.data();
+  float* const to_height = reports.rays.height.data();
+  std::uint32_t* const sector = reports.rays.sector.data();
+  std::uint32_t* const with_ground = reports.rays.has_ground.data();
+  std::uint32_t* const ground = reports.ground.data();
+  // One more than the number of the stretch; 0: none.
+  std::uint32_t* const latest = reports.latest.data() + 1;
+  latest[RowOrder::kNone] = 0;
+  std::uint32_t ray = 0, stretch = 0;
+  for (std::size_t i = 0; i < setting.size; ++i) {
+    const RowOrder::Row& row = setting.rows[i];
+    const Passed& before = row.down == RowOrder::kNone ? setting.starts[i] : passed[row.down];
+    const std::uint32_t has_ground = found[i].reached != 0 ? 1 : 0;
+    const float from = before.reach[last[row.row]], to = last_rho[row.row];
+    from_rho[ray] = from;
+    to_rho[ray] = to;
+    to_height[ray] = last_height[row.row];
+    sector[ray] = setting.sectors[i];
+    with_ground[ray] = has_ground;
+    ray += static_cast<std::uint32_t>(to > from) | has_ground;
+    ground[stretch] = static_cast<std::uint32_t>(i);
+    stretch += has_ground;
+    const std::uint32_t below = latest[row.down];
+    latest[i] = below ^ ((below ^ stretch) & (0U - has_ground));  // a choice that is no branch
+  }
+  stretch_count = stretch;
+  return ray;
+}
+
+/// Collects the ground that the rows have shown.
+void collectStretches(const Shown& shown, MapReports& reports, std::size_t count) {
+  const auto& [setting, result, start_height, turns_left] = shown;
+  MapReports::Stretches& stretches = reports.stretches;
+  const std::uint32_t* const latest = reports.latest.data() + 1;
+  stretches.is_last[0] = 0;
+  for (std::size_t stretch = 0; stretch < count; ++stretch) {
+    const std::size_t i = reports.ground[stretch];
+    const RowOrder::Row& row = setting.rows[i];
+    const bool is_first = row.down == RowOrder::kNone;
+    const Passed& before = is_first ? setting.starts[i] : result.passed[row.down];
+    const Found found = result.found[i];
+    const std::size_t last = lastOf(found.reached);
+    const Followed& now = result.followed[result.passed[i].followed];
+    const Followed& inwards = result.followed[before.followed];
+    stretches.from_rho[stretch] = inwards.rho[last];
+    stretches.from_height[stretch] = is_first ? start_height : inwards.height[last];
+    stretches.rho[stretch] = now.rho[last];
+    stretches.height[stretch] = now.height[last];
+    stretches.long_slope[stretch] = now.slope[last];
+    stretches.sector[stretch] = setting.sectors[i];
+    stretches.is_doubted[stretch] = ~static_cast<std::uint32_t>(found.confirmed) >> last & 1;
+    stretches.is_last[latest[row.down]] = 0;
+    stretches.is_last[stretch + 1] = 1;
+  }
+}
+
+/// Computes the bins of the rays, and their slopes.
+HWY_INLINE void measureRays(MapReports::Rays& rays, std::size_t count) {
+  for (std::size_t i = 0; i < count; i += hn::MaxLanes(kBinFloats)) {
+    const auto to = hn::LoadU(kBinFloats, &rays.to[i]);
+    const auto first = hn::Add(binsOf(hn::LoadU(kBinFloats, &rays.from[i])), hn::Set(kBinInts, 1));
+    hn::StoreU(first, kBinInts, &rays.first[i]);
+    hn::StoreU(binsOf(to), kBinInts, &rays.end[i]);
+    hn::StoreU(hn::Div(hn::LoadU(kBinFloats, &rays.height[i]), to), kBinFloats, &rays.slope[i]);
+  }
+}
+
+/// Computes the bins of the stretches, and the lines that are entered.
+HWY_INLINE void measureStretches(MapReports::Stretches& stretches, std::size_t count, float max_slope) {
+  for (std::size_t i = 0; i < count; i += hn::MaxLanes(kBinFloats)) {
+    const auto load = [i](const AlignedVector<float>& values) HWY_ATTR { return hn::LoadU(kBinFloats, &values[i]); };
+    const auto store = [i](BinVector value, AlignedVector<float>& to)
+                           HWY_ATTR { hn::StoreU(value, kBinFloats, &to[i]); };
+    const auto from_rho = load(stretches.from_rho), rho = load(stretches.rho), height = load(stretches.height);
+    const auto length = hn::Sub(rho, from_rho), rise = hn::Sub(height, load(stretches.from_height));
+    const auto most = set(max_slope);
+    const auto is_none = hn::Or(hn::Lt(length, set(1e-3F)), hn::Gt(rise, hn::Add(set(kStep), hn::Mul(most, length))));
+    const auto own_slope = hn::Min(hn::Max(hn::Div(rise, length), hn::Neg(most)), most);
+    const auto slope = hn::IfThenElse(hn::Gt(length, set(0.3F)), own_slope, load(stretches.long_slope));
+    store(slope, stretches.slope);
+    store(hn::Sub(height, hn::Mul(slope, rho)), stretches.offset);
+    store(hn::Div(height, rho), stretches.ray);
+    hn::StoreU(binsOf(from_rho), kBinInts, &stretches.first[i]);
+    const auto last = hn::IfThenElse(hn::RebindMask(kBinInts, is_none), hn::Set(kBinInts, -1), binsOf(rho));
+    hn::StoreU(last, kBinInts, &stretches.last[i]);
+  }
+}
+
+/// Forgets what is above a ray.
+HWY_INLINE void seeThrough(GroundMap::Sector& sector, const MapReports::Rays& rays, std::size_t i, Middles middles) {
+  const auto slope = set(rays.slope[i]);
+  forBins(rays.first[i], rays.end[i] - 1, [&](std::size_t bin, BinMask mask, BinMask /*is_last*/) HWY_ATTR {
+    const Cells cells{sector, bin};
     const auto middle = cells.load(middles);
-    const auto ray = hn::Add(hn::Mul(set(slope), middle), set(kMarginRay));
-    cells.store(hn::And(mask, hn::Gt(cells.heightAt(middle), ray)), set(GroundMap::kUnknown), report.sector->slack);
+    const auto ray = hn::Add(hn::Mul(slope, middle), set(kMarginRay));
+    cells.store(hn::And(mask, hn::Gt(cells.heightAt(middle), ray)), set(GroundMap::kUnknown), sector.slack);
   });
 }
 
-/// Updates the trend in the bin of the farthest return.
-HWY_INLINE void addTrend(GroundMap::Sector& sector, const Stretch& stretch, float offset, float slope, bool turns_left,
-                         Middles middles) {
-  const std::size_t bin = GroundMap::binOf(stretch.rho);
-  if (sector.slack[bin] >= 1.0F || sector.age[bin] <= 0.0F) return;
-  const float at = middles[bin], before = sector.heightAt(bin, at);
-  const float slack = kAlong * std::max(0.0F, std::min(at - stretch.from_rho, stretch.rho - at));
-  if (before > stretch.height / stretch.rho * at + kMarginHidden || slack > sector.slack[bin] + kMarginSame) return;
-  const float gain = (turns_left ? kTrendGain : -kTrendGain) / sector.age[bin];
-  const float most = kMaxTrend * stretch.rho;
-  sector.trend[bin] = std::clamp(sector.trend[bin] + gain * (offset + slope * at - before), -most, most);
+/// Enters a stretch, and updates the trend in the bin of its end.
+HWY_INLINE void addStretch(GroundMap::Sector& sector, const MapReports::Stretches& stretches, std::size_t i,
+                           float trend_gain, Middles middles) {
+  const auto ray = set(stretches.ray[i]), from_rho = set(stretches.from_rho[i]), rho = set(stretches.rho[i]);
+  const auto offset = set(stretches.offset[i]), slope = set(stretches.slope[i]);
+  const auto most = hn::Mul(set(kMaxTrend), rho), gain = set(trend_gain);
+  // Where ground is doubted that was there before, its slack is at least this, and more than before.
+  const auto no_doubt = hn::Set(kBinInts, static_cast<std::int32_t>(stretches.is_doubted[i]) - 1);
+  const auto doubt = hn::MaskFromVec(hn::BitCast(kBinFloats, hn::Not(no_doubt)));
+  forBins(stretches.first[i], stretches.last[i], [&](std::size_t bin, BinMask mask, BinMask is_end) HWY_ATTR {
+    const Cells cells{sector, bin};
+    const auto at = cells.load(middles);
+    const auto inside = hn::Min(hn::Sub(at, from_rho), hn::Sub(rho, at));
+    const auto slack = hn::Mul(set(kAlong), hn::Max(hn::Zero(kBinFloats), inside));
+    const auto before = cells.load(sector.slack), height = cells.heightAt(at);
+    // The return would have been hidden.
+    const auto is_hidden = hn::Gt(height, hn::Add(hn::Mul(ray, at), set(kMarginHidden)));
+    const auto is_better = hn::Le(slack, hn::Add(before, set(kMarginSame)));
+    const auto doubted = hn::Min(hn::Add(hn::Max(slack, before), set(kDoubt)), set(GroundMap::kUnknown));
+    const auto entered = hn::And(mask, hn::Or(is_hidden, is_better));
+
+    const auto age = cells.load(sector.age), trend = cells.load(sector.trend);
+    const auto is_known = hn::And(hn::Lt(before, set(1.0F)), hn::Gt(age, hn::Zero(kBinFloats)));
+    const auto updates = hn::And(hn::And(is_end, is_known), hn::AndNot(is_hidden, is_better));
+    const auto rise = hn::Sub(hn::Add(offset, hn::Mul(slope, at)), height);
+    const auto update = hn::Mul(hn::Div(gain, hn::Max(age, set(1.0F))), rise);
+    const auto updated = hn::Min(hn::Max(hn::Add(trend, update), hn::Neg(most)), most);
+    const auto kept = hn::IfThenElse(updates, updated, trend);
+    cells.store(hn::IfThenElse(hn::And(mask, is_hidden), hn::Zero(kBinFloats), kept), sector.trend);
+    cells.store(entered, hn::IfThenElse(hn::AndNot(is_hidden, doubt), doubted, slack), sector.slack);
+    cells.store(entered, offset, sector.offset);
+    cells.store(entered, slope, sector.slope);
+    cells.store(hn::IfThenElse(entered, hn::Zero(kBinFloats), age), sector.age);
+  });
 }
 
-HWY_INLINE void addStretch(GroundMap::Sector& sector, const Stretch& stretch, float max_slope, bool turns_left,
-                           Middles middles) {
-  const float length = stretch.rho - stretch.from_rho;
-  const float rise = stretch.height - stretch.from_height;
-  if (length < 1e-3F || rise > kStep + max_slope * length) return;
-  const float slope = length > 0.3F ? std::clamp(rise / length, -max_slope, max_slope) : stretch.slope;
-  const float offset = stretch.height - slope * stretch.rho;
-  const auto ray = set(stretch.height / stretch.rho);
-  addTrend(sector, stretch, offset, slope, turns_left, middles);
-  forBins(GroundMap::binOf(stretch.from_rho), GroundMap::binOf(stretch.rho),
-          [&](std::size_t bin, BinMask mask) HWY_ATTR {
+/// Expects the ground to go on beyond a stretch.
+HWY_INLINE void extend(GroundMap::Sector& sector, const MapReports::Stretches& stretches, std::size_t i,
+                       Middles middles) {
+  const float rho = stretches.rho[i], slope = stretches.long_slope[i];
+  const float farthest = rho + (kMaxBeyond - kBeyondStart) / kBeyond;
+  const float offset = stretches.height[i] - slope * rho;
+  const auto first = static_cast<std::int32_t>(GroundMap::binOf(rho)) + 1;
+  if (first >= static_cast<std::int32_t>(GroundMap::kBins)) return;
+  forBins(first, static_cast<std::int32_t>(GroundMap::binOf(farthest)),
+          [&](std::size_t bin, BinMask mask, BinMask /*is_last*/) HWY_ATTR {
             const Cells cells{sector, bin};
-            const auto at = cells.load(middles);
-            const auto inside = hn::Min(hn::Sub(at, set(stretch.from_rho)), hn::Sub(set(stretch.rho), at));
-            const auto slack = hn::Mul(set(kAlong), hn::Max(hn::Zero(kBinFloats), inside));
-            const auto before = cells.load(sector.slack);
-            // The return would have been hidden.
-            const auto is_hidden = hn::Gt(cells.heightAt(at), hn::Add(hn::Mul(ray, at), set(kMarginHidden)));
-            const auto is_better = hn::Le(slack, hn::Add(before, set(kMarginSame)));
-            const auto doubted = hn::Min(hn::Add(hn::Max(slack, before), set(kDoubt)), set(GroundMap::kUnknown));
-            const auto entered = hn::And(mask, hn::Or(is_hidden, is_better));
-            cells.store(hn::And(mask, is_hidden), hn::Zero(kBinFloats), sector.trend);
-            cells.store(entered, stretch.is_doubted ? hn::IfThenElse(is_hidden, slack, doubted) : slack, sector.slack);
+            const auto way = hn::Sub(cells.load(middles), set(rho));
+            const auto slack = hn::Add(set(kBeyondStart), hn::Mul(set(kBeyond), way));
+            const auto entered =
+                hn::And(mask, hn::And(hn::Le(slack, set(kMaxBeyond)), hn::Lt(slack, cells.load(sector.slack))));
             cells.store(entered, set(offset), sector.offset);
             cells.store(entered, set(slope), sector.slope);
+            cells.store(entered, slack, sector.slack);
+            cells.store(entered, hn::Zero(kBinFloats), sector.trend);
             cells.store(entered, hn::Zero(kBinFloats), sector.age);
           });
 }
 
-/// Expects the ground to go on beyond a stretch.
-HWY_INLINE void extend(GroundMap::Sector& sector, const Stretch& stretch, Middles middles) {
-  const float farthest = stretch.rho + (kMaxBeyond - kBeyondStart) / kBeyond;
-  const auto slackAt = [&](BinVector at) HWY_ATTR {
-    return hn::Add(set(kBeyondStart), hn::Mul(set(kBeyond), hn::Sub(at, set(stretch.rho))));
-  };
-  const std::size_t first = GroundMap::binOf(stretch.rho) + 1;
-  if (first >= GroundMap::kBins) return;
-  forBins(first, GroundMap::binOf(farthest), [&](std::size_t bin, BinMask mask) HWY_ATTR {
-    const Cells cells{sector, bin};
-    const auto slack = slackAt(cells.load(middles));
-    const auto entered =
-        hn::And(mask, hn::And(hn::Le(slack, set(kMaxBeyond)), hn::Lt(slack, cells.load(sector.slack))));
-    cells.store(entered, set(stretch.height - stretch.slope * stretch.rho), sector.offset);
-    cells.store(entered, set(stretch.slope), sector.slope);
-    cells.store(entered, slack, sector.slack);
-    cells.store(entered, hn::Zero(kBinFloats), sector.trend);
-    cells.store(entered, hn::Zero(kBinFloats), sector.age);
-  });
-}
-
-void enterReports(const std::vector<Report>& reports, float max_slope, bool turns_left) {
+void enterReports(const Shown& shown, MapReports& reports, GroundMap::Sector* sectors) {
   Middles middles = GroundMap::middles();
-  for (const Report& report : reports) {
-    if (report.seen_to > report.seen_from) seeThrough(report, middles);
-    if (report.has_ground) addStretch(*report.sector, report.stretch, max_slope, turns_left, middles);
+  MapReports::Rays& rays = reports.rays;
+  MapReports::Stretches& stretches = reports.stretches;
+  std::size_t stretch_count = 0;
+  const std::size_t ray_count = collectRays(shown, reports, stretch_count);
+  collectStretches(shown, reports, stretch_count);
+  measureRays(rays, ray_count);
+  measureStretches(stretches, stretch_count, shown.setting.max_slope);
+  const float trend_gain = shown.turns_left ? kTrendGain : -kTrendGain;
+  std::size_t stretch = 0;
+  for (std::size_t i = 0; i < ray_count; ++i) {
+    GroundMap::Sector& sector = sectors[rays.sector[i]];
+    if (rays.first[i] < rays.end[i]) seeThrough(sector, rays, i, middles);
+    if (rays.has_ground[i] == 0) continue;
+    if (stretches.last[stretch] >= 0) {
+      addStretch(sector, stretches, stretch, trend_gain, middles);
+    }
+    ++stretch;
   }
-  for (const Report& report : reports)
-    if (report.has_ground && report.is_last) extend(*report.sector, report.stretch, middles);
+  for (std::size_t i = 0; i < stretch_count; ++i)
+    if (stretches.is_last[i + 1] != 0) extend(sectors[stretches.sector[i]], stretches, i, middles);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -167,9 +298,25 @@ namespace lisco {
 
 HWY_EXPORT(enterReports);
 
-void ground::enterReports(const std::vector<Report>& reports, float max_slope, bool turns_left) {
-  HWY_DYNAMIC_DISPATCH(enterReports)(reports, max_slope, turns_left);
+namespace ground {
+
+void MapReports::begin(std::size_t lasers) {
+  const std::size_t size = lasers + Block::kColumns;
+  if (latest.size() >= size) return;
+  for (auto* values :
+       {&rays.from, &rays.to, &rays.height, &rays.slope, &stretches.from_rho, &stretches.from_height, &stretches.rho,
+        &stretches.height, &stretches.long_slope, &stretches.slope, &stretches.offset, &stretches.ray})
+    values->resize(size);
+  for (auto* values : {&rays.first, &rays.end, &stretches.first, &stretches.last}) values->resize(size);
+  for (auto* values :
+       {&rays.sector, &rays.has_ground, &stretches.sector, &stretches.is_doubted, &stretches.is_last, &ground, &latest})
+    values->resize(size);
 }
 
+void MapReports::enter(const Shown& shown, GroundMap::Sector* sectors) {
+  HWY_DYNAMIC_DISPATCH(enterReports)(shown, *this, sectors);
+}
+
+}  // namespace ground
 }  // namespace lisco
 #endif

@@ -2,31 +2,55 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
+#include "core/aligned_vector.h"
+#include "core/ground/follow_rows.h"
 #include "core/ground/ground_map.h"
 
 namespace lisco::ground {
 
-/// Ground found from `from_rho` to `rho`.
-struct Stretch {
-  float from_rho, from_height, rho, height;
-  float slope;      ///< of the ground up to rho, over a longer way
-  bool is_doubted;  ///< it is not where the ground before lets expect it
+/// What a block's rows have shown, in their order.
+struct Shown {
+  FollowSetting setting;
+  FollowResult result;
+  float start_height;  ///< of the ground beneath the sensor, metres
+  bool turns_left;     ///< sense of rotation
 };
 
-/// What a row of a block shows in a sector of the map.
-struct Report {
-  GroundMap::Sector* sector;
-  float seen_from, seen_to;  ///< metres; a ray passes above the ground from one distance to the other
-  float seen_height;         ///< where it ends, metres
-  bool has_ground;
-  bool is_last;     ///< no ground has been found beyond
-  Stretch stretch;  ///< if it has ground
-};
+/// What the map is told of a block, as arrays that are longer than needed. Distances and heights are metres. Flags are
+/// words, since stores of bytes may be to any pointer.
+struct MapReports {
+  /// Rays of the latest column of the rows: each passes above the ground from one distance to another.
+  struct Rays {
+    AlignedVector<float> from, to, height;   ///< height where it ends
+    AlignedVector<float> slope;              ///< of the ray
+    AlignedVector<std::int32_t> first, end;  ///< the bins in between
+    std::vector<std::uint32_t> sector;       ///< of the map
+    std::vector<std::uint32_t> has_ground;   ///< it shows the next of the stretches, too: 1, else 0
+  };
+  /// Ground found from one distance to another.
+  struct Stretches {
+    AlignedVector<float> from_rho, from_height, rho, height;
+    AlignedVector<float> long_slope;          ///< of the ground up to rho, over a longer way
+    AlignedVector<float> slope, offset, ray;  ///< of the line that is entered, and of the ray to its end
+    AlignedVector<std::int32_t> first, last;  ///< bins; if it is no ground, the last one is -1
+    std::vector<std::uint32_t> sector;        ///< of the map
+    std::vector<std::uint32_t> is_doubted;    ///< it is not where the ground before lets expect it
+    std::vector<std::uint32_t> is_last;       ///< behind one more: no ground has been found beyond
+  };
+  Rays rays;
+  Stretches stretches;
+  std::vector<std::uint32_t> ground;  ///< positions of the rows with ground
+  std::vector<std::uint32_t> latest;  ///< by position: the latest stretch from there down
 
-/// Enters what the rows have shown, in their order; then, beyond the last ground, that it is expected to go on.
-/// \param turns_left sense of rotation
-void enterReports(const std::vector<Report>& reports, float max_slope, bool turns_left);
+  /// Allocates only if there are more lasers than ever before.
+  void begin(std::size_t lasers);
+  /// Enters what the latest column of each row has shown into the map; then, beyond the last ground, that it is
+  /// expected to go on.
+  void enter(const Shown& shown, GroundMap::Sector* sectors);
+};
 
 }  // namespace lisco::ground

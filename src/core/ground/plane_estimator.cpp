@@ -20,12 +20,12 @@ constexpr float kEnough = 0.5F;         // of the most weight
 constexpr float kWindow = 0.15F;        // metres, of heights that agree
 constexpr float kRefinedWindow = 0.4F;  // metres, of heights that agree with the plane's slope
 constexpr float kRefinedEnough = 0.7F;  // of the most weight
-constexpr float kLowSensor = 0.3F;      // metres; a line less deep beneath the sensor may be on the table it stands on
-constexpr float kBeyondTable = 2.2F;    // metres; such a line counts if its second cell is further out than a table is
-constexpr float kTableGap = 1.75F;      // and less than this many times as far as its first
-constexpr float kTable = 0.5F;          // metres; most height of the sensor above a table, or a low floor
-constexpr float kBelowTable = 0.1F;     // metres, by which the floor beside a table is lower at least
-constexpr float kRoom = 10.0F;          // metres, distance up to which that floor is looked for
+constexpr float kLowSensor = 0.3F;      // metres; where the ground is no lower, it reaches further than a table does
+constexpr float kBeyondTable = 2.2F;    // metres, the same, with returns in between
+constexpr float kTableGap = 1.75F;      // between these, as a ratio of their distances
+constexpr float kTable = 0.5F;          // metres; most height above a table, or a low floor
+constexpr float kBelowTable = 0.1F;     // metres, of the floor beside it
+constexpr float kRoom = 10.0F;          // metres, where it is looked for
 constexpr float kSureReach = 9.0F;      // metres; lines that begin further out agree with less weight
 constexpr float kTrust = 0.5F;          // of the plane's slope, the rest of a line's own
 constexpr double kPointReach = 6.0;     // metres; where lines begin further out, they count less as points
@@ -35,46 +35,74 @@ constexpr float kMinWeight = 6.0F;      // of the lines that show a plane
 
 }  // namespace
 
-void PlaneEstimator::begin(const GroundParameters& parameters, float max_slope) {
+void PlaneEstimator::begin(const GroundParameters& parameters, float max_slope, std::size_t lasers) {
+  for (auto* values : {&rho_, &height_, &x_, &y_}) values->resize(std::max(values->size(), lasers));
+  for (auto* values : {&bins_, &levels_}) values->resize(std::max(values->size(), lasers));
+  lowest_.resize(std::max(lowest_.size(), lasers));
   const SensorHints& sensor = parameters.sensor;
   const bool origin_known = sensor.steps_per_turn != 0 || sensor.origin != std::array<float, 3>{};
   highest_ = origin_known ? -0.2F : 0.5F;  // otherwise the ground may be as high as the cloud's origin
   max_slope_ = max_slope;
+  origin_ = sensor.origin;
   height_given_ = known_ = !std::isnan(parameters.sensor_height);
   plane_ = {known_ ? -parameters.sensor_height : 0.0F, parameters.slope[0] - sensor.tilt[0],
             parameters.slope[1] - sensor.tilt[1]};
   count_ = 0;
 }
 
-void PlaneEstimator::add(const Block& block, std::size_t column) {
+void PlaneEstimator::add(const Block& block, const Columns& columns, std::size_t first, std::size_t column) {
   struct Low {
     float rho, height;
   };
+  // Written always, counted if near.
+  std::size_t count = 0;
+  for (std::size_t i = column, from = first + column; i < block.size; i += Block::kColumns, from += columns.stride) {
+    const float rho = block.rho[i];
+    rho_[count] = rho;
+    height_[count] = block.height[i];
+    x_[count] = columns.x[from] - origin_[0];
+    y_[count] = columns.y[from] - origin_[1];
+    count += static_cast<std::size_t>((rho > Block::kMinRho) & (rho < kNear));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    x_[i] /= rho_[i];
+    y_[i] /= rho_[i];
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    bins_[i] = binOf(rho_[i]);
+    levels_[i] = levelOf(height_[i]);
+  }
+  for (std::size_t i = 0; i < count; ++i) lowest_[i] = ground::lowestOf(rho_[i], height_[i]);
   Sector sector;  // of all azimuths: lasers of a column may be staggered
   Direction sum{0.0F, 0.0F};
-  for (std::size_t i = column; i < block.size; i += Block::kColumns)
-    if (block.rho[i] > Block::kMinRho && block.rho[i] < kNear) {
-      sector.add(block.rho[i], block.height[i]);
-      sum.x += block.x[i] / block.rho[i];
-      sum.y += block.y[i] / block.rho[i];
-    }
+  for (std::size_t i = 0; i < count; ++i) {
+    sector.add(bins_[i], lowest_[i], levels_[i]);
+    sum.x += x_[i];
+    sum.y += y_[i];
+  }
   const float length = std::max(std::sqrt(sum.x * sum.x + sum.y * sum.y), 1e-3F);
   const Direction direction{sum.x / length, sum.y / length};
 
-  std::array<Low, kMaxCells> lows;
+  std::array<Low, kMaxCells + 1> lows;
   std::size_t size = 0;
   forEachBin(sector, [&](std::size_t bin) {
     const Cell& cell = sector.cells[bin];
-    if (size < kMaxCells && isBare(cell.low(), cell.levels)) lows[size++] = {cell.lowRho(), cell.low()};
+    lows[size] = {cell.lowRho(), cell.low()};
+    size += static_cast<std::size_t>((size < kMaxCells) & isBare(cell.low(), cell.levels));
   });
-  const auto beyond = [&](std::size_t i) {
-    std::size_t j = i + 1;
+  // For each of these, the first clearly beyond it, and the slope to there.
+  std::array<std::size_t, kMaxCells + 1> beyond;
+  std::array<float, kMaxCells> slopes;
+  beyond[size] = size;
+  for (std::size_t i = 0, j = 0; i < size; ++i) {
+    j = std::max(j, i + 1);
     while (j < size && lows[j].rho < kMinReach * lows[i].rho) ++j;
-    return j;
-  };
+    beyond[i] = j;
+  }
   const auto slopeOf = [&](std::size_t i, std::size_t j) {
     return (lows[j].height - lows[i].height) / (lows[j].rho - lows[i].rho);
   };
+  for (std::size_t i = 0; i < size && beyond[i] < size; ++i) slopes[i] = slopeOf(i, beyond[i]);
   // Whether the column has returns below a line, as those of the floor are beyond a table.
   const auto isPassedBelow = [&](float height, float slope) {
     bool is_below = false;
@@ -88,12 +116,12 @@ void PlaneEstimator::add(const Block& block, std::size_t column) {
   std::array<Line, kMaxCells> lines{};
   std::size_t line_count = 0;
   for (std::size_t i = 0; i < size; ++i) {
-    const std::size_t j = beyond(i);
+    const std::size_t j = beyond[i];
     if (j == size) break;
-    float slope = slopeOf(i, j);
+    float slope = slopes[i];
     float weight = 0.5F;
-    const std::size_t k = beyond(j);
-    if (k < size && std::fabs(slopeOf(j, k) - slope) < kSameSlope && std::fabs(slope) < max_slope_) {
+    const std::size_t k = beyond[j];
+    if (k < size && std::fabs(slopes[j] - slope) < kSameSlope && std::fabs(slope) < max_slope_) {
       slope = slopeOf(i, k);
       weight = 1.0F;
     } else if (std::fabs(slope) > kLevel) {
@@ -152,8 +180,7 @@ void PlaneEstimator::update() {
     known_ = true;
   }
   fitSlopes();
-  // The lines so far come from all kColumns columns of a block, which have one direction. From now on one column of a
-  // block adds a line, and each of these lines counts as much less.
+  // What showed the plane was each column of few blocks, in one direction; later blocks add one of each direction.
   if (!height_given_)
     for (std::size_t i = 0; i < size; ++i) lines_[i].weight /= static_cast<float>(Block::kColumns);
 }

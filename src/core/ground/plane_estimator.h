@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "core/ground/block.h"
 #include "core/ground/direction.h"
@@ -25,11 +27,13 @@ class PlaneEstimator {
  public:
   static constexpr std::size_t kMemory = 64;  ///< columns
 
-  /// Forgets all columns. A height that is not NaN is not estimated.
-  void begin(const GroundParameters& parameters, float max_slope);
+  /// Forgets all columns. A height that is not NaN is not estimated. Allocates only if there are more lasers than ever
+  /// before.
+  void begin(const GroundParameters& parameters, float max_slope, std::size_t lasers);
 
-  /// Adds what a column shows, if it shows ground clearly; forgets the oldest of kMemory.
-  void add(const Block& block, std::size_t column);
+  /// Adds what a column of a block shows, if it shows ground clearly; forgets the oldest of kMemory.
+  /// \param columns those that the block was measured from, `first` its first one
+  void add(const Block& block, const Columns& columns, std::size_t first, std::size_t column);
 
   /// Updates the plane by the columns added; it stays as it is, if they show too little.
   void update();
@@ -53,6 +57,9 @@ class PlaneEstimator {
   void fitSlopes();
   void refine();
 
+  std::vector<float> rho_, height_, x_, y_;  // of a column's near returns; then the directions towards them
+  std::vector<std::uint64_t> lowest_;        // as in Cell
+  std::vector<std::uint32_t> bins_, levels_;
   std::array<Line, kMemory> lines_;
   std::size_t count_ = 0;  // ever added
   Plane plane_;
@@ -60,6 +67,7 @@ class PlaneEstimator {
   bool height_given_ = false;
   float highest_ = 0.0F;  // metres
   float max_slope_ = 0.0F;
+  std::array<float, 3> origin_{};  // of the sensor
 };
 
 }  // namespace lisco::ground

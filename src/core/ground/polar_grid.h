@@ -46,6 +46,13 @@ inline float Cell::low() const {
   return height;
 }
 
+/// Cell::lowest
+inline std::uint64_t lowestOf(float rho, float height) {
+  std::uint32_t bits;
+  std::memcpy(&bits, &rho, sizeof bits);
+  return std::uint64_t{orderedHeight(height)} << 32 | bits;
+}
+
 inline constexpr float kLevelsPerMetre = 4.0F;  ///< of height
 
 /// Number of the level of a height, modulo 64.
@@ -56,12 +63,14 @@ inline unsigned levelOf(float height) {
 }
 
 /// Number of the bin of a distance.
-inline std::size_t binOf(float rho) {
+inline std::uint32_t binOf(float rho) {
   constexpr std::int32_t kFirst = (127 - 2) << 3;  // 0.25 m2
   const float squared = rho * rho;
   std::int32_t bits;
   std::memcpy(&bits, &squared, sizeof bits);
-  return static_cast<std::size_t>(std::clamp((bits >> 20) - kFirst, 0, static_cast<std::int32_t>(kBins) - 1));
+  constexpr auto kLast = static_cast<std::int32_t>(kBins) - 1;
+  const std::int32_t bin = (bits >> 20) - kFirst, positive = bin < 0 ? 0 : bin;
+  return static_cast<std::uint32_t>(positive > kLast ? kLast : positive);
 }
 
 /// The cells of one azimuth, from the sensor outwards.
@@ -71,17 +80,16 @@ struct Sector {
 
   bool has(std::size_t bin) const { return (occupied[bin / 64] >> (bin % 64) & 1) != 0; }
 
-  void add(float rho, float height) {
-    const std::size_t bin = binOf(rho);
+  /// \param bin of the return's distance, see binOf
+  /// \param lowest of the cell, if it holds this return only
+  /// \param level of the return's height, see levelOf
+  void add(std::size_t bin, std::uint64_t lowest, unsigned level) {
     Cell& cell = cells[bin];
-    std::uint32_t rho_bits;
-    std::memcpy(&rho_bits, &rho, sizeof rho_bits);
-    const std::uint64_t number = std::uint64_t{orderedHeight(height)} << 32 | rho_bits;
-    const std::uint64_t level = std::uint64_t{1} << levelOf(height), bit = std::uint64_t{1} << (bin % 64);
+    const std::uint64_t levels = std::uint64_t{1} << level, bit = std::uint64_t{1} << (bin % 64);
     std::uint64_t& word = occupied[bin / 64];
     const bool is_new = (word & bit) == 0;
-    cell.lowest = is_new || number < cell.lowest ? number : cell.lowest;
-    cell.levels = is_new ? level : cell.levels | level;
+    cell.lowest = is_new || lowest < cell.lowest ? lowest : cell.lowest;
+    cell.levels = is_new ? levels : cell.levels | levels;
     word |= bit;
   }
 };

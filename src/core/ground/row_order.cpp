@@ -4,97 +4,160 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "core/ground/polar_grid.h"
+#include "core/ground/targets.h"
 #include "core/pi.h"
 
-namespace lisco::ground {
-namespace {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/ground/row_order.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace lisco {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using ground::RowOrder;
+
+using AzimuthFloats = hn::CappedTag<float, RowOrder::kPadding>;
+constexpr AzimuthFloats kAzimuths{};
+constexpr auto kStep = static_cast<std::int32_t>(hn::MaxLanes(kAzimuths));
 
 constexpr float kTurn = static_cast<float>(2.0 * kPi);
 constexpr float kSameAzimuth = 0.022F;  // radians
-constexpr float kNearAzimuth = 0.04F;   // radians; for the row below, if none has the same azimuth
-constexpr float kClearly = 0.013F;      // difference of the slopes of rays
+constexpr float kNearAzimuth = 0.04F;   // the same, where no row below is so near
+constexpr float kClearly = 0.013F;      // of the slopes of rays
+constexpr std::int32_t kMaxApart = 64;  // in the order of rows, of two that are compared
 
-/// Brings a difference of azimuths to -pi to pi.
-float wrapped(float angle) {
-  if (std::fabs(angle) > kTurn) angle -= kTurn * std::floor(angle / kTurn);
-  if (angle >= 0.5F * kTurn) return angle - kTurn;
-  return angle < -0.5F * kTurn ? angle + kTurn : angle;
+/// Of the azimuths from position j on, those beside another one, as bits.
+HWY_INLINE unsigned besideAt(const float* azimuths, std::int32_t j, float azimuth) {
+  const auto apart = hn::Abs(hn::Sub(hn::LoadU(kAzimuths, azimuths + j), hn::Set(kAzimuths, azimuth)));
+  const auto nearer = hn::Min(apart, hn::Sub(hn::Set(kAzimuths, kTurn), apart));
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(kAzimuths, hn::Lt(nearer, hn::Set(kAzimuths, kSameAzimuth)), bits);
+  return bits[0];
 }
+
+/// The first position before `end` with an azimuth beside that of i, or kNone.
+HWY_INLINE std::int32_t nextBeside(const float* azimuths, std::int32_t i, std::int32_t from, std::int32_t end) {
+  for (std::int32_t j = from; j < end; j += kStep) {
+    const unsigned bits = besideAt(azimuths, j, azimuths[i]);
+    const std::int32_t found = j + __builtin_ctz(bits | 0x100U);
+    if (bits != 0) return found < end ? found : RowOrder::kNone;
+  }
+  return RowOrder::kNone;
+}
+
+/// The last position below i with an azimuth beside its own; else the one with the nearest, or kNone.
+HWY_INLINE std::int32_t lastBeside(const float* azimuths, std::int32_t i) {
+  const std::int32_t first = std::max(0, i - kMaxApart);
+  for (std::int32_t j = i - kStep; j > first - kStep; j -= kStep) {
+    const unsigned bits = besideAt(azimuths, j, azimuths[i]);
+    const std::int32_t found = j + 31 - __builtin_clz(bits | 1U);
+    if (bits != 0) {
+      if (found >= first) return found;
+      break;
+    }
+  }
+  std::int32_t down = RowOrder::kNone;
+  float nearest = kNearAzimuth;
+  for (std::int32_t j = i - 1; j >= first; --j) {
+    const float apart = std::fabs(azimuths[i] - azimuths[j]), nearer = std::min(apart, kTurn - apart);
+    if (nearer < nearest) {
+      nearest = nearer;
+      down = j;
+    }
+  }
+  return down;
+}
+
+/// Finds the rows below and above each.
+/// \param row_of the rows in the block, by position; that of kNone is `none`
+void linkRows(const float* azimuths, const float* slopes, const std::uint64_t* keys, std::int32_t none,
+              std::vector<RowOrder::Row>& rows) {
+  const auto rowAt = [=](std::int32_t at) { return at == RowOrder::kNone ? none : RowOrder::rowOf(keys[at]); };
+  const auto size = static_cast<std::int32_t>(rows.size());
+  std::int32_t clearly = 0;  // the first row clearly above row i
+  for (std::int32_t i = 0; i < size; ++i) {
+    while (clearly < size && slopes[clearly] <= slopes[i] + kClearly) ++clearly;
+    const std::int32_t end = std::min(size, i + kMaxApart + 1);
+    const std::int32_t up = nextBeside(azimuths, i, i + 1, end);
+    const std::int32_t above =
+        up == RowOrder::kNone ? RowOrder::kNone : nextBeside(azimuths, i, std::max(up + 1, clearly), end);
+    rows[static_cast<std::size_t>(i)] = {rowAt(i), lastBeside(azimuths, i), up, rowAt(up), rowAt(above)};
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lisco
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lisco {
+
+HWY_EXPORT(linkRows);
+
+namespace ground {
+namespace {
+
+constexpr float kTurn = static_cast<float>(2.0 * kPi);
 
 }  // namespace
 
 void RowOrder::begin(std::size_t lasers) {
-  seen_.assign(lasers, Seen());
+  lasers_ = lasers;
+  latest_.begin(lasers);
   rows_.clear();
   rows_.reserve(lasers);
+  order_.clear();
   order_.reserve(lasers);
-  now_.assign(lasers, 0.0F);
+  azimuths_.resize(std::max(azimuths_.size(), lasers + 2 * kPadding));
+  slopes_.resize(std::max(slopes_.size(), lasers));
   block_ = sort_at_ = 0;
   turn_ = 0.0F;
 }
 
 void RowOrder::update(const Block& block) {
   ++block_;
-  bool is_new = false;
-  float turned = 0.0F;
-  int count = 0;
-  for (std::size_t row = 0; row < seen_.size(); ++row) {
-    if (block.returns[row] == 0) continue;
-    const std::size_t at = row * Block::kColumns + 31 - static_cast<std::size_t>(__builtin_clz(block.returns[row]));
-    Seen& seen = seen_[row];
-    const float azimuth = block.azimuth[at];
-    if (seen.block == 0) is_new = true;
-    if (seen.block != 0 && seen.block + 1 == block_) {
-      turned += wrapped(azimuth - seen.azimuth);
-      ++count;
-    }
-    seen = {block.x[at], block.y[at], block.rho[at], block.height[at], azimuth, block_};
+  const Turned turned = latest_.update(block, block_);
+  if (turned.rows > 0) {
+    const float angle = std::accumulate(turned.angles.begin(), turned.angles.end(), 0.0F);
+    turn_ += (angle / static_cast<float>(turned.rows) - turn_) * (turn_ == 0.0F ? 1.0F : 0.25F);
   }
-  if (count > 0) turn_ += (turned / static_cast<float>(count) - turn_) * (turn_ == 0.0F ? 1.0F : 0.25F);
-  if (is_new || block_ >= sort_at_) {
+  if (turned.has_new || block_ >= sort_at_) {
     sort();
-    sort_at_ = std::min(2 * block_, block_ + 32);
+    sort_at_ = block_ + std::min(block_, 32U);
   }
 }
 
 void RowOrder::sort() {
-  order_.clear();
-  for (std::size_t row = 0; row < seen_.size(); ++row) {
-    if (seen_[row].block == 0) continue;
-    order_.push_back(static_cast<std::int32_t>(row));
-    now_[row] = seen_[row].azimuth + turn_ * static_cast<float>(block_ - seen_[row].block);
-  }
-  std::sort(order_.begin(), order_.end(), [&](std::int32_t a, std::int32_t b) {
-    const float slope_a = seen_[static_cast<std::size_t>(a)].slope(),
-                slope_b = seen_[static_cast<std::size_t>(b)].slope();
-    return slope_a != slope_b ? slope_a < slope_b : a < b;
-  });
-  rows_.clear();
-  constexpr std::int32_t kMaxApart = 64;  // in the order of rows, of two that are compared
-  const auto size = static_cast<std::int32_t>(order_.size());
-  const auto seenAt = [&](std::int32_t at) -> const Seen& {
-    return seen_[static_cast<std::size_t>(order_[static_cast<std::size_t>(at)])];
+  const auto keyOf = [&](std::size_t row) {
+    // A slope of -0 is one of 0.
+    return std::uint64_t{orderedHeight(latest_.height[row] / latest_.rho[row] + 0.0F)} << 32 | row;
   };
-  const auto nowAt = [&](std::int32_t at) {
-    return now_[static_cast<std::size_t>(order_[static_cast<std::size_t>(at)])];
-  };
-  for (std::int32_t i = 0; i < size; ++i) {
-    Row row{order_[static_cast<std::size_t>(i)], kNone, kNone, kNone};
-    const auto apart = [&](std::int32_t j) { return std::fabs(wrapped(nowAt(i) - nowAt(j))); };
-    float nearest = kNearAzimuth;
-    for (std::int32_t j = i - 1; j >= 0 && j >= i - kMaxApart && nearest >= kSameAzimuth; --j)
-      if (apart(j) < nearest) {
-        nearest = apart(j);
-        row.down = j;
-      }
-    for (std::int32_t j = i + 1; j < size && j <= i + kMaxApart && row.above == kNone; ++j)
-      if (apart(j) < kSameAzimuth) {
-        if (row.up == kNone) row.up = j;
-        if (j != row.up && seenAt(j).slope() > seenAt(i).slope() + kClearly) row.above = j;
-      }
-    rows_.push_back(row);
+  // Mostly the order is that of the last time.
+  for (std::uint64_t& key : order_) key = keyOf(static_cast<std::size_t>(rowOf(key)));
+  if (order_.size() < lasers_) {
+    order_.clear();
+    for (std::size_t row = 0; row < lasers_; ++row)
+      if (latest_.block[row] != 0) order_.push_back(keyOf(row));
   }
+  if (!std::is_sorted(order_.begin(), order_.end())) std::sort(order_.begin(), order_.end());
+
+  float* const azimuths = azimuths_.data() + kPadding;
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const auto row = static_cast<std::size_t>(rowOf(order_[i]));
+    const float azimuth = latest_.azimuth[row] + turn_ * static_cast<float>(block_ - latest_.block[row]);
+    azimuths[i] = azimuth - kTurn * std::floor(azimuth / kTurn);
+    slopes_[i] = latest_.height[row] / latest_.rho[row];
+  }
+  rows_.resize(order_.size());
+  HWY_DYNAMIC_DISPATCH(linkRows)(azimuths, slopes_.data(), order_.data(), static_cast<std::int32_t>(lasers_), rows_);
 }
 
-}  // namespace lisco::ground
+}  // namespace ground
+}  // namespace lisco
+#endif
