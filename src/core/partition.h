@@ -34,13 +34,18 @@ class Partition {
     if (image_.inUse()) image_.addLasers(lasers);
   }
 
+  /// Makes room for more columns than expected before.
+  void expectColumns(std::size_t columns) {
+    image_.expectColumns(columns);
+    segments_.forgetSectors();
+  }
+
   /// Collects near returns, instead of putting them into voxels as they come: for columns that are read at once.
   void collectNear() { collects_near_ = true; }
   const NearReturns& nearReturns() const { return near_returns_; }
-  /// Makes room for the near returns of `columns` columns, if they are as many per column as in those read.
-  void reserveNear(std::size_t columns_read, std::size_t columns) {
-    near_returns_.returns.grow(near_returns_.count * columns / columns_read);
-  }
+  /// Makes room for a number of near returns.
+  void reserveNear(std::size_t count) { near_returns_.returns.grow(count); }
+  std::size_t nearCount() const { return near_returns_.count; }
   /// Puts the near returns that were collected into voxels: more columns follow one by one.
   void stopCollecting(DisjointSets& subclusters);
 
