@@ -39,9 +39,10 @@ class ColumnClusterer::Rotation {
  private:
   void divide(std::size_t columns, std::size_t lasers, const CellSource& cells);
   void receiveAtOnce(std::size_t columns, std::size_t lasers, const CellSource& cells);
-  void preparePart(std::size_t i, const SensorHints& hints);
+  void preparePart(std::size_t i, const SensorHints& hints, std::size_t columns);
   void readPart(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial);
   bool readFarAndNear(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial);
+  void prepareForColumns();
   void receiveInSequence(std::size_t columns, std::size_t lasers, const CellSource& cells);
   void linkPartitions();
   void linkImages(std::size_t first);
@@ -61,6 +62,8 @@ class ColumnClusterer::Rotation {
   std::vector<Partition> partitions_;
   std::size_t partition_count_ = 0;        ///< in use; 0: not divided yet
   std::vector<LoadBalancer::Part> parts_;  ///< of the threads
+  bool comes_at_once_ = false;             ///< the latest columns, of this rotation or the one before
+  bool is_prepared_ = false;               ///< the last partition, for columns that follow
   bool are_linked_ = false;                ///< all partitions but the last, with each other
   enum class Near { kCollected, kSorted, kInVoxels } near_ = Near::kInVoxels;  ///< state of the near returns
   ImageCircle images_;
@@ -90,6 +93,8 @@ static_assert(kTriedColumns % RingBlock::kColumns == 0, "whole blocks are read")
 /// The first columns do not show it, as the motion grows from there. At rest 0.05, up to 0.8 in a vehicle's frame; in
 /// motion 1 to 20 (recordings).
 constexpr float kMaxDrift = 1.25F;
+/// Of a range image: more columns than a turn has need no more bins.
+constexpr std::size_t kWholeTurn = ~std::size_t{0};
 /// Columns that are read from their source; fewer are gathered into blocks, which evens out their work (latency).
 constexpr std::size_t kWorthReadingAtOnce = 16;
 /// Cells from which on several threads take less time than one (threads).
@@ -111,8 +116,11 @@ void ColumnClusterer::Rotation::begin(const Parameters& parameters) {
   near_ = Near::kInVoxels;
   sizes_.clear();
   scheduler_.begin(parameters_.block_columns);
-  // Single-threaded path, prepared here so that the first column costs no more than the rest.
-  if (parameters_.threads == 1) usePartitions(1);
+  is_prepared_ = false;
+  if (parameters_.threads == 1 && !comes_at_once_) {
+    usePartitions(1);
+    prepareForColumns();  // here, so that the first column costs no more than the rest
+  }
   usable_ = true;
 }
 
@@ -122,10 +130,11 @@ void ColumnClusterer::Rotation::receive(std::size_t columns, std::size_t lasers,
   if (columns == 0) return;
   usable_ = false;
   if (partition_count_ == 0) divide(columns, lasers, cells);
-  if (!scheduler_.hasColumns() && (columns >= kWorthSorting || partition_count_ > 1)) {
+  comes_at_once_ = !scheduler_.hasColumns() && (columns >= kWorthSorting || partition_count_ > 1);
+  if (comes_at_once_) {
     receiveAtOnce(columns, lasers, cells);
   } else {
-    stopCollecting();
+    prepareForColumns();
     receiveInSequence(columns, lasers, cells);
   }
   usable_ = true;
@@ -162,14 +171,15 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
   else
     subclusters_.reserve(lasers * columns + RingBlock::kColumns);
   near_ = Near::kCollected;
+  is_prepared_ = false;
   const bool drifts = parameters_.sensor.drift > kMaxDrift;
   FarTrial trial;
   inParallel(partition_count_, [&](std::size_t i) {
     try {
-      if (drifts || partition_count_ > 1)
-        preparePart(i, drifts ? SensorHints() : parameters_.sensor);
-      else
-        partitions_[0].collectNear();  // prepared by usePartitions ()
+      // Alone, the image has room for all columns only once far returns have proved worthwhile.
+      const std::size_t all = parts_[i].end - parts_[i].first;
+      preparePart(i, drifts ? SensorHints() : parameters_.sensor,
+                  partition_count_ == 1 ? std::min(kTriedColumns, all) : all);
       readPart(i, lasers, cells, trial);
     } catch (...) {
       if (i == 0) trial.decide(true);  // the others wait for it
@@ -179,8 +189,8 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
   scheduler_.skipColumns(columns);
 }
 
-void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hints) {
-  partitions_[i].prepare(tolerance_, hints, parts_[i].end - parts_[i].first);
+void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hints, std::size_t columns) {
+  partitions_[i].prepare(tolerance_, hints, columns);
   partitions_[i].collectNear();
 }
 
@@ -189,7 +199,7 @@ void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, cons
   Partition& partition = partitions_[i];
   if (partition.hasFar()) {
     if (readFarAndNear(i, lasers, cells, trial)) return;
-    preparePart(i, SensorHints());
+    preparePart(i, SensorHints(), 0);
   }
   const auto [begin, end] = parts_[i];
   partition.readLasers(cells, begin, end, lasers, subclusters_);
@@ -213,10 +223,24 @@ bool ColumnClusterer::Rotation::readFarAndNear(std::size_t i, std::size_t lasers
     if (i == 0 && first + count == std::min(kTriedColumns, end)) {
       const bool is_worthwhile = partition.isFarWorthwhile();
       trial.decide(is_worthwhile);
-      if (is_worthwhile) partition.reserveNear(first + count, end);
+      if (is_worthwhile) partition.expectColumns(end - begin);
+      const std::size_t near = is_worthwhile ? partition.nearReturns().count : partition.runs.returns;
+      partition.reserveNear((near + near / 64) * (end - begin) / (first + count) + 2 * RingBlock::kColumns);
     }
   }
   return trial.await();
+}
+
+/// Prepares the last partition for columns of which not all are known.
+void ColumnClusterer::Rotation::prepareForColumns() {
+  if (is_prepared_) return;
+  is_prepared_ = true;
+  if (scheduler_.hasColumns()) {
+    stopCollecting();
+    lastPartition().expectColumns(kWholeTurn);
+  } else {
+    lastPartition().prepare(tolerance_, parameters_.sensor, kWholeTurn);
+  }
 }
 
 /// Whole blocks of columns are read at once; single columns are gathered into blocks, whose work is spread.
@@ -307,8 +331,6 @@ void ColumnClusterer::Rotation::usePartitions(std::size_t count) {
   partition_count_ = count;
   for (std::size_t i = 0; i < count; ++i)
     partitions_[i].runs.source_index.reserve(parameters_.expected_returns / count);
-  if (count > 1) return;  // prepared by their threads
-  partitions_.front().prepare(tolerance_, parameters_.sensor, ~std::size_t{0});
 }
 
 // --- Results --------------------------------------------------------------------------------------------------------

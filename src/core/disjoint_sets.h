@@ -20,7 +20,7 @@ class DisjointSets {
   void reserve(std::size_t capacity) { parents_.grow(capacity); }
   /// The same, with some to spare: for a number that grows step by step.
   void grow(std::size_t capacity) {
-    if (parents_.size() < capacity) parents_.grow(capacity + capacity / 2);
+    if (parents_.size() < capacity) parents_.grow(capacity + capacity / 4);
   }
 
   /// createH: makes an element a set of its own, whatever it was before.
@@ -98,6 +98,7 @@ std::uint32_t numberElement(std::uint32_t element, std::uint32_t size, const Dis
                             std::vector<std::uint32_t>& sizes, NumberOf&& number_of) {
   const std::uint32_t parent = sets.parentOf(element);
   if (parent == element) {
+    if (sizes.size() == sizes.capacity()) sizes.reserve(sizes.size() + sizes.size() / 8 + 256);  // or it would double
     sizes.push_back(size);
     return static_cast<std::uint32_t>(sizes.size() - 1);
   }

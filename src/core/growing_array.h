@@ -18,7 +18,7 @@ namespace lisco {
 
 /// A growing array whose elements have no value until they are written: growing touches no new memory. In a fresh
 /// process, first writes to pages are most of what a first scan costs more than later ones. From 2 MiB on, the array
-/// takes whole huge pages, where the system gives them.
+/// begins with huge pages, where the system gives them.
 template <typename T>
 class GrowingArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>, "elements are bytes");
@@ -49,27 +49,37 @@ class GrowingArray {
   void grow(std::size_t size) {
     if (size <= size_) return;
     if (size > (PTRDIFF_MAX - kHugePage) / sizeof(T)) throw std::bad_alloc();
-    const std::size_t bytes = size * sizeof(T);
+    std::size_t bytes = size * sizeof(T);
+    // Half a huge page and more at the end becomes a whole one.
+    if (bytes >= kHugePage && bytes % kHugePage > kHugePage / 2) bytes = (bytes / kHugePage + 1) * kHugePage;
     void* data = nullptr;
-    if (bytes < kHugePage) {
-      data = std::realloc(static_cast<void*>(data_), bytes);
+    if (bytes < kHugePage || size_ * sizeof(T) >= kHugePage) {
+      data = std::realloc(static_cast<void*>(data_), bytes);  // of large arrays, the system moves the pages
     } else {
-      const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
-      data = std::aligned_alloc(kHugePage, rounded);
-#ifdef MADV_HUGEPAGE
-      if (data != nullptr) madvise(data, rounded, MADV_HUGEPAGE);  // without huge pages, all is the same but slower
-#endif
+      data = std::aligned_alloc(kHugePage, (bytes + kCacheLine - 1) / kCacheLine * kCacheLine);
       if (data != nullptr && size_ > 0) std::memcpy(data, static_cast<const void*>(data_), size_ * sizeof(T));
       if (data != nullptr) std::free(data_);
-      size = rounded / sizeof(T);
     }
+#ifdef MADV_HUGEPAGE
+    if (data != nullptr && bytes >= kHugePage) useHugePages(data, bytes);
+#endif
     if (data == nullptr) throw std::bad_alloc();
     data_ = static_cast<T*>(data);
-    size_ = size;
+    size_ = bytes / sizeof(T);
   }
 
  private:
   static constexpr std::size_t kHugePage = std::size_t{1} << 21;  ///< bytes
+  static constexpr std::size_t kCacheLine = 64;
+
+#ifdef MADV_HUGEPAGE
+  /// Without huge pages, all is the same but slower.
+  static void useHugePages(void* data, std::size_t bytes) {
+    const auto first = reinterpret_cast<std::uintptr_t>(data);
+    const std::uintptr_t begin = (first + kHugePage - 1) / kHugePage * kHugePage;
+    if (begin < first + bytes) madvise(reinterpret_cast<void*>(begin), first + bytes - begin, MADV_HUGEPAGE);
+  }
+#endif
 
   T* data_ = nullptr;
   std::size_t size_ = 0;

@@ -34,13 +34,17 @@ class Partition {
     if (image_.inUse()) image_.addLasers(lasers);
   }
 
+  /// Makes room for more columns than expected before.
+  void expectColumns(std::size_t columns) {
+    image_.expectColumns(columns);
+    segments_.forgetSectors();
+  }
+
   /// From now on near returns are collected, to be sorted by VoxelSorter, instead of put into voxels as they come.
   void collectNear() { collects_near_ = true; }
   const NearReturns& nearReturns() const { return near_returns_; }
-  /// Makes room for the near returns of `columns` columns in all, at the average of the `columns_read` so far.
-  void reserveNear(std::size_t columns_read, std::size_t columns) {
-    near_returns_.returns.grow(near_returns_.count * columns / columns_read);
-  }
+  /// Makes room for a number of near returns.
+  void reserveNear(std::size_t count) { near_returns_.returns.grow(count); }
   /// From now on near returns are put into voxels: first those that a partition of the same rotation, perhaps this one,
   /// has collected.
   void takeCollected(Partition& other, DisjointSets& subclusters);

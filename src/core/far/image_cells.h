@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <limits>
 
 #include "core/growing_array.h"
 
@@ -36,12 +38,24 @@ class ImageCells {
   /// Index of the first bin of a row.
   std::size_t firstOf(std::size_t row) const { return row * kPlanes * row_size_; }
 
-  /// Makes room for some rows, and for an eighth more than before if they come one by one. Their bins have no values
+  /// Makes room for some rows, and for a sixteenth more than before if they come one by one. Their bins have no values
   /// yet.
   void reserveRows(std::size_t rows) {
     if (firstOf(rows) <= floats_.size()) return;
-    floats_.grow(std::max(firstOf(rows), floats_.size() + floats_.size() / 8));
+    floats_.grow(std::max(firstOf(rows), floats_.size() + floats_.size() / 16));
     setRowSize(row_size_);
+  }
+
+  /// Moves some rows apart, so that each has as many bins as setRowSize () says.
+  /// \param former number of bins of a row
+  /// \param used of these, from the first on; the others become free
+  void widenRows(std::size_t rows, std::size_t former, std::size_t used) {
+    reserveRows(rows);
+    for (std::size_t plane = kPlanes * rows; plane-- > 0;) {
+      float* const to = x + plane * row_size_;
+      std::memmove(to, x + plane * former, used * sizeof(float));
+      if (plane % kPlanes == 0) std::fill(to + used, to + row_size_, std::numeric_limits<float>::quiet_NaN());
+    }
   }
 
   float *x = nullptr, *y = nullptr, *z = nullptr;

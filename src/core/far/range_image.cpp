@@ -40,29 +40,45 @@ void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hint
   const float tilt = std::hypot(range.tilt[0], range.tilt[1]);
   slope_reach = reach * (0.5F * (tilt + std::sqrt(tilt * tilt + 4.0F)) * 1.00001F);
   direction = hints.clockwise ? -1.0F : 1.0F;
-  const std::size_t new_bins = (std::min(columns, new_steps) + kSector - 1) / kSector * kSector + 4 * kMargin;
-  if (new_steps != steps || new_bins > bins) {
-    const double step = 2 * kPi / static_cast<double>(new_steps);
-    steps = new_steps;
-    radians_per_bin = static_cast<float>(step);
-    bins = new_bins;
-    stride = kMargin + bins + 3 * kMargin;
-    cells.setRowSize(stride);
-    cosine.resize(stride);
-    sine.resize(stride);
-    for (std::size_t i = 0; i < cosine.size(); ++i) {
-      const double angle = step * (static_cast<double>(i) - static_cast<double>(kMargin));
-      cosine[i] = static_cast<float>(std::cos(angle));
-      sine[i] = static_cast<float>(std::sin(angle));
-    }
+  if (new_steps != steps_of_tables) {
+    steps_of_tables = new_steps;
+    cosine.clear();
+    sine.clear();
     rows.clear();
   }
-  begin = bins;
+  steps = new_steps;
+  radians_per_bin = static_cast<float>(2 * kPi / static_cast<double>(steps));
+  setBins(columns);
+  begin = std::numeric_limits<std::size_t>::max();
   const std::size_t lasers_before = laserCount();
   rows.clear();
   layers = 1;
   open_rows = 0;
   addLasers(lasers_before);
+}
+
+void RangeImage::setBins(std::size_t columns) {
+  bins = (std::min(columns, steps) + kSector - 1) / kSector * kSector + 4 * kMargin;
+  stride = kMargin + bins + 2 * kMargin;
+  cells.setRowSize(stride);
+  const std::size_t directions = stride + kMargin;
+  const double step = 2 * kPi / static_cast<double>(steps);
+  cosine.reserve(directions);
+  sine.reserve(directions);
+  for (std::size_t i = cosine.size(); i < directions; ++i) {
+    const double angle = step * (static_cast<double>(i) - static_cast<double>(kMargin));
+    cosine.push_back(static_cast<float>(std::cos(angle)));
+    sine.push_back(static_cast<float>(std::sin(angle)));
+  }
+}
+
+void RangeImage::expectColumns(std::size_t columns) {
+  if (!inUse()) return;
+  const std::size_t former = stride;
+  setBins(columns);
+  if (stride <= former) return;
+  cells.widenRows(open_rows, former, kMargin + end);
+  for (Row& row : rows) row.first_cell = row.first_cell / former * stride;
 }
 
 void RangeImage::addLasers(std::size_t count) {

@@ -58,6 +58,9 @@ struct RangeImage {
   /// \param columns number of columns expected; more than a turn needs no more memory
   void prepare(const Tolerance& new_tolerance, const SensorHints& hints, std::size_t columns);
 
+  /// Makes room for more columns than expected before, once returns are placed.
+  void expectColumns(std::size_t columns);
+
   /// False if the hints give no steps, or the tolerance joins nothing: then no return is far.
   bool inUse() const { return steps > 0; }
 
@@ -99,6 +102,8 @@ struct RangeImage {
 
   /// Whether another layer would hold enough returns whose bins are taken to be worth its memory.
   bool isLayerWorthwhile() const;
+  /// Sets the number of bins for some columns, and their directions.
+  void setBins(std::size_t columns);
   /// Adds a layer: every laser gets one more row, without memory yet. Rows are numbered anew.
   void addLayer();
   /// Gives a row its memory, all bins free.
@@ -137,7 +142,8 @@ struct RangeImage {
   float start_sine = 0;
   std::uint32_t first_column = 0;
   bool started = false;
-  std::vector<float> cosine, sine;  ///< of each bin, from -kMargin on
+  std::vector<float> cosine, sine;  ///< of each bin, from -kMargin on, and perhaps more
+  std::size_t steps_of_tables = 0;  ///< for which they hold
   ImageCells cells;                 ///< x is NaN where a bin is free
 
   std::vector<Row> rows;  ///< by laser and layer

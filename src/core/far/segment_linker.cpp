@@ -156,10 +156,10 @@ void SegmentLinker::fit(const RangeImage& image) {
     sector.number = Sector::kNone;
     for (auto* bound :
          {&sector.nearest, &sector.farthest, &sector.lowest, &sector.highest, &sector.first, &sector.last})
-      bound->resize(segments);
-    sector.root.resize(segments);
-    sector.cell.resize(segments);
-    sector.count.resize(segments);
+      bound->grow(segments);
+    sector.root.grow(segments);
+    sector.cell.grow(segments);
+    sector.count.grow(segments);
     sector.begin.resize(count + 1);
   };
   for (Sector& sector : sectors) grow(sector);

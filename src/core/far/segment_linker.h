@@ -9,6 +9,7 @@
 
 #include "core/disjoint_sets.h"
 #include "core/far/range_image.h"
+#include "core/growing_array.h"
 
 namespace lisco {
 
@@ -17,13 +18,13 @@ namespace lisco {
 struct Sector {
   static constexpr std::int64_t kNone = -1;
   std::int64_t number = kNone;
-  std::vector<float> nearest, farthest;  ///< horizontal distance
-  std::vector<float> lowest, highest;    ///< z
-  std::vector<float> first, last;        ///< bin
-  std::vector<std::uint32_t> root;       ///< of its subcluster, perhaps outdated
-  std::vector<std::uint32_t> cell;       ///< index of its first return in the image
-  std::vector<std::uint8_t> count;       ///< of returns
-  std::vector<std::uint32_t> begin;      ///< of each row's segments, and the end
+  GrowingArray<float> nearest, farthest;  ///< horizontal distance
+  GrowingArray<float> lowest, highest;    ///< z
+  GrowingArray<float> first, last;        ///< bin
+  GrowingArray<std::uint32_t> root;       ///< of its subcluster, perhaps outdated
+  GrowingArray<std::uint32_t> cell;       ///< index of its first return in the image
+  GrowingArray<std::uint8_t> count;       ///< of returns
+  std::vector<std::uint32_t> begin;       ///< of each row's segments, and the end
 };
 
 /// The paper's neighbor mask (Algorithm 2) of one laser's returns in a sector, from measured bounds.
@@ -56,6 +57,9 @@ class SegmentLinker : private SegmentLinkerState {
   /// Starts a rotation, or a part of one. Keeps its memory.
   void prepare(const RangeImage& image);
 
+  /// To be called once the image has room for more columns: its returns have moved.
+  void forgetSectors();
+
   /// Links what has come since the last call, as far as all lasers have passed it.
   void link(RangeImage& image, DisjointSets& subclusters);
 
@@ -80,7 +84,6 @@ class SegmentLinker : private SegmentLinkerState {
 
  private:
   void fit(const RangeImage& image);
-  void forgetSectors();
 
   std::size_t linked_parts_ = 0;  ///< of the sector at image.linked
 };

@@ -259,7 +259,7 @@ class SegmentSearch {
     const std::uint32_t end = std::min(limit, other.begin[segment.last_row + 1]);
     state_.work += 1 + (end - begin) / kLanes;
     for (std::uint32_t i = begin; i < end; i += std::uint32_t{kLanes}) {
-      const auto load = [&](const std::vector<float>& bound) { return hn::LoadU(kFloats, &bound[i]); };
+      const auto load = [&](const GrowingArray<float>& bound) { return hn::LoadU(kFloats, &bound[i]); };
       const auto all = [](float value) { return hn::Set(kFloats, value); };
       const FloatMask range = hn::And(hn::Le(load(other.nearest), all(segment.farthest)),
                                       hn::Ge(load(other.farthest), all(segment.nearest)));

@@ -10,7 +10,7 @@ namespace lisco {
 
 void NearReturns::add(const RingBlock& block, const RingBlockInfo& info, ColumnBits which) {
   if (returns.size() < count + RingBlock::kColumns + kNearStep)
-    returns.grow(count + std::max(count / 4, 4 * RingBlock::kColumns));
+    returns.grow(count + std::max(count / 8, 4 * RingBlock::kColumns));
   const float* const x = block.x + RingBlock::kMargin;
   const float* const y = block.y + RingBlock::kMargin;
   const float* const z = block.z + RingBlock::kMargin;

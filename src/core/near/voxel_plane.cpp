@@ -238,7 +238,13 @@ template <std::size_t kStep, typename ReturnOf, typename SizeOf>
 void fill(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, std::size_t following,
           const PlaneLayout& layout, DisjointSets& subclusters, ReturnOf&& returnOf, SizeOf&& sizeOf) {
   const std::uint64_t brick_mask = (std::uint64_t{1} << layout.brick_bits) - 1;
-  VoxelPlane::Brick* brick = plane.bricks.data() - 1;
+  VoxelPlane::Brick* brick = nullptr;
+  std::size_t bricks = 0;
+  const auto addBrick = [&](const VoxelPlane::Brick& added) {
+    plane.reserveBricks(bricks + 1);
+    brick = &plane.bricks[bricks++];
+    *brick = added;
+  };
   std::uint64_t brick_key = ~std::uint64_t{0};
   std::uint32_t voxel = 0;
   std::size_t points = 0;
@@ -247,6 +253,7 @@ void fill(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, std:
     const NearReturn* near = returnOf(items[i]);
     BoxLanes box(*near);
     std::uint32_t root = subclusters.find(near->element);
+    plane.reserveVoxels(voxel + 2);
     plane.first_point[voxel] = static_cast<std::uint32_t>(points);
     do {
       // In unordered clouds, returns and their sets are scattered in memory.
@@ -272,14 +279,14 @@ void fill(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, std:
     plane.root[voxel] = root;
     if ((key >> 6 & brick_mask) != brick_key) {
       brick_key = key >> 6 & brick_mask;
-      *++brick = {brick_key, 0, voxel, VoxelPlane::kSeveral, box};
+      addBrick({brick_key, 0, voxel, VoxelPlane::kSeveral, box});
     }
     brick->occupied |= std::uint64_t{1} << (key & 63U);
     brick->box.add(box);
   }
   plane.first_point[voxel] = static_cast<std::uint32_t>(points);
-  *++brick = {~std::uint64_t{0}, 0, voxel, VoxelPlane::kSeveral, BoxLanes(NearReturn{})};
-  plane.brick_count = static_cast<std::size_t>(brick - plane.bricks.data());
+  addBrick({~std::uint64_t{0}, 0, voxel, VoxelPlane::kSeveral, BoxLanes(NearReturn{})});
+  plane.brick_count = bricks - 1;
 }
 
 }  // namespace
@@ -295,7 +302,6 @@ void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
     return part.near->returns.data() + (numberOf(item) - part.first);
   };
   const auto sizeOf = [&](std::uint64_t item) { return fragments.endOf(numberOf(item)) - numberOf(item); };
-  plane.reserveVoxels(count);
   const auto fillFrom = [&](auto&& returnOf) {
     if (fragments.are_short)
       fill<1>(plane, items, count, following, layout, subclusters, returnOf, sizeOf);

@@ -2,12 +2,14 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <vector>
 
 #include "core/disjoint_sets.h"
+#include "core/growing_array.h"
 #include "core/near/constants.h"
 #include "core/near/near_returns.h"
 #include "core/neighbour.h"
@@ -91,27 +93,33 @@ struct VoxelPlane {
   };
 
   /// Ordered by key, with an end mark behind the last. These arrays are longer than what is in use.
-  std::vector<Brick> bricks;
+  GrowingArray<Brick> bricks;
   std::size_t brick_count = 0;
-  std::vector<float> lo[3], hi[3];         ///< of each voxel's box
-  std::vector<std::uint32_t> root;         ///< of its subcluster, perhaps outdated
-  std::vector<std::uint32_t> first_point;  ///< and the end
-  std::vector<NearReturn> points;
+  GrowingArray<float> lo[3], hi[3];         ///< of each voxel's box
+  GrowingArray<std::uint32_t> root;         ///< of its subcluster, perhaps outdated
+  GrowingArray<std::uint32_t> first_point;  ///< and the end
+  GrowingArray<NearReturn> points;
 
-  /// Makes room for some voxels, as many bricks, and their end marks.
+  // The arrays grow by these, to what is in use and some more, with the elements that are there.
+
+  void reserveBricks(std::size_t count) { reserve(bricks, count); }
   void reserveVoxels(std::size_t count) {
     if (first_point.size() >= count + kReadBehind) return;
-    const std::size_t size = count + count / 4 + kReadBehind;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      lo[axis].resize(size);
-      hi[axis].resize(size);
+      reserve(lo[axis], count);
+      reserve(hi[axis], count);
     }
-    root.resize(size);
-    first_point.resize(size);
-    bricks.resize(size);
+    reserve(root, count);
+    reserve(first_point, count);
   }
-  void reservePoints(std::size_t count) {
-    if (points.size() < count + kReadBehind) points.resize(count + count / 4 + kReadBehind);
+  void reservePoints(std::size_t count) { reserve(points, count); }
+
+ private:
+  static constexpr std::size_t kMinGrowth = 128;  ///< elements
+
+  template <typename T>
+  static void reserve(GrowingArray<T>& array, std::size_t count) {
+    if (array.size() < count + kReadBehind) array.grow(count + std::max(count / 8, kMinGrowth) + kReadBehind);
   }
 };
 
