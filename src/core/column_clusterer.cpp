@@ -64,6 +64,7 @@ class ColumnClusterer::Rotation {
   std::vector<LoadBalancer::Part> parts_;  ///< of the threads
   bool comes_at_once_ = false;             ///< the latest columns, of this rotation or the one before
   bool is_prepared_ = false;               ///< the last partition, for columns that follow
+  bool was_far_worthwhile_ = false;        ///< in the latest trial
   bool are_linked_ = false;                ///< all partitions but the last, with each other
   enum class Near { kCollected, kSorted, kInVoxels } near_ = Near::kInVoxels;  ///< state of the near returns
   ImageCircle images_;
@@ -176,10 +177,10 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
   FarTrial trial;
   inParallel(partition_count_, [&](std::size_t i) {
     try {
-      // Alone, the image has room for all columns only once far returns have proved worthwhile.
+      // Until far returns prove worthwhile, one image takes no more memory than its trial needs.
       const std::size_t all = parts_[i].end - parts_[i].first;
-      preparePart(i, drifts ? SensorHints() : parameters_.sensor,
-                  partition_count_ == 1 ? std::min(kTriedColumns, all) : all);
+      const bool is_full = partition_count_ > 1 || was_far_worthwhile_;
+      preparePart(i, drifts ? SensorHints() : parameters_.sensor, is_full ? all : std::min(kTriedColumns, all));
       readPart(i, lasers, cells, trial);
     } catch (...) {
       if (i == 0) trial.decide(true);  // the others wait for it
@@ -221,7 +222,7 @@ bool ColumnClusterer::Rotation::readFarAndNear(std::size_t i, std::size_t lasers
     if (partition_count_ > 1)
       balancer_.record(first, count, count * lasers * kWorkOfCell + partition.workDone() - before);
     if (i == 0 && first + count == std::min(kTriedColumns, end)) {
-      const bool is_worthwhile = partition.isFarWorthwhile();
+      const bool is_worthwhile = was_far_worthwhile_ = partition.isFarWorthwhile();
       trial.decide(is_worthwhile);
       if (is_worthwhile) partition.expectColumns(end - begin);
       const std::size_t near = is_worthwhile ? partition.nearReturns().count : partition.runs.returns;
