@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -192,14 +193,15 @@ lisco::Parameters parametersAfter(const Rotation& rotation) {
 class ColumnsTable {
  public:
   static void printTitles() {
-    std::printf("%-20s %5s %7s | column us %21s | clusters %9s %7s %8s %7s | endless us %6s %22s\n", "scan", "eps",
-                "columns", "", "pcl", "ratio", "grid", "ratio", "", "ms");
-    std::printf("%-20s %5s %7s | %7s %7s %7s %6s | %8s %9s %7s %8s %7s | %10s %6s %6s %6s\n", "", "m", "", "50%", "99%",
-                "most", "of T", "ms", "ms", "", "ms", "", "99%", "50%", "99%", "most");
+    std::printf("%-20s %5s %7s | %-30s | %-30s | clusters %9s %7s %8s %7s | endless us %6s %22s\n", "scan", "eps",
+                "columns", "column us", "at speed us", "pcl", "ratio", "grid", "ratio", "", "ms");
+    std::printf("%-20s %5s %7s | %7s %7s %7s %6s | %7s %7s %7s %6s | %8s %9s %7s %8s %7s | %10s %6s %6s %6s\n", "", "m",
+                "", "50%", "99%", "most", "of T", "50%", "99%", "most", "of T", "ms", "ms", "", "ms", "", "99%", "50%",
+                "99%", "most");
   }
 
   bool measure(const Case& one, unsigned runs) {
-    std::vector<double> columns, ends, pcls, grids;
+    std::vector<double> columns, paced, ends, pcls, grids;
     const std::vector<Baseline> baselines = allBaselines();
     const auto grid = std::find_if(baselines.begin(), baselines.end(),
                                    [](const Baseline& baseline) { return baseline.key == "grid"; });
@@ -208,6 +210,7 @@ class ColumnsTable {
     for (unsigned run = 0; run <= runs; ++run)  // the first is not timed
       for (const Rotation& rotation : one.rotations) {
         if (!feed(rotation, clusterer, run > 0 ? &columns : nullptr, run > 0 ? &ends : nullptr, one)) return false;
+        if (run > 0 && !feed(rotation, clusterer, &paced, nullptr, one, one.period_us)) return false;
         const auto timeOf = [&](const Baseline& baseline) {
           return runMs([&] {
             Clusters clusters;
@@ -222,23 +225,28 @@ class ColumnsTable {
     if (!feedEndlessly(one, runs, endless_columns, deliveries)) return false;
 
     const double p99 = quantile(columns, 0.99);
+    const double paced_p99 = quantile(paced, 0.99);
     const double end = median(ends);
     std::printf(
-        "%-20s %5.2f %7zu | %7.2f %7.2f %7.1f %5.0f%% | %8.3f %9.2f %7.1f %8.3f %7.1f | %10.2f %6.2f %6.2f %6.2f\n",
+        "%-20s %5.2f %7zu | %7.2f %7.2f %7.1f %5.0f%% | %7.2f %7.2f %7.1f %5.0f%% | %8.3f %9.2f %7.1f %8.3f %7.1f | "
+        "%10.2f %6.2f %6.2f %6.2f\n",
         one.name.c_str(), one.rotations.front().problem.tolerance, one.rotations.front().columns.size(),
-        median(columns), p99, *std::max_element(columns.begin(), columns.end()), 100 * p99 / one.period_us, end,
+        median(columns), p99, *std::max_element(columns.begin(), columns.end()), 100 * p99 / one.period_us,
+        median(paced), paced_p99, *std::max_element(paced.begin(), paced.end()), 100 * paced_p99 / one.period_us, end,
         median(pcls), median(pcls) / end, median(grids), median(grids) / end, quantile(endless_columns, 0.99),
         median(deliveries), quantile(deliveries, 0.99), *std::max_element(deliveries.begin(), deliveries.end()));
     pcl_ratios_.push_back(median(pcls) / end);
     grid_ratios_.push_back(median(grids) / end);
     shares_.push_back(p99 / one.period_us);
+    paced_shares_.push_back(paced_p99 / one.period_us);
     return true;
   }
 
   void printEnd() const {
     if (shares_.empty()) return;
-    std::printf("99%% of the columns take at most %.0f%% of the time between two\n",
-                100 * *std::max_element(shares_.begin(), shares_.end()));
+    std::printf("99%% of the columns take at most %.0f%% of the time between two; at the sensor's speed %.0f%%\n",
+                100 * *std::max_element(shares_.begin(), shares_.end()),
+                100 * *std::max_element(paced_shares_.begin(), paced_shares_.end()));
     const auto print = [](const char* whose, const std::vector<double>& ratios) {
       std::printf(
           "%s's batch takes %.0f times as long as from the last column to the clusters (geometric mean; least %.1f)\n",
@@ -249,11 +257,15 @@ class ColumnsTable {
   }
 
   /// Feeds a rotation, checks the clusters, and appends microseconds of each column and milliseconds of the end.
+  /// \param period_us time between two columns, in which the thread sleeps; 0: they come back to back
   static bool feed(const Rotation& rotation, lisco::ColumnClusterer& clusterer, std::vector<double>* columns,
-                   std::vector<double>* ends, const Case& one) {
+                   std::vector<double>* ends, const Case& one, double period_us = 0) {
     lisco::Parameters parameters = parametersAfter(rotation);
     parameters.tolerance = static_cast<float>(rotation.problem.tolerance);
+    const Timer::time_point start = Timer::now();
     for (std::size_t i = 0; i < rotation.columns.size(); ++i) {
+      const std::chrono::duration<double, std::micro> due(static_cast<double>(i) * period_us);
+      if (period_us > 0) std::this_thread::sleep_until(start + std::chrono::duration_cast<Timer::duration>(due));
       const Timer::time_point begin = Timer::now();
       if (i == 0) clusterer.begin(parameters);
       clusterer.addColumn(rotation.columns[i].data(), rotation.columns[i].size());
@@ -341,7 +353,7 @@ class ColumnsTable {
     return std::atan2(north, east);
   }
 
-  std::vector<double> shares_, pcl_ratios_, grid_ratios_;
+  std::vector<double> shares_, paced_shares_, pcl_ratios_, grid_ratios_;
 };
 
 /// Who works when, in milliseconds since the first turn began, for two turns.

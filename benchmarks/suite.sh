@@ -7,13 +7,13 @@
 #
 #   benchmarks/suite.sh [--runs N] [SECTION...]     --runs: timed runs of each baseline (default 5)
 #
-# Sections: real recordings vehicle worst growth memory threads stages; latency, whose tables and picture are in
+# Sections: real recordings vehicle worst growth memory first_call threads stages; latency, whose tables and picture are in
 # doc/streaming.md; ground, ground_real and ground_latency, whose tables are in doc/ground.md
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/benchmarks/tools.sh"
 
-all_sections=(real recordings vehicle worst growth memory threads stages latency ground ground_real ground_latency)
+all_sections=(real recordings vehicle worst growth memory first_call threads stages latency ground ground_real ground_latency)
 runs=5
 sections=()
 while [ $# -gt 0 ]; do
@@ -150,6 +150,12 @@ measure_memory() {
     report "$out/memory_worst.txt" "$build/benchmarks/memory_use" --tolerance 0.4 "$out/worst" &&
     { cat "$out/memory.txt" && tail -n +5 "$out/memory_worst.txt"; } >"$out/memory.table" &&
     code_block <"$out/memory.table" | replace_section "$document" "memory" && cat "$out/memory.table"
+}
+
+# The first call of a process, which finds neither memory nor code in place.
+measure_first_call() {
+  report "$out/first_call.txt" "$build/benchmarks/first_call" "${ground[@]}" "${rotating[@]}" &&
+    code_block <"$out/first_call.txt" | replace_section "$document" "first call" && cat "$out/first_call.txt"
 }
 
 # measure_engine TABLE: a table of engine_stages, with four times the runs, which are short.
