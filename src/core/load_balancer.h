@@ -65,6 +65,7 @@ class LoadBalancer {
     }
   }
 
+  // Finer weights even out the work of threads, and take longer to sample (benchmarks/suite.sh threads).
   static constexpr std::size_t kGroup = 16;        ///< columns weighed together
   static constexpr std::size_t kMinGroups = 4;     ///< of a part: 64 columns
   static constexpr std::size_t kSampled = 4;       ///< one in this many lasers is sampled, in one column of a group

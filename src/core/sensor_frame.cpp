@@ -13,6 +13,7 @@ constexpr std::size_t kUnknowns = 5;  // the origin, and the tilt
 using Vector = std::array<double, kUnknowns>;
 using Matrix = std::array<Vector, kUnknowns>;
 
+// Fewer: frames are fitted to noise; more: scans of few returns have none (benchmarks/suite.sh recordings).
 constexpr std::size_t kMinOfLaser = 4;   // returns
 constexpr std::size_t kMinReturns = 40;  // of all such lasers
 

@@ -11,6 +11,7 @@
 namespace lisco::ground {
 namespace {
 
+// Least loss of objects and of ground in the tables of benchmarks/suite.sh ground ground_real.
 constexpr float kNear = 25.0F;          // metres; beyond, the ground may be higher or lower
 constexpr std::size_t kMaxCells = 48;   // of a column
 constexpr float kMinReach = 1.12F;      // of a cell's distance by that of the one before
@@ -20,12 +21,12 @@ constexpr float kEnough = 0.5F;         // of the most weight
 constexpr float kWindow = 0.15F;        // metres, of heights that agree
 constexpr float kRefinedWindow = 0.4F;  // metres, of heights that agree with the plane's slope
 constexpr float kRefinedEnough = 0.7F;  // of the most weight
-constexpr float kLowSensor = 0.3F;      // metres; where the ground is no lower, it reaches further than a table does
-constexpr float kBeyondTable = 2.2F;    // metres, the same, with returns in between
-constexpr float kTableGap = 1.75F;      // between these, as a ratio of their distances
-constexpr float kTable = 0.5F;          // metres; most height above a table, or a low floor
-constexpr float kBelowTable = 0.1F;     // metres, of the floor beside it
-constexpr float kRoom = 10.0F;          // metres, where it is looked for
+constexpr float kLowSensor = 0.3F;      // metres; a line less deep beneath the sensor may be on the table it stands on
+constexpr float kBeyondTable = 2.2F;    // metres; such a line counts if its second cell is further out than a table is
+constexpr float kTableGap = 1.75F;      // and less than this many times as far as its first
+constexpr float kTable = 0.5F;          // metres; most height of the sensor above a table, or a low floor
+constexpr float kBelowTable = 0.1F;     // metres, by which the floor beside a table is lower at least
+constexpr float kRoom = 10.0F;          // metres, distance up to which that floor is looked for
 constexpr float kSureReach = 9.0F;      // metres; lines that begin further out agree with less weight
 constexpr float kTrust = 0.5F;          // of the plane's slope, the rest of a line's own
 constexpr double kPointReach = 6.0;     // metres; where lines begin further out, they count less as points
@@ -180,7 +181,8 @@ void PlaneEstimator::update() {
     known_ = true;
   }
   fitSlopes();
-  // What showed the plane was each column of few blocks, in one direction; later blocks add one of each direction.
+  // The lines so far come from all kColumns columns of a block, which have one direction. From now on one column of a
+  // block adds a line, and each of these lines counts as much less.
   if (!height_given_)
     for (std::size_t i = 0; i < size; ++i) lines_[i].weight /= static_cast<float>(Block::kColumns);
 }

@@ -27,9 +27,10 @@ constexpr AzimuthFloats kAzimuths{};
 constexpr auto kStep = static_cast<std::int32_t>(hn::MaxLanes(kAzimuths));
 
 constexpr float kTurn = static_cast<float>(2.0 * kPi);
+// Least loss of objects and of ground in the tables of benchmarks/suite.sh ground ground_real.
 constexpr float kSameAzimuth = 0.022F;  // radians
-constexpr float kNearAzimuth = 0.04F;   // the same, where no row below is so near
-constexpr float kClearly = 0.013F;      // of the slopes of rays
+constexpr float kNearAzimuth = 0.04F;   // radians; for the row below, if none has the same azimuth
+constexpr float kClearly = 0.013F;      // difference of the slopes of rays
 constexpr std::int32_t kMaxApart = 64;  // in the order of rows, of two that are compared
 
 /// Of the azimuths from position j on, those beside another one, as bits.
