@@ -5,8 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include "core/aligned_vector.h"
 
+#include "core/aligned_vector.h"
 #include "core/ground/block.h"
 
 namespace lisco::ground {
