@@ -7,13 +7,14 @@
 #
 #   benchmarks/suite.sh [--runs N] [SECTION...]     --runs: timed runs of each baseline (default 5)
 #
-# Sections: real recordings vehicle worst growth memory first_call threads stages; latency, whose tables and picture are in
-# doc/streaming.md; ground, ground_real and ground_latency, whose tables are in doc/ground.md
+# Sections: real recordings vehicle worst growth memory first_call threads stages; latency, whose tables and picture are
+# in doc/streaming.md; ground, ground_real and ground_latency, whose tables are in doc/ground.md
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/benchmarks/tools.sh"
 
-all_sections=(real recordings vehicle worst growth memory first_call threads stages latency ground ground_real ground_latency)
+all_sections=(real recordings vehicle worst growth memory first_call threads stages latency ground ground_real
+  ground_latency)
 runs=5
 sections=()
 while [ $# -gt 0 ]; do
