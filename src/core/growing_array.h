@@ -56,7 +56,7 @@ class GrowingArray {
     if (bytes < kHugePage || size_ * sizeof(T) >= kHugePage) {
       data = std::realloc(static_cast<void*>(data_), bytes);  // of large arrays, the system moves the pages
     } else {
-      data = std::aligned_alloc(kHugePage, (bytes + kCacheLine - 1) / kCacheLine * kCacheLine);
+      if (posix_memalign(&data, kHugePage, bytes) != 0) data = nullptr;
       if (data != nullptr && size_ > 0) std::memcpy(data, static_cast<const void*>(data_), size_ * sizeof(T));
       if (data != nullptr) std::free(data_);
     }
@@ -70,7 +70,6 @@ class GrowingArray {
 
  private:
   static constexpr std::size_t kHugePage = std::size_t{1} << 21;  ///< bytes
-  static constexpr std::size_t kCacheLine = 64;
 
 #ifdef MADV_HUGEPAGE
   /// Without huge pages, all is the same but slower.
