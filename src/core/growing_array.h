@@ -18,7 +18,7 @@ namespace lisco {
 
 /// A growing array whose elements have no value until they are written: growing touches no new memory. In a fresh
 /// process, first writes to pages are most of what a first scan costs more than later ones. From 2 MiB on, the array
-/// begins with huge pages, where the system gives them.
+/// takes whole huge pages, where the system gives them.
 template <typename T>
 class GrowingArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>, "elements are bytes");
@@ -49,36 +49,27 @@ class GrowingArray {
   void grow(std::size_t size) {
     if (size <= size_) return;
     if (size > (PTRDIFF_MAX - kHugePage) / sizeof(T)) throw std::bad_alloc();
-    std::size_t bytes = size * sizeof(T);
-    // Half a huge page and more at the end becomes a whole one.
-    if (bytes >= kHugePage && bytes % kHugePage > kHugePage / 2) bytes = (bytes / kHugePage + 1) * kHugePage;
+    const std::size_t bytes = size * sizeof(T);
     void* data = nullptr;
-    if (bytes < kHugePage || size_ * sizeof(T) >= kHugePage) {
-      data = std::realloc(static_cast<void*>(data_), bytes);  // of large arrays, the system moves the pages
+    if (bytes < kHugePage) {
+      data = std::realloc(static_cast<void*>(data_), bytes);
     } else {
-      if (posix_memalign(&data, kHugePage, bytes) != 0) data = nullptr;
+      const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
+      data = std::aligned_alloc(kHugePage, rounded);
+#ifdef MADV_HUGEPAGE
+      if (data != nullptr) madvise(data, rounded, MADV_HUGEPAGE);  // without huge pages, all is the same but slower
+#endif
       if (data != nullptr && size_ > 0) std::memcpy(data, static_cast<const void*>(data_), size_ * sizeof(T));
       if (data != nullptr) std::free(data_);
+      size = rounded / sizeof(T);
     }
-#ifdef MADV_HUGEPAGE
-    if (data != nullptr && bytes >= kHugePage) useHugePages(data, bytes);
-#endif
     if (data == nullptr) throw std::bad_alloc();
     data_ = static_cast<T*>(data);
-    size_ = bytes / sizeof(T);
+    size_ = size;
   }
 
  private:
   static constexpr std::size_t kHugePage = std::size_t{1} << 21;  ///< bytes
-
-#ifdef MADV_HUGEPAGE
-  /// Without huge pages, all is the same but slower.
-  static void useHugePages(void* data, std::size_t bytes) {
-    const auto first = reinterpret_cast<std::uintptr_t>(data);
-    const std::uintptr_t begin = (first + kHugePage - 1) / kHugePage * kHugePage;
-    if (begin < first + bytes) madvise(reinterpret_cast<void*>(begin), first + bytes - begin, MADV_HUGEPAGE);
-  }
-#endif
 
   T* data_ = nullptr;
   std::size_t size_ = 0;

@@ -38,11 +38,11 @@ class ImageCells {
   /// Index of the first bin of a row.
   std::size_t firstOf(std::size_t row) const { return row * kPlanes * row_size_; }
 
-  /// Makes room for some rows, and for a sixteenth more than before if they come one by one. Their bins have no values
+  /// Makes room for some rows, and for an eighth more than before if they come one by one. Their bins have no values
   /// yet.
   void reserveRows(std::size_t rows) {
     if (firstOf(rows) <= floats_.size()) return;
-    floats_.grow(std::max(firstOf(rows), floats_.size() + floats_.size() / 16));
+    floats_.grow(std::max(firstOf(rows), floats_.size() + floats_.size() / 8));
     setRowSize(row_size_);
   }
 
