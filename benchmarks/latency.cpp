@@ -68,6 +68,7 @@ bool parse(int argc, char** argv, Options& options) {
       "  column    microseconds that a column takes: median, 99th percentile, most; and the 99th percentile in percent "
       "of "
       "the\n            time between two columns of the sensor\n"
+      "  at speed  the same where columns come as the sensor fires and the thread sleeps in between\n"
       "  clusters  milliseconds from the last column to PCL's vector of clusters\n"
       "  pcl grid  milliseconds of the whole batch by PCL's KdTree (false) and by the voxel grid, and how many times "
       "the "
