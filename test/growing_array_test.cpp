@@ -9,6 +9,7 @@
 #include <new>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 #include "core/far/image_cells.h"
 
@@ -37,6 +38,28 @@ TEST(GrowingArray, KeepsItsElementsWhenItGrows) {
     array.grow(size / 2);
     EXPECT_GE(array.size(), size);
   }
+}
+
+// Few times, and with little to spare.
+TEST(GrowingArray, GrowsInSteps) {
+  Array array;
+  std::vector<std::uint32_t> vector;
+  int growths = 0;
+  constexpr std::size_t kHalfOfAHugePage = (std::size_t{1} << 20) / sizeof(std::uint32_t);
+  for (std::size_t size = 1; size <= 2'000'000; ++size) {
+    const std::size_t before = array.size();
+    array.growInSteps(size);
+    ASSERT_GE(array.size(), size);
+    ASSERT_LE(array.size(), size + size / 8 + 256 + (size > 400'000 ? kHalfOfAHugePage : 0));
+    if (array.size() == before) continue;
+    ++growths;
+    fill(array, before);
+    expectFilled(array, size);
+    lisco::reserveInSteps(vector, size);
+    ASSERT_GE(vector.capacity(), size);
+    ASSERT_LE(vector.capacity(), size + size / 8 + 256);
+  }
+  EXPECT_LT(growths, 80);
 }
 
 TEST(GrowingArray, Copies) {

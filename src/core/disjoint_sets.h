@@ -18,10 +18,8 @@ class DisjointSets {
  public:
   /// Provides memory for elements below a number. Other elements stay as they are.
   void reserve(std::size_t capacity) { parents_.grow(capacity); }
-  /// The same, with some to spare: for a number that grows step by step.
-  void grow(std::size_t capacity) {
-    if (parents_.size() < capacity) parents_.grow(capacity + capacity / 4);
-  }
+  /// The same, for a number that grows step by step.
+  void grow(std::size_t capacity) { parents_.growInSteps(capacity); }
 
   /// createH: makes an element a set of its own, whatever it was before.
   void create(std::uint32_t element) { parents_[element] = element; }
@@ -98,7 +96,7 @@ std::uint32_t numberElement(std::uint32_t element, std::uint32_t size, const Dis
                             std::vector<std::uint32_t>& sizes, NumberOf&& number_of) {
   const std::uint32_t parent = sets.parentOf(element);
   if (parent == element) {
-    if (sizes.size() == sizes.capacity()) sizes.reserve(sizes.size() + sizes.size() / 8 + 256);  // or it would double
+    reserveInSteps(sizes, sizes.size() + 1);
     sizes.push_back(size);
     return static_cast<std::uint32_t>(sizes.size() - 1);
   }

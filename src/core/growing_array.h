@@ -9,6 +9,7 @@
 #include <new>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #ifdef __linux__
 #include <sys/mman.h>
@@ -16,9 +17,21 @@
 
 namespace lisco {
 
+/// Elements to make room for where some are needed now and more follow step by step: some to spare, but less than
+/// doubling would waste.
+constexpr std::size_t withSpare(std::size_t count) {
+  return count + count / 8 + 256;
+}
+
+/// Makes room in a vector for elements that come step by step.
+template <typename T>
+void reserveInSteps(std::vector<T>& elements, std::size_t count) {
+  if (elements.capacity() < count) elements.reserve(withSpare(count));
+}
+
 /// A growing array whose elements have no value until they are written: growing touches no new memory. In a fresh
 /// process, first writes to pages are most of what a first scan costs more than later ones. From 2 MiB on, the array
-/// takes whole huge pages, where the system gives them.
+/// lies in huge pages, where the system gives them; more than half of one is taken whole.
 template <typename T>
 class GrowingArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>, "elements are bytes");
@@ -44,6 +57,11 @@ class GrowingArray {
   T& operator[](std::size_t i) { return data_[i]; }
   const T& operator[](std::size_t i) const { return data_[i]; }
 
+  /// The same as grow (), for a size that grows step by step.
+  void growInSteps(std::size_t size) {
+    if (size > size_) grow(withSpare(size));
+  }
+
   /// Grows to a size, if it is below. Elements that are there keep their values, perhaps at another address.
   /// \throws std::bad_alloc, with nothing changed
   void grow(std::size_t size) {
@@ -54,13 +72,14 @@ class GrowingArray {
     if (bytes < kHugePage) {
       data = std::realloc(static_cast<void*>(data_), bytes);
     } else {
-      const std::size_t rounded = (bytes + kHugePage - 1) / kHugePage * kHugePage;
-      data = std::aligned_alloc(kHugePage, rounded);
+      const std::size_t rest = bytes % kHugePage;
+      const std::size_t rounded = rest > kHugePage / 2 ? bytes - rest + kHugePage : bytes;
+      if (posix_memalign(&data, kHugePage, rounded) != 0) throw std::bad_alloc();
 #ifdef MADV_HUGEPAGE
-      if (data != nullptr) madvise(data, rounded, MADV_HUGEPAGE);  // without huge pages, all is the same but slower
+      madvise(data, rounded, MADV_HUGEPAGE);  // without huge pages, all is the same but slower
 #endif
-      if (data != nullptr && size_ > 0) std::memcpy(data, static_cast<const void*>(data_), size_ * sizeof(T));
-      if (data != nullptr) std::free(data_);
+      if (size_ > 0) std::memcpy(data, static_cast<const void*>(data_), size_ * sizeof(T));
+      std::free(data_);
       size = rounded / sizeof(T);
     }
     if (data == nullptr) throw std::bad_alloc();

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/bits.h"
+#include "core/growing_array.h"
 
 namespace lisco {
 
@@ -22,7 +23,7 @@ void Runs::add(const RingBlock& block, RingBlockInfo& info, std::size_t laser, s
   const auto first_cell = static_cast<std::uint32_t>(source_index.size());
   const std::uint32_t end_run = first_run + countBits(info.starts);
   subclusters.grow(first_element + end_run);
-  if (end_run > runs.capacity()) runs.reserve(end_run + end_run / 8);  // or it would double
+  reserveInSteps(runs, end_run);
   runs.resize(end_run);
   source_index.insert(source_index.end(), block.source_index, block.source_index + columns);
   returns += countBits(info.returns);

@@ -2,15 +2,12 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "core/near/near_returns.h"
 
-#include <algorithm>
-
 #include "core/near/constants.h"
 
 namespace lisco {
 
 void NearReturns::add(const RingBlock& block, const RingBlockInfo& info, ColumnBits which) {
-  if (returns.size() < count + RingBlock::kColumns + kNearStep)
-    returns.grow(count + std::max(count / 8, 4 * RingBlock::kColumns));
+  returns.growInSteps(count + RingBlock::kColumns + kNearStep);
   const float* const x = block.x + RingBlock::kMargin;
   const float* const y = block.y + RingBlock::kMargin;
   const float* const z = block.z + RingBlock::kMargin;

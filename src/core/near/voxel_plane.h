@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -102,25 +101,18 @@ struct VoxelPlane {
 
   // The arrays grow by these, to what is in use and some more, with the elements that are there.
 
-  void reserveBricks(std::size_t count) { reserve(bricks, count); }
+  void reserveBricks(std::size_t count) { bricks.growInSteps(count); }
   void reserveVoxels(std::size_t count) {
-    if (first_point.size() >= count + kReadBehind) return;
+    count += kReadBehind;
+    if (first_point.size() >= count) return;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      reserve(lo[axis], count);
-      reserve(hi[axis], count);
+      lo[axis].growInSteps(count);
+      hi[axis].growInSteps(count);
     }
-    reserve(root, count);
-    reserve(first_point, count);
+    root.growInSteps(count);
+    first_point.growInSteps(count);
   }
-  void reservePoints(std::size_t count) { reserve(points, count); }
-
- private:
-  static constexpr std::size_t kMinGrowth = 128;  ///< elements
-
-  template <typename T>
-  static void reserve(GrowingArray<T>& array, std::size_t count) {
-    if (array.size() < count + kReadBehind) array.grow(count + std::max(count / 8, kMinGrowth) + kReadBehind);
-  }
+  void reservePoints(std::size_t count) { points.growInSteps(count + kReadBehind); }
 };
 
 /// The parts of an item, which is a key and a fragment's number, and the tolerance.
