@@ -33,13 +33,13 @@ Spent spend(const std::vector<std::size_t>& work_of_part, std::size_t parts_per_
     while (come < work_of_part.size() || done < come) {
       if (spent.per_column.size() % 64 == 0) {
         come = std::min(come + parts_per_block, work_of_part.size());
-        budget.plan(come - done);
+        budget.plan(come - done, 192);
         spent.most_left = std::max(spent.most_left, come - done);
       }
       budget.addColumns(1);
       std::size_t work = 0;
       for (; done < come && budget.isBehind(); ++done) {
-        budget.spend(work_of_part[done]);
+        budget.spend(work_of_part[done], 1);
         work += work_of_part[done];
       }
       spent.per_column.push_back(work);

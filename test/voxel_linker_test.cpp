@@ -240,6 +240,13 @@ class Probe {
     for (NearPart* one : {&voxels_, &others_}) lisco::VoxelLinker::markLinked(one->grid);
   }
 
+  /// Links within the voxels, as columns that follow do.
+  /// \param parts at most
+  void linkParts(std::size_t parts) {
+    for (; parts > 0 && lisco::VoxelLinker::bricksLeft(voxels_.grid) > 0; --parts)
+      EXPECT_GT(lisco::VoxelLinker::linkPart(voxels_.grid, subclusters_), 0U);
+  }
+
   /// By their numbers in the order of adding.
   bool joined(std::size_t a, std::size_t b) {
     return subclusters_.find(added_[a].run) == subclusters_.find(added_[b].run);
@@ -375,8 +382,10 @@ TEST_P(VoxelClouds, EqualTheOracle) {
     const std::array<double, 4> chances{0.0, 0.0, 0.2, 1.0};
     const double queries = random.oneOf(chances);
     const double apart = random.oneOf(chances);
+    const double in_parts = random.oneOf(chances);
     for (const auto& block : blocks) {
       probe.addBlock(block, ~std::uint64_t{0}, random.chance(apart));
+      if (random.chance(in_parts)) probe.linkParts(random.below(20));
       if (!random.chance(queries)) continue;
       probe.link();
       ASSERT_EQ(probe.wrong(tolerance), "") << "in between";

@@ -4,13 +4,24 @@
 
 namespace lisco {
 
+namespace {
+
+/// Columns over which the work that is left is spread: more make it more even and leave more for the end
+/// (benchmarks/suite.sh latency).
+constexpr std::size_t kSpreadOver = 192;
+/// The same shortly before the end.
+constexpr std::size_t kMinSpreadOver = 48;
+
+}  // namespace
+
 void BlockScheduler::begin(std::size_t block_columns) {
   block_columns_ = block_columns;
   staged_.clear();
   pending_.clear();
   pending_laser_ = columns_since_block_ = 0;
-  columns_read_ = 0;
-  budget_.begin();
+  columns_expected_ = std::exchange(columns_read_, 0);
+  far_budget_.begin();
+  near_budget_.begin();
 }
 
 void BlockScheduler::add(const CellSource& cells, std::size_t first, std::size_t count, std::size_t lasers,
@@ -21,8 +32,15 @@ void BlockScheduler::add(const CellSource& cells, std::size_t first, std::size_t
     std::swap(staged_, pending_);
     columns_since_block_ = 0;
   }
-  budget_.addColumns(count);
-  while (partition.farPartsLeft() > 0 && budget_.isBehind()) budget_.spend(partition.linkFarPart(subclusters));
+  far_budget_.addColumns(count);
+  near_budget_.addColumns(count);
+  while (partition.farPartsLeft() > 0 && far_budget_.isBehind())
+    far_budget_.spend(partition.linkFarPart(subclusters), 1);
+  for (std::size_t left = partition.nearPartsLeft(); left > 0 && near_budget_.isBehind();) {
+    const std::size_t work = partition.linkNearPart(subclusters);
+    near_budget_.spend(work, left - partition.nearPartsLeft());
+    left = partition.nearPartsLeft();
+  }
   readPending(count, partition, subclusters);
 }
 
@@ -38,7 +56,14 @@ void BlockScheduler::readPending(std::size_t columns, Partition& partition, Disj
   columns_read_ += static_cast<std::uint32_t>(pending_.columns());
   pending_.clear();
   partition.scheduleFar();
-  budget_.plan(partition.farPartsLeft());
+  far_budget_.plan(partition.farPartsLeft(), columnsToSpreadOver());
+  near_budget_.plan(partition.nearPartsLeft(), columnsToSpreadOver());
+}
+
+/// Towards the end of the rotation the work is spread over fewer columns, so that less is left for update ().
+std::size_t BlockScheduler::columnsToSpreadOver() const {
+  if (columns_expected_ <= columns_read_) return kSpreadOver;
+  return std::clamp<std::size_t>((columns_expected_ - columns_read_) / 2, kMinSpreadOver, kSpreadOver);
 }
 
 void BlockScheduler::finish(Partition& partition, DisjointSets& subclusters) {

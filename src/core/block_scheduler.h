@@ -22,25 +22,22 @@ class WorkBudget {
     work_ = kFirstGuess + work_ / 2;
     per_column_ = credit_ = 0;
   }
-  /// Sets the number of parts left from now on.
-  void plan(std::size_t parts) {
-    per_column_ = static_cast<double>(parts) * (work_ / parts_) / kSpreadOver;
+  /// Sets the number of parts left from now on, to be done in a number of columns.
+  void plan(std::size_t parts, std::size_t columns) {
+    per_column_ = static_cast<double>(parts) * (work_ / parts_) / static_cast<double>(columns);
     credit_ = std::min(credit_, 0.0);
   }
   void addColumns(std::size_t columns) { credit_ += per_column_ * static_cast<double>(columns); }
   /// Whether one more part should be done now.
   bool isBehind() const { return credit_ > 0; }
-  /// Records the work of a part, in any unit.
-  void spend(std::size_t work) {
+  /// Records work, in any unit, and the number of parts that it has completed.
+  void spend(std::size_t work, std::size_t parts) {
     credit_ -= static_cast<double>(work);
     work_ += static_cast<double>(work);
-    ++parts_;
+    parts_ += static_cast<double>(parts);
   }
 
  private:
-  /// Columns over which the work that is left is spread: more make it more even and leave more for the end
-  /// (benchmarks/suite.sh latency).
-  static constexpr double kSpreadOver = 192;
   static constexpr double kFirstGuess = 64;  ///< work of a part
   double parts_ = 0;
   double work_ = 0;  ///< of those parts
@@ -79,6 +76,7 @@ class BlockScheduler {
 
  private:
   void readPending(std::size_t columns, Partition& partition, DisjointSets& subclusters);
+  std::size_t columnsToSpreadOver() const;
 
   std::size_t block_columns_ = RingBlock::kColumns;
   ColumnBlock staged_;             ///< an incomplete block
@@ -86,7 +84,8 @@ class BlockScheduler {
   std::size_t pending_laser_ = 0;  ///< the next to be read
   std::size_t columns_since_block_ = 0;
   std::uint32_t columns_read_ = 0;
-  WorkBudget budget_;  ///< of linking
+  std::uint32_t columns_expected_ = 0;   ///< as many as the rotation before had
+  WorkBudget far_budget_, near_budget_;  ///< of linking
 };
 
 }  // namespace lisco

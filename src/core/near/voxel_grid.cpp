@@ -12,13 +12,18 @@ namespace lisco {
 
 namespace {
 
-constexpr std::size_t kMinSlots = 256;  // of the hash table: 1 KiB
+constexpr std::size_t kMinSlots = 256;  // of the hash table: 2 KiB
 
 std::uint32_t hashOf(const std::array<std::uint32_t, 3>& key) {
   // Teschner et al. 2003, with a final mix so that flat scenes use the whole table.
   std::uint32_t hash = key[0] * 73856093U ^ key[1] * 19349663U ^ key[2] * 83492791U;
   hash ^= hash >> 15;
   return hash;
+}
+
+/// Bricks above each other follow each other: those around one are in nine places of the hash table.
+std::uint32_t brickHashOf(const std::array<std::uint32_t, 3>& key) {
+  return hashOf({key[0], key[1], 0}) + key[2];
 }
 
 bool sameKey(const std::array<std::uint32_t, 3>& a, const std::array<std::uint32_t, 3>& b) {
@@ -37,14 +42,14 @@ void VoxelGrid::prepare(const Tolerance& new_tolerance) {
   bricks.clear();
   first_cliques.clear();
   new_bricks.clear();
+  linked_bricks = 0;
   filter.clear();
   recent_cliques_.fill({Key{}, kNone});
   all_in_float_range = true;
-  anything_linked = false;
   if (slots_.size() < kMinSlots)
-    slots_.assign(kMinSlots, kNone);
+    slots_.assign(kMinSlots, Slot());
   else
-    std::fill(slots_.begin(), slots_.end(), kNone);
+    std::fill(slots_.begin(), slots_.end(), Slot());
 }
 
 void VoxelGrid::add(const RingBlock& block, const RingBlockInfo& info, ColumnBits which, DisjointSets& subclusters) {
@@ -88,12 +93,7 @@ void VoxelGrid::add(const RingBlock& block, const RingBlockInfo& info, ColumnBit
 std::size_t VoxelGrid::newPoints(std::size_t count) {
   const std::size_t first = points_;
   points_ += count;
-  const std::size_t size = points_ + kReadBehind;
-  if (x.size() < size)
-    for (auto* coordinate : {&x, &y, &z}) {
-      coordinate->reserve(size + size / 4);  // or it would double
-      coordinate->resize(size + size / 4);
-    }
+  for (auto* coordinate : {&x, &y, &z}) coordinate->growInSteps(points_ + kReadBehind);
   return first;
 }
 
@@ -103,7 +103,7 @@ void VoxelGrid::addFragment(const Key& voxel, const Box& box, std::uint32_t frag
   RecentClique& recent = recent_cliques_[hashOf(voxel) % kRecentCliques];
   if (recent.clique != kNone && sameKey(recent.voxel, voxel)) {
     Clique& clique = cliques[recent.clique];
-    if (clique.is_new && Box::squaredSpan(clique.box, box) < tolerance.squared()) {
+    if (clique.state == State::kNew && Box::squaredSpan(clique.box, box) < tolerance.squared()) {
       addTo(clique, box, fragment, element, subclusters);
       return;
     }
@@ -124,7 +124,7 @@ void VoxelGrid::addFragment(const Key& voxel, const Box& box, std::uint32_t frag
     return;
   }
   const auto number = static_cast<std::uint32_t>(cliques.size());
-  cliques.push_back({box, element, fragment, first, true});
+  cliques.push_back({box, element, fragment, first, State::kNew});
   first = number;
   recent = {voxel, number};
 }
@@ -132,7 +132,7 @@ void VoxelGrid::addFragment(const Key& voxel, const Box& box, std::uint32_t frag
 void VoxelGrid::addTo(Clique& clique, const Box& box, std::uint32_t fragment, std::uint32_t element,
                       DisjointSets& subclusters) {
   clique.box.add(box);
-  clique.is_new = true;
+  clique.state = State::kNew;
   fragments[fragment].next_in_clique = clique.first_fragment;
   clique.first_fragment = fragment;
   if (clique.root != element) clique.root = subclusters.merge(clique.root, element);
@@ -140,15 +140,18 @@ void VoxelGrid::addTo(Clique& clique, const Box& box, std::uint32_t fragment, st
 
 std::uint32_t VoxelGrid::findBrick(const Key& key) const {
   const std::size_t mask = slots_.size() - 1;
-  for (std::size_t slot = hashOf(key) & mask;; slot = (slot + 1) & mask)
-    if (slots_[slot] == kNone || sameKey(bricks[slots_[slot]].key, key)) return slots_[slot];
+  const std::uint32_t hash = brickHashOf(key);
+  for (std::size_t i = hash & mask;; i = (i + 1) & mask) {
+    const Slot& slot = slots_[i];
+    if (slot.brick == kNone || (slot.hash == hash && sameKey(bricks[slot.brick].key, key))) return slot.brick;
+  }
 }
 
 std::uint32_t VoxelGrid::makeBrick(const Key& key) {
   const std::uint32_t found = findBrick(key);
   if (found != kNone) return found;
   const auto number = static_cast<std::uint32_t>(bricks.size());
-  bricks.push_back({key, 0, 0, kNone, 0, false});
+  bricks.push_back({key, 0, 0, kNone, 0, false, false});
   filter.add(key);
   if (2 * bricks.size() > slots_.size())
     rehash(2 * slots_.size());
@@ -158,16 +161,17 @@ std::uint32_t VoxelGrid::makeBrick(const Key& key) {
 }
 
 void VoxelGrid::rehash(std::size_t count) {
-  slots_.assign(count, kNone);
+  slots_.assign(count, Slot());
   for (std::size_t brick = 0; brick < bricks.size(); ++brick) takeSlot(static_cast<std::uint32_t>(brick));
 }
 
 /// Puts a brick that is not in the table where it is looked for.
 void VoxelGrid::takeSlot(std::uint32_t brick) {
   const std::size_t mask = slots_.size() - 1;
-  std::size_t slot = hashOf(bricks[brick].key) & mask;
-  while (slots_[slot] != kNone) slot = (slot + 1) & mask;
-  slots_[slot] = brick;
+  const std::uint32_t hash = brickHashOf(bricks[brick].key);
+  std::size_t slot = hash & mask;
+  while (slots_[slot].brick != kNone) slot = (slot + 1) & mask;
+  slots_[slot] = {hash, brick};
 }
 
 /// The first clique of a voxel, kNone if it is new. The list of a brick has one entry for each voxel in use, in the

@@ -9,6 +9,7 @@
 
 #include "core/bits.h"
 #include "core/disjoint_sets.h"
+#include "core/growing_array.h"
 #include "core/neighbour.h"
 #include "core/ring_block.h"
 
@@ -31,12 +32,17 @@ struct VoxelGrid {
     std::uint32_t count;
     std::uint32_t next_in_clique;
   };
+  enum class State : std::uint8_t {
+    kNew,     ///< part of it is not linked yet
+    kLinked,  ///< with the grid
+    kOld      ///< with other grids, too
+  };
   struct Clique {
     Box box;
     std::uint32_t root;            ///< of its subcluster, perhaps outdated
     std::uint32_t first_fragment;  ///< the newest
     std::uint32_t next_in_voxel;
-    bool is_new;  ///< part of it is not linked yet
+    State state;
   };
   struct Brick {
     Key key;
@@ -44,7 +50,8 @@ struct VoxelGrid {
     std::uint32_t capacity;  ///< of that list
     std::uint32_t root;      ///< common to all its cliques when they were last linked, perhaps outdated; kNone: several
     std::uint64_t occupied;  ///< bit i: voxel i
-    bool is_new;
+    bool is_new;             ///< holds new cliques
+    bool is_linked;          ///< holds others
   };
   /// A brick among the 27 around one.
   struct NearBrick {
@@ -96,15 +103,15 @@ struct VoxelGrid {
   void compactFragments(Clique& clique);
 
   Tolerance tolerance;
-  std::vector<float> x, y, z;  ///< of all points, and some capacity
+  GrowingArray<float> x, y, z;  ///< of all points, longer than what is in use
   std::vector<Fragment> fragments;
   std::vector<Clique> cliques;
   std::vector<Brick> bricks;
   std::vector<std::uint32_t> first_cliques;
-  std::vector<std::uint32_t> new_bricks;  ///< that hold new cliques
+  std::vector<std::uint32_t> new_bricks;  ///< in the order in which they became new, those that are linked first
+  std::size_t linked_bricks = 0;          ///< of the new ones
   BloomFilter filter;
   bool all_in_float_range = true;  ///< all voxels were numbered in float: their numbers do not wrap
-  bool anything_linked = false;
 
  private:
   /// The clique of a voxel that the latest fragment went to.
@@ -113,6 +120,11 @@ struct VoxelGrid {
     std::uint32_t clique;
   };
   static constexpr std::size_t kRecentCliques = 1024;
+  /// Of the hash table of bricks. The hash tells nearly all other bricks without a look at them.
+  struct Slot {
+    std::uint32_t hash = 0;
+    std::uint32_t brick = kNone;
+  };
 
   std::uint32_t makeBrick(const Key& key);
   void rehash(std::size_t count);
@@ -126,7 +138,7 @@ struct VoxelGrid {
   double voxels_per_metre_ = 1;
   bool in_float_range_ = false;  ///< voxels may be numbered in float
   std::size_t points_ = 0;
-  std::vector<std::uint32_t> slots_;                           ///< hash table of bricks
+  std::vector<Slot> slots_;
   std::array<RecentClique, kRecentCliques> recent_cliques_{};  ///< by the hash of the voxel
 };
 

@@ -15,10 +15,14 @@ using Brick = VoxelGrid::Brick;
 using Clique = VoxelGrid::Clique;
 using Fragment = VoxelGrid::Fragment;
 using NearBrick = VoxelGrid::NearBrick;
+using State = VoxelGrid::State;
 
 constexpr std::uint32_t kNone = VoxelGrid::kNone;
 /// Bits of a brick's number along an axis; those numbered in float have fewer.
 constexpr unsigned kOrderBits = 21;
+/// New cliques that are linked at a time: fewer spread the work of columns more evenly, more look for fewer bricks
+/// (benchmarks/suite.sh latency).
+constexpr std::size_t kCliquesOfPart = 4;
 
 /// Finds the bricks around one that are in use and wanted.
 /// \param wanted callable as bool (const Brick&)
@@ -26,13 +30,13 @@ template <typename Wanted>
 std::size_t findNear(const VoxelGrid& grid, const VoxelGrid::Key& key, NearBrick* near, Wanted&& wanted) {
   constexpr std::uint32_t kMask = VoxelGrid::kBrickMask;
   std::size_t count = 0;
-  for (std::size_t i = 0; i < kNearBricks; ++i) {
-    const auto step = [](std::size_t which) { return static_cast<std::uint32_t>(which) - 1U; };
-    const std::uint32_t number = grid.findBrick(
-        {(key[0] + step(i % 3)) & kMask, (key[1] + step(i / 3 % 3)) & kMask, (key[2] + step(i / 9)) & kMask});
-    if (number != kNone && wanted(grid.bricks[number]))
-      near[count++] = {i, grid.bricks[number].occupied, grid.bricks[number].cliques};
-  }
+  for (std::uint32_t pile = 0; pile < 9; ++pile)
+    for (std::uint32_t level = 0; level < 3; ++level) {
+      const std::uint32_t number = grid.findBrick(
+          {(key[0] + pile % 3 - 1) & kMask, (key[1] + pile / 3 - 1) & kMask, (key[2] + level - 1) & kMask});
+      if (number != kNone && wanted(grid.bricks[number]))
+        near[count++] = {9 * level + pile, grid.bricks[number].occupied, grid.bricks[number].cliques};
+    }
   return count;
 }
 
@@ -96,26 +100,47 @@ std::uint32_t commonRoot(VoxelGrid& grid, const Brick& brick, DisjointSets& subc
   return common ? root : kNone;
 }
 
-/// Links the new cliques of a brick with all cliques around them; each pair of new ones once. Bricks of one common
-/// root, which most are, are skipped as a whole.
-void linkNew(VoxelGrid& grid, const Brick& brick, DisjointSets& subclusters) {
+/// Links some new cliques of a brick with all around them that are linked already, so that each pair is compared once.
+/// Bricks of one common root, which most are, are skipped as a whole. The brick is new until all its cliques are linked.
+/// \return its work: comparisons, and bricks looked for
+std::size_t linkSome(VoxelGrid& grid, Brick& brick, DisjointSets& subclusters) {
+  struct {
+    std::size_t voxel;
+    std::uint32_t clique;
+  } chosen[kCliquesOfPart];
+  std::size_t chosen_count = 0;
+  brick.is_new = false;
+  grid.forEachClique(brick, [&](std::size_t voxel, std::uint32_t clique) {
+    if (grid.cliques[clique].state != State::kNew) return;
+    if (chosen_count < kCliquesOfPart)
+      chosen[chosen_count++] = {voxel, clique};
+    else
+      brick.is_new = true;
+  });
+  const std::uint32_t root = commonRoot(grid, brick, subclusters);
   NearBrick near[kNearBricks];
   const std::size_t count = findNear(grid, brick.key, near, [&](const Brick& other) {
-    if (brick.root == kNone || other.root == kNone) return true;
-    return subclusters.find(brick.root) != subclusters.find(other.root);
+    if (&other == &brick) return root == kNone;
+    if (!other.is_linked) return false;
+    return root == kNone || other.root == kNone || subclusters.find(root) != subclusters.find(other.root);
   });
-  if (count == 0) return;
-  grid.forEachClique(brick, [&](std::size_t voxel, std::uint32_t clique) {
-    if (!grid.cliques[clique].is_new) return;
+  std::size_t work = kNearBricks;
+  for (std::size_t i = 0; i < chosen_count; ++i) {
+    const auto [voxel, clique] = chosen[i];
     forEachAround(grid, voxel, near, count, ~std::uint64_t{0}, [&](std::uint32_t other) {
-      if (!grid.cliques[other].is_new || other < clique) linkIfNeighbours(grid, clique, other, subclusters);
+      if (grid.cliques[other].state == State::kNew) return;
+      linkIfNeighbours(grid, clique, other, subclusters);
+      ++work;
     });
-  });
+    grid.cliques[clique].state = State::kLinked;
+  }
+  brick.is_linked = true;
+  brick.root = brick.is_new ? kNone : root != kNone ? root : commonRoot(grid, brick, subclusters);
+  return work;
 }
 
 /// Links all cliques of a brick with those that come after them, there and in the bricks given.
-void linkBrick(VoxelGrid& grid, const Brick& brick, const NearBrick* near, std::size_t count,
-               DisjointSets& subclusters) {
+void linkAll(VoxelGrid& grid, const Brick& brick, const NearBrick* near, std::size_t count, DisjointSets& subclusters) {
   std::uint32_t rank = 0;
   for (std::uint64_t left = brick.occupied; left != 0; left &= left - 1, ++rank) {
     const auto voxel = static_cast<std::size_t>(__builtin_ctzll(left));
@@ -136,7 +161,7 @@ void linkBrickTo(VoxelGrid& grid, const Brick& brick, VoxelGrid& other, VoxelLin
   bool searched = false;
   grid.forEachClique(brick, [&](std::size_t voxel, std::uint32_t number) {
     Clique& own = grid.cliques[number];
-    if ((part == VoxelLinker::Part::kNew && !own.is_new) || !visitor.reaches(own.box)) return;
+    if ((part == VoxelLinker::Part::kNew && own.state == State::kOld) || !visitor.reaches(own.box)) return;
     if (!searched)
       count = findNear(other, brick.key, near, [&](const Brick& others) {
         return brick.root == kNone || others.root == kNone || visitor.inDifferentSets(brick.root, others.root);
@@ -154,23 +179,27 @@ void linkBrickTo(VoxelGrid& grid, const Brick& brick, VoxelGrid& other, VoxelLin
 }  // namespace
 
 void VoxelLinker::link(VoxelGrid& grid, DisjointSets& subclusters) {
-  if (!grid.anything_linked && grid.all_in_float_range) {
-    linkInOrder(grid, subclusters);
-  } else {
-    for (const std::uint32_t brick : grid.new_bricks)
-      grid.bricks[brick].root = commonRoot(grid, grid.bricks[brick], subclusters);
-    for (const std::uint32_t brick : grid.new_bricks) linkNew(grid, grid.bricks[brick], subclusters);
-  }
+  const bool all_new = grid.linked_bricks == 0 && grid.new_bricks.size() == grid.bricks.size();
+  if (all_new && grid.all_in_float_range) linkInOrder(grid, subclusters);
+  while (bricksLeft(grid) > 0) linkPart(grid, subclusters);
+}
+
+std::size_t VoxelLinker::linkPart(VoxelGrid& grid, DisjointSets& subclusters) {
+  Brick& brick = grid.bricks[grid.new_bricks[grid.linked_bricks]];
+  const std::size_t work = linkSome(grid, brick, subclusters);
+  if (!brick.is_new) ++grid.linked_bricks;
+  return work;
 }
 
 void VoxelLinker::markLinked(VoxelGrid& grid) {
-  for (const std::uint32_t brick : grid.new_bricks) {
-    grid.bricks[brick].is_new = false;
-    grid.forEachClique(grid.bricks[brick],
-                       [&](std::size_t, std::uint32_t clique) { grid.cliques[clique].is_new = false; });
+  for (const std::uint32_t number : grid.new_bricks) {
+    Brick& brick = grid.bricks[number];
+    brick.is_new = false;
+    brick.is_linked = true;
+    grid.forEachClique(brick, [&](std::size_t, std::uint32_t clique) { grid.cliques[clique].state = State::kOld; });
   }
-  grid.anything_linked = grid.anything_linked || !grid.new_bricks.empty();
   grid.new_bricks.clear();
+  grid.linked_bricks = 0;
 }
 
 /// Links all with all. Bricks are sorted by z, y and x: the bricks around one are found by cursors in its own and four
@@ -212,8 +241,15 @@ void VoxelLinker::linkInOrder(VoxelGrid& grid, DisjointSets& subclusters) {
       for (std::size_t k = at; k < ordered_.size() && ordered_[k].number <= first + 2; ++k)
         add(kFirstMask[row] + static_cast<std::size_t>(ordered_[k].number - first), ordered_[k]);
     }
-    linkBrick(grid, grid.bricks[own.brick], near, count, subclusters);
+    linkAll(grid, grid.bricks[own.brick], near, count, subclusters);
   }
+  for (Clique& clique : grid.cliques) clique.state = State::kLinked;
+  for (Brick& brick : grid.bricks) {
+    brick.is_new = false;
+    brick.is_linked = true;
+    brick.root = kNone;  // that of before is not common to what was new
+  }
+  grid.linked_bricks = grid.new_bricks.size();
 }
 
 void VoxelLinker::linkTo(VoxelGrid& grid, VoxelGrid& other, Part part, PairVisitor& visitor) {

@@ -28,7 +28,12 @@ class VoxelLinker {
   /// Links what is new in the grid with all of it.
   void link(VoxelGrid& grid, DisjointSets& subclusters);
 
-  /// Marks all that is in the grid as linked: no longer new.
+  /// The same part by part, which takes longer: number of bricks that are left, of one part or more.
+  static std::size_t bricksLeft(const VoxelGrid& grid) { return grid.new_bricks.size() - grid.linked_bricks; }
+  /// Links a part of what became new first. \return its work
+  static std::size_t linkPart(VoxelGrid& grid, DisjointSets& subclusters);
+
+  /// Marks all that is in the grid as linked, with other grids, too: no longer new.
   static void markLinked(VoxelGrid& grid);
 
   enum class Part { kAll, kNew };
