@@ -235,8 +235,8 @@ HWY_EXPORT(linkAcross);
 /// \param sizeOf callable as std::size_t (std::uint64_t item): number of its returns
 /// \tparam kStep returns that are copied together, see kNearStep
 template <std::size_t kStep, typename ReturnOf, typename SizeOf>
-void fill(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, std::size_t following,
-          const PlaneLayout& layout, DisjointSets& subclusters, ReturnOf&& returnOf, SizeOf&& sizeOf) {
+void fill(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,
+          DisjointSets& subclusters, ReturnOf&& returnOf, SizeOf&& sizeOf) {
   const std::uint64_t brick_mask = (std::uint64_t{1} << layout.brick_bits) - 1;
   VoxelPlane::Brick* brick = nullptr;
   std::size_t bricks = 0;
@@ -257,9 +257,8 @@ void fill(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, std:
     plane.first_point[voxel] = static_cast<std::uint32_t>(points);
     do {
       // In unordered clouds, returns and their sets are scattered in memory.
-      const std::size_t left = count + following - i;
-      if (left > kPrefetch) __builtin_prefetch(returnOf(items[i + kPrefetch]));
-      if (left > kPrefetch / 2) subclusters.prefetch(returnOf(items[i + kPrefetch / 2])->element);
+      __builtin_prefetch(returnOf(items[i + kPrefetch]));
+      subclusters.prefetch(returnOf(items[i + kPrefetch / 2])->element);
       near = returnOf(items[i]);
       root = subclusters.add(root, near->element);
       const std::size_t size = sizeOf(items[i]);
@@ -291,8 +290,8 @@ void fill(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, std:
 
 }  // namespace
 
-void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, std::size_t following,
-               const PlaneLayout& layout, const FragmentList& fragments, DisjointSets& subclusters) {
+void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,
+               const FragmentList& fragments, DisjointSets& subclusters) {
   const std::uint64_t number_mask = (std::uint64_t{1} << layout.number_bits) - 1;
   const auto numberOf = [&](std::uint64_t item) { return static_cast<std::size_t>(item & number_mask); };
   const NearReturn* const first_part = fragments.parts.front().near->returns.data();
@@ -303,10 +302,10 @@ void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
   };
   const auto sizeOf = [&](std::uint64_t item) { return fragments.endOf(numberOf(item)) - numberOf(item); };
   const auto fillFrom = [&](auto&& returnOf) {
-    if (fragments.are_short)
-      fill<1>(plane, items, count, following, layout, subclusters, returnOf, sizeOf);
+    if (fragments.are_single)
+      fill<1>(plane, items, count, layout, subclusters, returnOf, [](std::uint64_t) { return std::size_t{1}; });
     else
-      fill<kNearStep>(plane, items, count, following, layout, subclusters, returnOf, sizeOf);
+      fill<kNearStep>(plane, items, count, layout, subclusters, returnOf, sizeOf);
   };
   if (fragments.parts.size() == 1)
     fillFrom(inFirstPart);

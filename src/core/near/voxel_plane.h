@@ -24,7 +24,7 @@ struct FragmentList {
   };
   std::vector<Part> parts;
   std::vector<std::uint64_t> starts;  ///< bit i: return i begins a fragment, or is the end of a part
-  bool are_short = false;             ///< most have one return, as in unordered clouds
+  bool are_single = false;            ///< each return is a fragment, as in unordered clouds; starts are not in use
 
   const Part& partOf(std::size_t number) const {
     std::size_t part = parts.size() - 1;
@@ -124,9 +124,9 @@ struct PlaneLayout {
 };
 
 /// Fills a plane with sorted fragments and joins the runs of each voxel.
-/// \param following items behind these, soon to be filled in
-void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, std::size_t following,
-               const PlaneLayout& layout, const FragmentList& fragments, DisjointSets& subclusters);
+/// \param items may be read up to kPrefetch behind the last
+void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,
+               const FragmentList& fragments, DisjointSets& subclusters);
 
 /// Joins neighbours within a plane.
 void linkPlane(VoxelPlane& plane, const PlaneLayout& layout, DisjointSets& subclusters);

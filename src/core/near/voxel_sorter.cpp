@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "core/bits.h"
@@ -99,6 +98,7 @@ HWY_INLINE std::uint64_t changes(const std::uint64_t* keys, const std::uint32_t*
 }
 
 /// Cuts a part's returns into fragments. \return the number of fragments
+/// \param starts nullptr: each return is a fragment
 std::size_t cutPart(const VoxelNumbering& numbering, unsigned number_bits, const FragmentList::Part& part,
                     std::uint64_t* starts, std::uint64_t* items) {
   float coordinates[3][kBatch];
@@ -119,12 +119,15 @@ std::size_t cutPart(const VoxelNumbering& numbering, unsigned number_bits, const
       const std::size_t axis = numbering.axis[i];
       addToKeys(coordinates[axis], numbering.corner[axis], numbering.per_metre, brick_shifts[i], 2 * i, keys + 1);
     }
-    const std::uint64_t starts_here = changes(keys + 1, elements + 1) & ~bitsFrom(size);
     std::uint64_t items_here[kBatch];
-    for (std::size_t i = 0; i < kBatch; ++i) items_here[i] = keys[1 + i] << number_bits | (part.first + batch + i);
+    std::uint64_t* const all = starts == nullptr ? items + batch : items_here;
+    for (std::size_t i = 0; i < kBatch; ++i) all[i] = keys[1 + i] << number_bits | (part.first + batch + i);
+    if (starts == nullptr) continue;
+    const std::uint64_t starts_here = changes(keys + 1, elements + 1) & ~bitsFrom(size);
     forEachBit(starts_here, [&](std::size_t i) { items[count++] = items_here[i]; });
     starts[batch / kBatch] = starts_here;
   }
+  if (starts == nullptr) return part.near->count;
   const std::size_t end = part.near->count;
   if (end % kBatch == 0) starts[end / kBatch] = 0;  // a word that no batch has written
   starts[end / kBatch] |= std::uint64_t{1} << end % kBatch;
@@ -165,6 +168,7 @@ bool VoxelSorter::link(const std::vector<const NearReturns*>& parts, const Toler
   divide();
   if (planes_.size() < 2 * slabs_.size()) planes_.resize(2 * slabs_.size());
   inParallel(slabs_.size(), [&](std::size_t slab) { sort(slabs_[slab]); });
+  std::fill_n(&items_[slabs_.back().end], kPrefetch, 0);
   subclusters.share(slabs_.size() > 1);
   inParallel(slabs_.size(), [&](std::size_t slab) { linkSlab(slab, tolerance, subclusters); });
   subclusters.share(false);
@@ -210,19 +214,29 @@ bool VoxelSorter::number(const Tolerance& tolerance) {
 void VoxelSorter::cutFragments() {
   const FragmentList::Part& last = fragments_.parts.back();
   const std::size_t size = (last.first / 64 + last.near->count / 64 + 1) * 64;
-  items_.grow(size);
-  scratch_.grow(size);
-  if (fragments_.starts.size() < size / 64) fragments_.starts.resize(size / 64);
+  items_.grow(size + kPrefetch);
+  scratch_.grow(size + kPrefetch);
+  fragments_.are_single = areSingle();
+  if (!fragments_.are_single && fragments_.starts.size() < size / 64) fragments_.starts.resize(size / 64);
   part_sizes_.resize(fragments_.parts.size());
   inParallel(fragments_.parts.size(), [&](std::size_t i) {
     const FragmentList::Part& part = fragments_.parts[i];
-    part_sizes_[i] = HWY_DYNAMIC_DISPATCH(cutPart)(numbering_, number_bits_, part, &fragments_.starts[part.first / 64],
-                                                   &items_[part.first]);
+    std::uint64_t* const starts = fragments_.are_single ? nullptr : &fragments_.starts[part.first / 64];
+    part_sizes_[i] = HWY_DYNAMIC_DISPATCH(cutPart)(numbering_, number_bits_, part, starts, &items_[part.first]);
   });
-  std::size_t returns = 0;
-  for (const FragmentList::Part& part : fragments_.parts) returns += part.near->count;
-  const auto fragments = std::accumulate(part_sizes_.begin(), part_sizes_.end(), std::size_t{0});
-  fragments_.are_short = static_cast<double>(returns) < kShortFragments * static_cast<double>(fragments);
+}
+
+/// Whether most returns are the only ones of their runs, in a sample.
+bool VoxelSorter::areSingle() const {
+  constexpr std::size_t kSampled = 61;  // one in this many
+  std::size_t sampled = 0;
+  std::size_t runs = 0;
+  for (const FragmentList::Part& part : fragments_.parts) {
+    const NearReturn* const returns = part.near->returns.data();
+    for (std::size_t i = 1; i < part.near->count; i += kSampled, ++sampled)
+      runs += returns[i].element != returns[i - 1].element ? 1 : 0;
+  }
+  return static_cast<double>(runs) > kManyRuns * static_cast<double>(sampled);
 }
 
 /// Moves the fragments of each slab of planes together: slabs of about equal work, one for each part.
@@ -309,7 +323,7 @@ void VoxelSorter::linkSlab(std::size_t slab, const Tolerance& tolerance, Disjoin
     const bool is_own = begin < slabs_[slab].end;
     if (!is_own && number != last_number + 1) return;
     const std::size_t end = endOfPlane(begin, end_of_all);
-    fillPlane(*plane, &items_[begin], end - begin, end_of_all - end, layout, fragments_, subclusters);
+    fillPlane(*plane, &items_[begin], end - begin, layout, fragments_, subclusters);
     if (is_own) linkPlane(*plane, layout, subclusters);
     if (number == last_number + 1) linkPlanes(*last, *plane, layout, subclusters);
     if (!is_own) return;

@@ -45,6 +45,7 @@ class VoxelSorter {
 
   bool number(const Tolerance& tolerance);
   void cutFragments();
+  bool areSingle() const;
   void divide();
   void sort(const Slab& slab);
   void linkSlab(std::size_t slab, const Tolerance& tolerance, DisjointSets& subclusters);
