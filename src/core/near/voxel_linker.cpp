@@ -101,7 +101,8 @@ std::uint32_t commonRoot(VoxelGrid& grid, const Brick& brick, DisjointSets& subc
 }
 
 /// Links some new cliques of a brick with all around them that are linked already, so that each pair is compared once.
-/// Bricks of one common root, which most are, are skipped as a whole. The brick is new until all its cliques are linked.
+/// Bricks of one common root, which most are, are skipped as a whole. The brick is new until all its cliques are
+/// linked.
 /// \return its work: comparisons, and bricks looked for
 std::size_t linkSome(VoxelGrid& grid, Brick& brick, DisjointSets& subclusters) {
   struct {
@@ -126,8 +127,8 @@ std::size_t linkSome(VoxelGrid& grid, Brick& brick, DisjointSets& subclusters) {
   });
   std::size_t work = kNearBricks;
   for (std::size_t i = 0; i < chosen_count; ++i) {
-    const auto [voxel, clique] = chosen[i];
-    forEachAround(grid, voxel, near, count, ~std::uint64_t{0}, [&](std::uint32_t other) {
+    const std::uint32_t clique = chosen[i].clique;
+    forEachAround(grid, chosen[i].voxel, near, count, ~std::uint64_t{0}, [&](std::uint32_t other) {
       if (grid.cliques[other].state == State::kNew) return;
       linkIfNeighbours(grid, clique, other, subclusters);
       ++work;
