@@ -78,7 +78,8 @@ class Distributed:
         self._patience = patience
         self._cluster: Any = None
         self._client: Any = None
-        logging.getLogger("distributed").setLevel(logging.CRITICAL)
+        for name in ("distributed", "asyncio"):  # the latter reports Dask's futures that time out when a run ends early
+            logging.getLogger(name).setLevel(logging.CRITICAL)
         if address is None:
             dask.config.set(self._OBSERVATION)
             if dask.config.get("distributed.scheduler.worker-ttl") == "5 minutes":
