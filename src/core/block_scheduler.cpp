@@ -33,7 +33,7 @@ void BlockScheduler::add(const CellSource& cells, std::size_t first, std::size_t
     columns_since_block_ = 0;
   }
   far_budget_.addColumns(count);
-  near_budget_.addColumns(count);
+  if (partition.nearPartsLeft() > 0) near_budget_.addColumns(count);
   while (partition.farPartsLeft() > 0 && far_budget_.isBehind())
     far_budget_.spend(partition.linkFarPart(subclusters), 1);
   for (std::size_t left = partition.nearPartsLeft(); left > 0 && near_budget_.isBehind();) {

@@ -21,9 +21,9 @@ std::uint32_t hashOf(const std::array<std::uint32_t, 3>& key) {
   return hash;
 }
 
-/// Bricks above each other follow each other: those around one are in nine places of the hash table.
+/// Up to four bricks above each other follow each other: those around one are in few places of the hash table.
 std::uint32_t brickHashOf(const std::array<std::uint32_t, 3>& key) {
-  return hashOf({key[0], key[1], 0}) + key[2];
+  return hashOf({key[0], key[1], key[2] / 4}) + key[2] % 4;
 }
 
 bool sameKey(const std::array<std::uint32_t, 3>& a, const std::array<std::uint32_t, 3>& b) {

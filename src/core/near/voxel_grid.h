@@ -34,8 +34,8 @@ struct VoxelGrid {
   };
   enum class State : std::uint8_t {
     kNew,     ///< part of it is not linked yet
-    kLinked,  ///< with the grid
-    kOld      ///< with other grids, too
+    kLinked,  ///< linked with the cliques of the grid
+    kOld      ///< linked with those of other grids, too
   };
   struct Clique {
     Box box;
@@ -51,7 +51,7 @@ struct VoxelGrid {
     std::uint32_t root;      ///< common to all its cliques when they were last linked, perhaps outdated; kNone: several
     std::uint64_t occupied;  ///< bit i: voxel i
     bool is_new;             ///< holds new cliques
-    bool is_linked;          ///< holds others
+    bool is_linked;          ///< some of its cliques were linked
   };
   /// A brick among the 27 around one.
   struct NearBrick {
@@ -108,8 +108,8 @@ struct VoxelGrid {
   std::vector<Clique> cliques;
   std::vector<Brick> bricks;
   std::vector<std::uint32_t> first_cliques;
-  std::vector<std::uint32_t> new_bricks;  ///< in the order in which they became new, those that are linked first
-  std::size_t linked_bricks = 0;          ///< of the new ones
+  std::vector<std::uint32_t> new_bricks;  ///< in the order in which they became new, some perhaps again
+  std::size_t linked_bricks = 0;          ///< how many of these, the first ones, are linked
   BloomFilter filter;
   bool all_in_float_range = true;  ///< all voxels were numbered in float: their numbers do not wrap
 
@@ -120,7 +120,7 @@ struct VoxelGrid {
     std::uint32_t clique;
   };
   static constexpr std::size_t kRecentCliques = 1024;
-  /// Of the hash table of bricks. The hash tells nearly all other bricks without a look at them.
+  /// Of the hash table of bricks. The hash rules out nearly all other bricks without reading them.
   struct Slot {
     std::uint32_t hash = 0;
     std::uint32_t brick = kNone;

@@ -20,7 +20,7 @@ using State = VoxelGrid::State;
 constexpr std::uint32_t kNone = VoxelGrid::kNone;
 /// Bits of a brick's number along an axis; those numbered in float have fewer.
 constexpr unsigned kOrderBits = 21;
-/// New cliques that are linked at a time: fewer spread the work of columns more evenly, more look for fewer bricks
+/// New cliques that are linked at a time: fewer spread the work of columns more evenly, more need fewer look-ups
 /// (benchmarks/suite.sh latency).
 constexpr std::size_t kCliquesOfPart = 4;
 
@@ -100,24 +100,11 @@ std::uint32_t commonRoot(VoxelGrid& grid, const Brick& brick, DisjointSets& subc
   return common ? root : kNone;
 }
 
-/// Links some new cliques of a brick with all around them that are linked already, so that each pair is compared once.
-/// Bricks of one common root, which most are, are skipped as a whole. The brick is new until all its cliques are
-/// linked.
+/// Links new cliques of a brick with all around them that are linked already, so that each pair is compared once. Bricks
+/// of one common root, which most are, are skipped as a whole. The brick is new until all its cliques are linked.
+/// \param most number of cliques, at most
 /// \return its work: comparisons, and bricks looked for
-std::size_t linkSome(VoxelGrid& grid, Brick& brick, DisjointSets& subclusters) {
-  struct {
-    std::size_t voxel;
-    std::uint32_t clique;
-  } chosen[kCliquesOfPart];
-  std::size_t chosen_count = 0;
-  brick.is_new = false;
-  grid.forEachClique(brick, [&](std::size_t voxel, std::uint32_t clique) {
-    if (grid.cliques[clique].state != State::kNew) return;
-    if (chosen_count < kCliquesOfPart)
-      chosen[chosen_count++] = {voxel, clique};
-    else
-      brick.is_new = true;
-  });
+std::size_t linkSome(VoxelGrid& grid, Brick& brick, std::size_t most, DisjointSets& subclusters) {
   const std::uint32_t root = commonRoot(grid, brick, subclusters);
   NearBrick near[kNearBricks];
   const std::size_t count = findNear(grid, brick.key, near, [&](const Brick& other) {
@@ -126,15 +113,21 @@ std::size_t linkSome(VoxelGrid& grid, Brick& brick, DisjointSets& subclusters) {
     return root == kNone || other.root == kNone || subclusters.find(root) != subclusters.find(other.root);
   });
   std::size_t work = kNearBricks;
-  for (std::size_t i = 0; i < chosen_count; ++i) {
-    const std::uint32_t clique = chosen[i].clique;
-    forEachAround(grid, chosen[i].voxel, near, count, ~std::uint64_t{0}, [&](std::uint32_t other) {
+  brick.is_new = false;
+  grid.forEachClique(brick, [&](std::size_t voxel, std::uint32_t clique) {
+    if (grid.cliques[clique].state != State::kNew) return;
+    if (most == 0) {
+      brick.is_new = true;
+      return;
+    }
+    --most;
+    forEachAround(grid, voxel, near, count, ~std::uint64_t{0}, [&](std::uint32_t other) {
       if (grid.cliques[other].state == State::kNew) return;
       linkIfNeighbours(grid, clique, other, subclusters);
       ++work;
     });
     grid.cliques[clique].state = State::kLinked;
-  }
+  });
   brick.is_linked = true;
   brick.root = brick.is_new ? kNone : root != kNone ? root : commonRoot(grid, brick, subclusters);
   return work;
@@ -177,24 +170,31 @@ void linkBrickTo(VoxelGrid& grid, const Brick& brick, VoxelGrid& other, VoxelLin
   });
 }
 
+/// Links new cliques of the first brick that has any.
+std::size_t linkNext(VoxelGrid& grid, std::size_t most, DisjointSets& subclusters) {
+  Brick& brick = grid.bricks[grid.new_bricks[grid.linked_bricks]];
+  const std::size_t work = linkSome(grid, brick, most, subclusters);
+  if (!brick.is_new) ++grid.linked_bricks;
+  return work;
+}
+
 }  // namespace
 
 void VoxelLinker::link(VoxelGrid& grid, DisjointSets& subclusters) {
-  const bool all_new = grid.linked_bricks == 0 && grid.new_bricks.size() == grid.bricks.size();
+  // The first brick is the first to be linked.
+  const bool all_new = !grid.bricks.empty() && !grid.bricks.front().is_linked;
   if (all_new && grid.all_in_float_range) linkInOrder(grid, subclusters);
-  while (bricksLeft(grid) > 0) linkPart(grid, subclusters);
+  while (bricksLeft(grid) > 0) linkNext(grid, ~std::size_t{0}, subclusters);
 }
 
 std::size_t VoxelLinker::linkPart(VoxelGrid& grid, DisjointSets& subclusters) {
-  Brick& brick = grid.bricks[grid.new_bricks[grid.linked_bricks]];
-  const std::size_t work = linkSome(grid, brick, subclusters);
-  if (!brick.is_new) ++grid.linked_bricks;
-  return work;
+  return linkNext(grid, kCliquesOfPart, subclusters);
 }
 
 void VoxelLinker::markLinked(VoxelGrid& grid) {
   for (const std::uint32_t number : grid.new_bricks) {
     Brick& brick = grid.bricks[number];
+    if (brick.is_new) brick.root = kNone;
     brick.is_new = false;
     brick.is_linked = true;
     grid.forEachClique(brick, [&](std::size_t, std::uint32_t clique) { grid.cliques[clique].state = State::kOld; });
@@ -248,7 +248,7 @@ void VoxelLinker::linkInOrder(VoxelGrid& grid, DisjointSets& subclusters) {
   for (Brick& brick : grid.bricks) {
     brick.is_new = false;
     brick.is_linked = true;
-    brick.root = kNone;  // that of before is not common to what was new
+    brick.root = kNone;  // the old root need not be that of the cliques linked now
   }
   grid.linked_bricks = grid.new_bricks.size();
 }

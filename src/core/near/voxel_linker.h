@@ -28,15 +28,15 @@ class VoxelLinker {
   /// Links what is new in the grid with all of it.
   void link(VoxelGrid& grid, DisjointSets& subclusters);
 
-  /// The same part by part, which takes longer: number of bricks that are left, of one part or more.
+  /// The same part by part, which takes longer: number of bricks with new cliques, of one part or more each.
   static std::size_t bricksLeft(const VoxelGrid& grid) { return grid.new_bricks.size() - grid.linked_bricks; }
-  /// Links a part of what became new first. \return its work
+  /// Links a few new cliques of the first such brick; there must be one. \return its work
   static std::size_t linkPart(VoxelGrid& grid, DisjointSets& subclusters);
 
   /// Marks all that is in the grid as linked, with other grids, too: no longer new.
   static void markLinked(VoxelGrid& grid);
 
-  enum class Part { kAll, kNew };
+  enum class Part { kAll, kNew };  ///< new: VoxelGrid::State but kOld
   /// Links a part of a grid with all of another one of the same tolerance. Both are linked within.
   static void linkTo(VoxelGrid& grid, VoxelGrid& other, Part part, PairVisitor& visitor);
 

@@ -226,7 +226,7 @@ void VoxelSorter::cutFragments() {
   });
 }
 
-/// Whether most returns are the only ones of their runs, in a sample.
+/// Whether most returns begin a run, in a sample.
 bool VoxelSorter::areSingle() const {
   constexpr std::size_t kSampled = 61;  // one in this many
   std::size_t sampled = 0;
