@@ -36,7 +36,8 @@ inline constexpr unsigned kDigitBits = 11;
 /// Share of returns that begin a run, above which each return is a fragment: finding longer ones takes more than it
 /// saves.
 inline constexpr double kManyRuns = 0.8;
-/// Fragments between a prefetch and its use, which must be readable behind the last: measured on shuffled clouds, flat from 16 to 64.
+/// Fragments between a prefetch and its use, and readable behind the last: measured on shuffled clouds, flat from 16 to
+/// 64.
 inline constexpr std::size_t kPrefetch = 32;
 
 }  // namespace lisco

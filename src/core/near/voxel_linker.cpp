@@ -100,8 +100,9 @@ std::uint32_t commonRoot(VoxelGrid& grid, const Brick& brick, DisjointSets& subc
   return common ? root : kNone;
 }
 
-/// Links new cliques of a brick with all around them that are linked already, so that each pair is compared once. Bricks
-/// of one common root, which most are, are skipped as a whole. The brick is new until all its cliques are linked.
+/// Links new cliques of a brick with all around them that are linked already, so that each pair is compared once.
+/// Bricks of one common root, which most are, are skipped as a whole. The brick is new until all its cliques are
+/// linked.
 /// \param most number of cliques, at most
 /// \return its work: comparisons, and bricks looked for
 std::size_t linkSome(VoxelGrid& grid, Brick& brick, std::size_t most, DisjointSets& subclusters) {
