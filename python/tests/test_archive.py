@@ -183,6 +183,18 @@ def test_a_killed_run_goes_on_where_it_stopped(scans, serial, tmp_path):
     assert_identical(serial, out)
 
 
+def test_what_killed_workers_left_is_removed(scans, serial, tmp_path):
+    out = tmp_path / "out"
+    assert run(scans, out, "--workers", "0").returncode == 0
+    (out / "pieces" / "00000099.tmp").mkdir()
+    for left in ("pieces/00000099.tmp/labels.npz.tmp", "pieces/lone.tmp"):
+        (out / left).write_bytes(b"cut off")
+    done = run(scans, out, "--workers", "0")
+    assert done.returncode == 0, done.stderr
+    assert not list(out.rglob("*.tmp"))
+    assert_identical(serial, out)
+
+
 def test_a_run_started_twice_is_refused(scans, serial, tmp_path):
     out = tmp_path / "out"
     process = start(scans, out, "--workers", "0")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A run over an archive: what is missing is made, then the table is merged."""
 
+import contextlib
 import fcntl
 import glob
 import json
@@ -187,4 +188,5 @@ def _remove_temporary(out: str) -> None:
         if os.path.isdir(path):
             shutil.rmtree(path, ignore_errors=True)
         else:
-            os.remove(path)
+            with contextlib.suppress(FileNotFoundError):  # was in a folder that is gone already
+                os.remove(path)
