@@ -475,6 +475,7 @@ TEST(VoxelLinker, JoinsWhereNumbersWrap) {
       if (cells.size() < 64) continue;
       probe.addBlock(cells);
       cells.clear();
+      if (random.chance(0.5)) probe.linkParts(random.below(20));
       if (random.chance(0.3)) probe.link();
     }
     probe.link();
@@ -540,6 +541,7 @@ TEST(VoxelLinker, FindsAllVoxelsOfABrick) {
       const int voxel = order[i];
       const auto inside = [&](int number) { return static_cast<float>(side * (number + shift)); };
       probe.add({inside((voxel & 3) + (voxel >> 6) * 8), inside(voxel >> 2 & 3), inside(voxel >> 4 & 3)});
+      if (random.chance(0.2)) probe.linkParts(random.below(3));
       if (seed % 3 == 0 || i == 100) {
         probe.link();
         ASSERT_EQ(probe.wrong(kTolerance), "") << i;

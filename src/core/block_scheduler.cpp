@@ -33,13 +33,13 @@ void BlockScheduler::add(const CellSource& cells, std::size_t first, std::size_t
     columns_since_block_ = 0;
   }
   far_budget_.addColumns(count);
-  if (partition.nearPartsLeft() > 0) near_budget_.addColumns(count);
+  if (partition.nearBricksLeft() > 0) near_budget_.addColumns(count);
   while (partition.farPartsLeft() > 0 && far_budget_.isBehind())
     far_budget_.spend(partition.linkFarPart(subclusters), 1);
-  for (std::size_t left = partition.nearPartsLeft(); left > 0 && near_budget_.isBehind();) {
+  for (std::size_t left = partition.nearBricksLeft(); left > 0 && near_budget_.isBehind();) {
     const std::size_t work = partition.linkNearPart(subclusters);
-    near_budget_.spend(work, left - partition.nearPartsLeft());
-    left = partition.nearPartsLeft();
+    near_budget_.spend(work, left - partition.nearBricksLeft());
+    left = partition.nearBricksLeft();
   }
   readPending(count, partition, subclusters);
 }
@@ -57,7 +57,7 @@ void BlockScheduler::readPending(std::size_t columns, Partition& partition, Disj
   pending_.clear();
   partition.scheduleFar();
   far_budget_.plan(partition.farPartsLeft(), columnsToSpreadOver());
-  near_budget_.plan(partition.nearPartsLeft(), columnsToSpreadOver());
+  near_budget_.plan(partition.nearBricksLeft(), columnsToSpreadOver());
 }
 
 /// Towards the end of the rotation the work is spread over fewer columns, so that less is left for update ().

@@ -91,7 +91,7 @@ class Partition {
   std::size_t farPartsLeft() const { return segments_.partsLeft(image_); }
   std::size_t linkFarPart(DisjointSets& subclusters) { return segments_.linkPart(image_, subclusters); }
   /// The same for near returns in voxels: see VoxelLinker.
-  std::size_t nearPartsLeft() const { return VoxelLinker::bricksLeft(voxels_); }
+  std::size_t nearBricksLeft() const { return VoxelLinker::bricksLeft(voxels_); }
   std::size_t linkNearPart(DisjointSets& subclusters) { return VoxelLinker::linkPart(voxels_, subclusters); }
 
   const RangeImage& image() const { return image_; }

@@ -249,7 +249,6 @@ void VoxelLinker::linkInOrder(VoxelGrid& grid, DisjointSets& subclusters) {
   for (Brick& brick : grid.bricks) {
     brick.is_new = false;
     brick.is_linked = true;
-    brick.root = kNone;  // the old root need not be that of the cliques linked now
   }
   grid.linked_bricks = grid.new_bricks.size();
 }
