@@ -104,6 +104,11 @@ class RunVisitor {
           Visit& visit_run = *static_cast<Visit*>(const_cast<void*>(context));
           for (const Run* run = runs; run != runs + count; ++run)
             visit_run(source_indices + run->first_cell, std::size_t{run->count}, run->subcluster);
+        }),
+        visit_single_([](const void* context, const std::uint32_t* subclusters, std::size_t count,
+                         const std::uint32_t* source_indices) {
+          Visit& visit_run = *static_cast<Visit*>(const_cast<void*>(context));
+          for (std::size_t i = 0; i < count; ++i) visit_run(source_indices + i, std::size_t{1}, subclusters[i]);
         }) {}
 
   /// Visits `count` runs, whose cells index `source_indices`.
@@ -111,9 +116,16 @@ class RunVisitor {
     visit_(context_, runs, count, source_indices);
   }
 
+  /// Visits `count` runs of one return each, given by their subclusters.
+  void visitSingle(const std::uint32_t* subclusters, std::size_t count, const std::uint32_t* source_indices) const {
+    visit_single_(context_, subclusters, count, source_indices);
+  }
+
  private:
   const void* context_;
   void (*visit_)(const void* context, const Run* runs, std::size_t count, const std::uint32_t* source_indices);
+  void (*visit_single_)(const void* context, const std::uint32_t* subclusters, std::size_t count,
+                        const std::uint32_t* source_indices);
 };
 
 }  // namespace lisco

@@ -11,6 +11,7 @@
 #include "core/far/image_circle.h"
 #include "core/far_trial.h"
 #include "core/load_balancer.h"
+#include "core/near/unordered_returns.h"
 #include "core/near/voxel_sorter.h"
 #include "core/parallel.h"
 #include "core/partition.h"
@@ -40,8 +41,10 @@ class ColumnClusterer::Rotation {
   void divide(std::size_t columns, std::size_t lasers, const CellSource& cells);
   void receiveAtOnce(std::size_t columns, std::size_t lasers, const CellSource& cells);
   void preparePart(std::size_t i, const SensorHints& hints, std::size_t columns);
+  bool readFarAndNear(std::size_t lasers, const CellSource& cells);
   void readPart(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial);
-  bool readFarAndNear(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial);
+  void readNear(std::size_t lasers, const CellSource& cells);
+  void readUnordered(std::size_t lasers, const CellSource& cells);
   void prepareForColumns();
   void receiveInSequence(std::size_t columns, std::size_t lasers, const CellSource& cells);
   void linkPartitions();
@@ -67,6 +70,8 @@ class ColumnClusterer::Rotation {
   bool was_far_worthwhile_ = false;        ///< in the latest trial
   bool are_linked_ = false;                ///< all partitions but the last, with each other
   enum class Near { kCollected, kSorted, kInVoxels } near_ = Near::kInVoxels;  ///< state of the near returns
+  bool is_unordered_ = false;  ///< all returns are in unordered_, near and collected or sorted; partitions are empty
+  UnorderedReturns unordered_;
   ImageCircle images_;
   VoxelSorter sorter_;
   std::vector<const NearReturns*> near_returns_;
@@ -113,7 +118,7 @@ void ColumnClusterer::Rotation::begin(const Parameters& parameters) {
   parameters_.threads = std::min(parameters.threads == 0 ? allThreads() : parameters.threads, Parameters::kMaxThreads);
   tolerance_ = Tolerance(parameters.tolerance);
   partition_count_ = 0;
-  are_linked_ = is_sorted_ = false;
+  are_linked_ = is_sorted_ = is_unordered_ = false;
   near_ = Near::kInVoxels;
   sizes_.clear();
   scheduler_.begin(parameters_.block_columns);
@@ -164,30 +169,20 @@ void ColumnClusterer::Rotation::divide(std::size_t columns, std::size_t lasers, 
     partitions_[i].first_element = static_cast<std::uint32_t>(lasers * parts_[i].first);  // at most a run for each cell
 }
 
-/// Each thread reads its part of the columns, and links its far returns as far as it goes without the others. Near
-/// returns are collected. If azimuths drift (SensorHints::drift), all are.
+/// Columns that come at once are read with their far returns in range images, if these prove worthwhile. Otherwise, and
+/// if azimuths drift (SensorHints::drift), all returns are near: collected as runs, or without if they are unordered.
 void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t lasers, const CellSource& cells) {
-  if (partition_count_ == 1)
-    parts_.assign(1, {0, columns});
-  else
-    subclusters_.reserve(lasers * columns + RingBlock::kColumns);
+  if (partition_count_ == 1) parts_.assign(1, {0, columns});
   near_ = Near::kCollected;
   is_prepared_ = false;
-  const bool drifts = parameters_.sensor.drift > kMaxDrift;
-  FarTrial trial;
-  inParallel(partition_count_, [&](std::size_t i) {
-    try {
-      // Until far returns prove worthwhile, one image takes no more memory than its trial needs.
-      const std::size_t all = parts_[i].end - parts_[i].first;
-      const bool is_full = partition_count_ > 1 || was_far_worthwhile_;
-      preparePart(i, drifts ? SensorHints() : parameters_.sensor, is_full ? all : std::min(kTriedColumns, all));
-      readPart(i, lasers, cells, trial);
-    } catch (...) {
-      if (i == 0) trial.decide(true);  // the others wait for it
-      throw;
-    }
-  });
   scheduler_.skipColumns(columns);
+  if (partition_count_ > 1) subclusters_.reserve(lasers * columns + RingBlock::kColumns);
+  const bool drifts = parameters_.sensor.drift > kMaxDrift;
+  if (!drifts && readFarAndNear(lasers, cells)) return;
+  if (UnorderedReturns::areIn(columns, lasers, cells, tolerance_))
+    readUnordered(lasers, cells);
+  else
+    readNear(lasers, cells);
 }
 
 void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hints, std::size_t columns) {
@@ -195,27 +190,61 @@ void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hi
   partitions_[i].collectNear();
 }
 
-/// Reads a part; again with all returns near, if far ones are refused.
-void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial) {
-  Partition& partition = partitions_[i];
-  if (partition.hasFar()) {
-    if (readFarAndNear(i, lasers, cells, trial)) return;
-    preparePart(i, SensorHints(), 0);
-  }
-  const auto [begin, end] = parts_[i];
-  partition.readLasers(cells, begin, end, lasers, subclusters_);
-  if (partition_count_ > 1)
-    balancer_.record(begin, end - begin, (end - begin) * lasers * kWorkOfCell + partition.workDone());
+/// Each thread reads its part of the columns, and links its far returns as far as it goes without the others. Near
+/// returns are collected.
+/// \return false, with part of it read, if there are no far returns, or linking those of the first columns takes longer
+///         than sorting them
+bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSource& cells) {
+  FarTrial trial;
+  inParallel(partition_count_, [&](std::size_t i) {
+    try {
+      // Until far returns prove worthwhile, one image takes no more memory than its trial needs.
+      const std::size_t all = parts_[i].end - parts_[i].first;
+      const bool is_full = partition_count_ > 1 || was_far_worthwhile_;
+      preparePart(i, parameters_.sensor, is_full ? all : std::min(kTriedColumns, all));
+      if (partitions_[i].hasFar())
+        readPart(i, lasers, cells, trial);
+      else
+        trial.decide(false);
+    } catch (...) {
+      if (i == 0) trial.decide(true);  // the others wait for it
+      throw;
+    }
+  });
+  return trial.await();
 }
 
-/// Reads a part block by block, and links its far returns.
-/// \return false, with part of it read, if linking the far returns of the first columns takes longer than sorting them
-bool ColumnClusterer::Rotation::readFarAndNear(std::size_t i, std::size_t lasers, const CellSource& cells,
-                                               FarTrial& trial) {
+/// Each thread reads its part of the columns, without far returns.
+void ColumnClusterer::Rotation::readNear(std::size_t lasers, const CellSource& cells) {
+  inParallel(partition_count_, [&](std::size_t i) {
+    preparePart(i, SensorHints(), 0);
+    Partition& partition = partitions_[i];
+    const auto [begin, end] = parts_[i];
+    partition.readLasers(cells, begin, end, lasers, subclusters_);
+    if (partition_count_ > 1)
+      balancer_.record(begin, end - begin, (end - begin) * lasers * kWorkOfCell + partition.workDone());
+  });
+}
+
+/// The same without runs.
+void ColumnClusterer::Rotation::readUnordered(std::size_t lasers, const CellSource& cells) {
+  unordered_.begin(partition_count_);
+  inParallel(partition_count_, [&](std::size_t i) {
+    const auto [begin, end] = parts_[i];
+    unordered_.readPart(i, cells, begin, end, lasers);
+    if (partition_count_ > 1) balancer_.record(begin, end - begin, (end - begin) * lasers);
+  });
+  is_unordered_ = true;
+  usePartitions(1);
+  lastPartition().prepare(tolerance_, SensorHints(), 0);
+}
+
+/// Reads a part block by block, and links its far returns, until the trial refuses them.
+void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial) {
   Partition& partition = partitions_[i];
   const auto [begin, end] = parts_[i];
   for (std::size_t first = begin; first < end; first += RingBlock::kColumns) {
-    if (trial.isRefused()) return false;
+    if (trial.isRefused()) return;
     const std::size_t count = std::min(end - first, RingBlock::kColumns);
     const std::size_t before = partition.workDone();
     partition.readColumns(cells, first, count, lasers, static_cast<std::uint32_t>(first), subclusters_);
@@ -229,7 +258,6 @@ bool ColumnClusterer::Rotation::readFarAndNear(std::size_t i, std::size_t lasers
       partition.reserveNear((near + near / 64) * (end - begin) / (first + count) + 2 * RingBlock::kColumns);
     }
   }
-  return trial.await();
 }
 
 /// Prepares the last partition for columns of which not all are known.
@@ -296,6 +324,13 @@ void ColumnClusterer::Rotation::linkImages(std::size_t first) {
 /// Links collected near returns, of all partitions at once; in voxels, if they cannot be sorted.
 void ColumnClusterer::Rotation::linkCollected() {
   if (near_ != Near::kCollected) return;
+  if (is_unordered_) {
+    if (unordered_.link(sorter_, tolerance_, sizes_))
+      near_ = Near::kSorted;
+    else
+      stopCollecting();
+    return;
+  }
   near_returns_.clear();
   for (std::size_t i = 0; i < partition_count_; ++i) near_returns_.push_back(&partitions_[i].nearReturns());
   if (sorter_.link(near_returns_, tolerance_, subclusters_))
@@ -307,6 +342,12 @@ void ColumnClusterer::Rotation::linkCollected() {
 /// Puts all near returns into the voxels of the last partition, which receives the columns that follow.
 void ColumnClusterer::Rotation::stopCollecting() {
   if (near_ == Near::kInVoxels) return;
+  if (is_unordered_) {
+    is_unordered_ = false;
+    unordered_.moveTo(lastPartition(), subclusters_);
+    near_ = Near::kInVoxels;
+    return;
+  }
   for (std::size_t i = 0; i < partition_count_; ++i) lastPartition().takeCollected(partitions_[i], subclusters_);
   if (near_ == Near::kSorted) lastPartition().markLinked();
   near_ = Near::kInVoxels;
@@ -314,6 +355,7 @@ void ColumnClusterer::Rotation::stopCollecting() {
 
 /// Numbers the subclusters by their first runs.
 void ColumnClusterer::Rotation::numberSubclusters() {
+  if (is_unordered_) return;  // numbered when they were linked
   sizes_.clear();
   for (std::size_t i = 0; i < partition_count_; ++i) {
     const auto subclusterOf = [&](std::uint32_t parent) {
@@ -337,7 +379,7 @@ void ColumnClusterer::Rotation::usePartitions(std::size_t count) {
 // --- Results --------------------------------------------------------------------------------------------------------
 
 std::size_t ColumnClusterer::Rotation::returnCount() const {
-  std::size_t count = 0;
+  std::size_t count = is_unordered_ ? unordered_.count() : 0;
   for (std::size_t i = 0; i < partition_count_; ++i) count += runsOf(i).returns;
   return count;
 }
@@ -349,6 +391,10 @@ void ColumnClusterer::Rotation::sortRuns() {
 }
 
 void ColumnClusterer::Rotation::visitRuns(const RunVisitor& visit) {
+  if (is_unordered_) {
+    unordered_.visit(visit);
+    return;
+  }
   sortRuns();
   order_.forEachBlock([this](std::size_t i) -> const Runs& { return runsOf(i); },
                       [&](std::size_t, const Runs& runs, const Runs::Block& block) {
@@ -357,21 +403,13 @@ void ColumnClusterer::Rotation::visitRuns(const RunVisitor& visit) {
 }
 
 std::uint32_t ColumnClusterer::Rotation::subclusterAt(std::size_t laser, std::size_t column) {
+  if (is_unordered_) return unordered_.numberAt(laser, column);
   sortRuns();
-  const auto begin = order_.entries().begin() + static_cast<std::ptrdiff_t>(order_.beginOf(laser));
-  const auto end = order_.entries().begin() + static_cast<std::ptrdiff_t>(order_.endOf(laser));
-  const auto blockOf = [this](const LaserOrder::Entry& entry) -> const Runs::Block& {
-    return runsOf(entry.partition).blocks[entry.block];
-  };
-  const auto after = std::upper_bound(begin, end, column, [&](std::size_t wanted, const LaserOrder::Entry& entry) {
-    return wanted < blockOf(entry).first_column;
-  });
-  if (after == begin) return kNone;
-  const LaserOrder::Entry& entry = *(after - 1);
-  const std::size_t offset = column - blockOf(entry).first_column;
-  if (offset >= RingBlock::kColumns) return kNone;
+  LaserOrder::Entry entry{};
+  if (!order_.find(laser, column, [this](std::size_t i) -> const Runs& { return runsOf(i); }, entry)) return kNone;
   const Runs& runs = runsOf(entry.partition);
-  const std::uint32_t run = runs.runAt(blockOf(entry), static_cast<std::uint32_t>(offset));
+  const Runs::Block& block = runs.blocks[entry.block];
+  const std::uint32_t run = runs.runAt(block, static_cast<std::uint32_t>(column - block.first_column));
   return run == Runs::kNone ? kNone : runs.runs[run].subcluster;
 }
 

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 #include <hwy/highway.h>
 
@@ -60,6 +61,16 @@ HWY_INLINE std::uint64_t bitsAt(std::uint64_t bits, std::size_t k) {
 /// order.
 HWY_INLINE FloatMask areNeighbours(FloatVector dx, FloatVector dy, FloatVector dz, FloatVector squared_tolerance) {
   return hn::Lt(hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz)), squared_tolerance);
+}
+
+/// isReturn, lane by lane.
+HWY_INLINE FloatMask areReturns(FloatVector x, FloatVector y, FloatVector z) {
+  const FloatVector largest = hn::Set(kFloats, std::numeric_limits<float>::max());
+  const FloatVector zero = hn::Zero(kFloats);
+  const FloatMask finite =
+      hn::And(hn::Le(hn::Abs(x), largest), hn::And(hn::Le(hn::Abs(y), largest), hn::Le(hn::Abs(z), largest)));
+  const FloatMask origin = hn::And(hn::Eq(x, zero), hn::And(hn::Eq(y, zero), hn::Eq(z, zero)));
+  return hn::AndNot(origin, finite);
 }
 
 HWY_INLINE FloatMask differ(const std::uint32_t* a, hn::Vec<Words> b) {

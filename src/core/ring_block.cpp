@@ -17,8 +17,6 @@ namespace lisco {
 namespace HWY_NAMESPACE {
 
 void measureBlock(RingBlock& block, float squared_tolerance, const FarRange& range, RingBlockInfo& info) {
-  const FloatVector largest = hn::Set(kFloats, std::numeric_limits<float>::max());
-  const FloatVector zero = hn::Zero(kFloats);
   const FloatVector nan = hn::Set(kFloats, std::numeric_limits<float>::quiet_NaN());
   const FloatVector infinity = hn::Set(kFloats, std::numeric_limits<float>::infinity());
   const FloatVector r2 = hn::Set(kFloats, squared_tolerance);
@@ -34,11 +32,7 @@ void measureBlock(RingBlock& block, float squared_tolerance, const FarRange& ran
     FloatVector x = hn::LoadU(kFloats, px);
     const FloatVector y = hn::LoadU(kFloats, py);
     const FloatVector z = hn::LoadU(kFloats, pz);
-    // isReturn, lane by lane
-    const FloatMask finite =
-        hn::And(hn::Le(hn::Abs(x), largest), hn::And(hn::Le(hn::Abs(y), largest), hn::Le(hn::Abs(z), largest)));
-    const FloatMask origin = hn::And(hn::Eq(x, zero), hn::And(hn::Eq(y, zero), hn::Eq(z, zero)));
-    const FloatMask returned = hn::AndNot(origin, finite);
+    const FloatMask returned = areReturns(x, y, z);
     const std::uint64_t returns = bitsOf(returned);
     x = hn::IfThenElse(returned, x, nan);
     hn::StoreU(x, kFloats, px);

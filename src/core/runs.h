@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -50,13 +51,13 @@ class LaserOrder {
     std::uint32_t partition, block;
   };
 
-  /// \param runs_of callable as const Runs& (std::size_t partition)
+  /// \param runs_of callable as const Runs& (std::size_t partition), or as another type whose blocks have a laser
   template <typename RunsOf>
   void sort(std::size_t partitions, RunsOf&& runs_of) {
     end_.clear();
     std::size_t blocks = 0;
     for (std::size_t partition = 0; partition < partitions; ++partition)
-      for (const Runs::Block& block : runs_of(partition).blocks) {
+      for (const auto& block : runs_of(partition).blocks) {
         if (end_.size() < block.laser + std::size_t{2}) end_.resize(block.laser + std::size_t{2}, 0);
         ++end_[block.laser + 1];
         ++blocks;
@@ -73,17 +74,29 @@ class LaserOrder {
   template <typename RunsOf, typename Visit>
   void forEachBlock(RunsOf&& runs_of, Visit&& visit) const {
     for (const Entry& entry : entries_) {
-      const Runs& runs = runs_of(entry.partition);
+      const auto& runs = runs_of(entry.partition);
       visit(std::size_t{entry.partition}, runs, runs.blocks[entry.block]);
     }
   }
 
-  const std::vector<Entry>& entries() const { return entries_; }
-  /// Range of a laser's blocks among the entries, after sort ().
-  std::size_t beginOf(std::size_t laser) const { return laser == 0 ? 0 : endOf(laser - 1); }
-  std::size_t endOf(std::size_t laser) const { return laser < end_.size() ? end_[laser] : entries_.size(); }
+  /// The block that covers a column of a laser, after sort (). \return false if there is none
+  template <typename RunsOf>
+  bool find(std::size_t laser, std::size_t column, RunsOf&& runs_of, Entry& found) const {
+    const auto begin = entries_.begin() + static_cast<std::ptrdiff_t>(laser == 0 ? 0 : endOf(laser - 1));
+    const auto end = entries_.begin() + static_cast<std::ptrdiff_t>(endOf(laser));
+    const auto firstColumnOf = [&](const Entry& entry) {
+      return std::size_t{runs_of(entry.partition).blocks[entry.block].first_column};
+    };
+    const auto after = std::upper_bound(
+        begin, end, column, [&](std::size_t wanted, const Entry& entry) { return wanted < firstColumnOf(entry); });
+    if (after == begin || column - firstColumnOf(*(after - 1)) >= RingBlock::kColumns) return false;
+    found = *(after - 1);
+    return true;
+  }
 
  private:
+  std::size_t endOf(std::size_t laser) const { return laser < end_.size() ? end_[laser] : entries_.size(); }
+
   std::vector<std::size_t> end_;  ///< after sort (): behind each laser's last entry
   std::vector<Entry> entries_;
 };

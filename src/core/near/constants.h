@@ -33,9 +33,8 @@ inline constexpr double kMaxSortedTolerance = 1e18;
 inline constexpr double kMaxVoxelNumber = 2147480000.0;
 /// Of the radix sort: a histogram of 8 KiB fits into the first-level cache.
 inline constexpr unsigned kDigitBits = 11;
-/// Share of returns that begin a run, above which each return is a fragment: finding longer ones takes more than it
-/// saves.
-inline constexpr double kManyRuns = 0.8;
+/// Single returns of a brick that are compared with each other instead of by voxels: one vector, at most.
+inline constexpr std::size_t kFewReturns = 16;
 /// Fragments between a prefetch and its use, and readable behind the last: measured on shuffled clouds, flat from 16 to
 /// 64.
 inline constexpr std::size_t kPrefetch = 32;

@@ -27,22 +27,29 @@ class PlaneLinker {
 
   void linkWithin(VoxelPlane& plane) {
     for (VoxelPlane::Brick& brick : bricksOf(plane)) linkBrick(plane, brick);
-    const std::uint64_t next_row = std::uint64_t{1} << layout_.minor_bits;
-    VoxelPlane::Brick* const end = plane.bricks.data() + plane.brick_count;
-    VoxelPlane::Brick* cursor = plane.bricks.data();
+    const std::uint64_t next_row = layout_.nextRow();
     for (VoxelPlane::Brick& brick : bricksOf(plane)) {
-      if ((&brick + 1)->key == brick.key + 1) linkBricks(plane, brick, plane, *(&brick + 1), kOwnBrick + 1);
-      linkRow(plane, brick, plane, cursor, end, brick.key + next_row, kOwnBrick + 3);
+      // The next one in its row, and three of the next row.
+      const std::uint32_t near = (plane.map.near(brick.key + 1) >> 1 & 1U) | plane.map.near(brick.key + next_row) << 1;
+      forEachBit(near, [&](std::size_t i) {
+        const std::uint64_t key = i == 0 ? brick.key + 1 : brick.key + next_row + i - 2;
+        linkBricks(plane, brick, plane, plane.bricks[plane.map.numberOf(key)], kOwnBrick + 1 + i);
+      });
     }
   }
 
   void linkAcross(VoxelPlane& plane, VoxelPlane& next) {
-    const std::uint64_t next_row = std::uint64_t{1} << layout_.minor_bits;
-    VoxelPlane::Brick* const end = next.bricks.data() + next.brick_count;
-    VoxelPlane::Brick* cursors[3] = {next.bricks.data(), next.bricks.data(), next.bricks.data()};
-    for (VoxelPlane::Brick& brick : bricksOf(plane))
-      for (std::size_t row = 0; row < 3; ++row)
-        linkRow(plane, brick, next, cursors[row], end, brick.key + row * next_row - next_row, kOwnBrick + 6 + 3 * row);
+    const std::uint64_t next_row = layout_.nextRow();
+    for (VoxelPlane::Brick& brick : bricksOf(plane)) {
+      // Three of each of three rows.
+      const std::uint64_t first = brick.key - next_row;
+      const std::uint32_t near =
+          next.map.near(first) | next.map.near(brick.key) << 3 | next.map.near(brick.key + next_row) << 6;
+      forEachBit(near, [&](std::size_t i) {
+        const std::uint64_t key = first + i / 3 * next_row + i % 3 - 1;
+        linkBricks(plane, brick, next, next.bricks[next.map.numberOf(key)], kOwnBrick + 5 + i);
+      });
+    }
   }
 
  private:
@@ -56,20 +63,17 @@ class PlaneLinker {
 
   std::uint32_t endOf(const VoxelPlane::Brick& brick) const { return (&brick + 1)->first_voxel; }
 
-  /// Links a brick with those of another row whose number along the minor axis differs by 1 at most.
-  /// \param cursor moves on from brick to brick
-  /// \param key of the brick in the middle
-  /// \param number of that among the near bricks
-  void linkRow(VoxelPlane& plane, VoxelPlane::Brick& brick, VoxelPlane& other, VoxelPlane::Brick*& cursor,
-               const VoxelPlane::Brick* end, std::uint64_t key, std::size_t number) {
-    while (cursor != end && cursor->key < key - 1) ++cursor;
-    for (VoxelPlane::Brick* near = cursor; near != end && near->key <= key + 1; ++near)
-      linkBricks(plane, brick, other, *near, number + static_cast<std::size_t>(near->key - key));
-  }
-
   /// Links the voxels of a brick with each other: each that joins a set is compared with those in no set yet.
   void linkBrick(VoxelPlane& plane, VoxelPlane::Brick& brick) {
     const std::uint32_t first = brick.first_voxel;
+    if (isSingle(brick)) {
+      brick.root = plane.root[first];
+      return;
+    }
+    if (brick.occupied == 0) {
+      linkPoints(plane, brick);
+      return;
+    }
     std::uint64_t left = allOf(brick);
     std::uint32_t root = 0;
     std::uint32_t parts = 0;
@@ -88,6 +92,61 @@ class PlaneLinker {
     if (parts == 1) std::fill_n(&plane.root[first], endOf(brick) - first, root);
   }
 
+  /// Links the returns of a brick with each other.
+  void linkPoints(VoxelPlane& plane, VoxelPlane::Brick& brick) {
+    const std::uint32_t first = brick.first_voxel;
+    auto left = static_cast<std::uint32_t>(allOf(brick));
+    std::uint32_t root = 0;
+    std::uint32_t parts = 0;
+    for (; left != 0; ++parts) {
+      std::uint32_t joined = left & (~left + 1);
+      left -= joined;
+      root = subclusters_.find(plane.root[first + static_cast<std::uint32_t>(__builtin_ctz(joined))]);
+      while (joined != 0 && left != 0) {
+        const std::uint32_t more =
+            neighboursOf(plane, first + static_cast<std::uint32_t>(__builtin_ctz(joined)), plane, first) & left;
+        joined = (joined & (joined - 1)) | more;
+        left &= ~more;
+        for (std::uint32_t bits = more; bits != 0; bits &= bits - 1)
+          root = subclusters_.add(root, plane.root[first + static_cast<std::uint32_t>(__builtin_ctz(bits))]);
+      }
+    }
+    brick.root = parts == 1 ? root : VoxelPlane::kSeveral;
+    if (parts == 1) std::fill_n(&plane.root[first], endOf(brick) - first, root);
+  }
+
+  /// Bit i: point first + i of another is a neighbour of a point.
+  std::uint32_t neighboursOf(const VoxelPlane& plane, std::uint32_t point, const VoxelPlane& other,
+                             std::uint32_t first) const {
+    std::uint32_t near = 0;
+    for (std::uint32_t k = 0; k < 16; k += std::uint32_t{kLanes}) {
+      const auto apart = [&](std::size_t axis) {
+        return hn::Sub(hn::Set(kFloats, plane.lo[axis][point]), hn::LoadU(kFloats, &other.lo[axis][first + k]));
+      };
+      near |= bitsOf(areNeighbours(apart(0), apart(1), apart(2), squared_tolerance_)) << k;
+    }
+    return near;
+  }
+
+  /// Links the returns of two bricks.
+  void linkPoints(VoxelPlane& plane, VoxelPlane::Brick& brick, VoxelPlane& other, VoxelPlane::Brick& near) {
+    const auto all = static_cast<std::uint32_t>(allOf(near));
+    for (std::uint32_t point = brick.first_voxel; point < endOf(brick); ++point) {
+      std::uint32_t joined = neighboursOf(plane, point, other, near.first_voxel) & all;
+      if (joined == 0) continue;
+      std::uint32_t root = plane.root[point];
+      for (; joined != 0; joined &= joined - 1) {
+        std::uint32_t& other_root = other.root[near.first_voxel + static_cast<std::uint32_t>(__builtin_ctz(joined))];
+        root = other_root = subclusters_.merge(root, other_root);
+      }
+      plane.root[point] = root;
+      if (haveOneRoot(brick, near)) return;
+    }
+  }
+
+  /// Whether a brick has one voxel.
+  bool isSingle(const VoxelPlane::Brick& brick) const { return endOf(brick) - brick.first_voxel == 1; }
+
   /// Bit i: voxel first_voxel + i of a brick.
   std::uint64_t allOf(const VoxelPlane::Brick& brick) const {
     return ~std::uint64_t{0} >> (64 - (endOf(brick) - brick.first_voxel));
@@ -103,6 +162,19 @@ class PlaneLinker {
   void linkBricks(VoxelPlane& plane, VoxelPlane::Brick& brick, VoxelPlane& other, VoxelPlane::Brick& near,
                   std::size_t number) {
     if (!(BoxLanes::squaredGap(brick.box, near.box) < layout_.squared_tolerance) || haveOneRoot(brick, near)) return;
+    if (isSingle(brick) && isSingle(near)) {  // their boxes are those of the bricks
+      if (haveNeighbours(plane, brick.first_voxel, other, near.first_voxel))
+        brick.root = near.root = plane.root[brick.first_voxel] = other.root[near.first_voxel] =
+            subclusters_.merge(brick.root, near.root);
+      return;
+    }
+    if (brick.occupied == 0 && near.occupied == 0) {
+      if (endOf(brick) - brick.first_voxel <= endOf(near) - near.first_voxel)
+        linkPoints(plane, brick, other, near);
+      else
+        linkPoints(other, near, plane, brick);
+      return;
+    }
     if (endOf(brick) - brick.first_voxel <= endOf(near) - near.first_voxel)
       linkVoxels(plane, brick, other, near, number);
     else
@@ -112,8 +184,17 @@ class PlaneLinker {
   void linkVoxels(VoxelPlane& plane, VoxelPlane::Brick& brick, VoxelPlane& other, VoxelPlane::Brick& near,
                   std::size_t number) {
     std::uint32_t voxel = brick.first_voxel;
+    if (brick.occupied == 0) {
+      for (; voxel < endOf(brick); ++voxel) {
+        std::uint32_t root = subclusters_.find(plane.root[voxel]);
+        const std::uint64_t joined = linkVoxel(plane, voxel, other, near.first_voxel, allOf(near), root);
+        plane.root[voxel] = root;
+        if (joined != 0 && haveOneRoot(brick, near)) return;
+      }
+      return;
+    }
     for (std::uint64_t left = brick.occupied; left != 0; left &= left - 1, ++voxel) {
-      if ((near.occupied & kNeighbourhood.of[__builtin_ctzll(left)][number]) == 0) continue;
+      if (near.occupied != 0 && (near.occupied & kNeighbourhood.of[__builtin_ctzll(left)][number]) == 0) continue;
       std::uint32_t root = subclusters_.find(plane.root[voxel]);
       const std::uint64_t joined = linkVoxel(plane, voxel, other, near.first_voxel, allOf(near), root);
       plane.root[voxel] = root;
@@ -231,87 +312,7 @@ namespace {
 HWY_EXPORT(linkWithin);
 HWY_EXPORT(linkAcross);
 
-/// \param returnOf callable as const NearReturn* (std::uint64_t item): the first of a fragment
-/// \param sizeOf callable as std::size_t (std::uint64_t item): number of its returns
-/// \tparam kStep returns that are copied together, see kNearStep
-template <std::size_t kStep, typename ReturnOf, typename SizeOf>
-void fill(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,
-          DisjointSets& subclusters, ReturnOf&& returnOf, SizeOf&& sizeOf) {
-  const std::uint64_t brick_mask = (std::uint64_t{1} << layout.brick_bits) - 1;
-  VoxelPlane::Brick* brick = nullptr;
-  std::size_t bricks = 0;
-  const auto addBrick = [&](const VoxelPlane::Brick& added) {
-    plane.reserveBricks(bricks + 1);
-    brick = &plane.bricks[bricks++];
-    *brick = added;
-  };
-  std::uint64_t brick_key = ~std::uint64_t{0};
-  std::uint32_t voxel = 0;
-  std::size_t points = 0;
-  for (std::size_t i = 0; i < count; ++voxel) {
-    const std::uint64_t key = items[i] >> layout.number_bits;
-    const NearReturn* near = returnOf(items[i]);
-    BoxLanes box(*near);
-    std::uint32_t root = subclusters.find(near->element);
-    plane.reserveVoxels(voxel + 2);
-    plane.first_point[voxel] = static_cast<std::uint32_t>(points);
-    do {
-      // In unordered clouds, returns and their sets are scattered in memory.
-      __builtin_prefetch(returnOf(items[i + kPrefetch]));
-      subclusters.prefetch(returnOf(items[i + kPrefetch / 2])->element);
-      near = returnOf(items[i]);
-      root = subclusters.add(root, near->element);
-      const std::size_t size = sizeOf(items[i]);
-      plane.reservePoints(points + size);
-      for (std::size_t k = 0; k < size; k += kStep)
-        for (std::size_t some = k; some < k + kStep; ++some) {
-          plane.points[points + some] = near[some];
-          box.add(near[std::min(some, size - 1)]);
-        }
-      points += size;
-      ++i;
-    } while (i < count && items[i] >> layout.number_bits == key);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      plane.lo[axis][voxel] = box.lo(axis);
-      plane.hi[axis][voxel] = box.hi(axis);
-    }
-    plane.root[voxel] = root;
-    if ((key >> 6 & brick_mask) != brick_key) {
-      brick_key = key >> 6 & brick_mask;
-      addBrick({brick_key, 0, voxel, VoxelPlane::kSeveral, box});
-    }
-    brick->occupied |= std::uint64_t{1} << (key & 63U);
-    brick->box.add(box);
-  }
-  plane.first_point[voxel] = static_cast<std::uint32_t>(points);
-  addBrick({~std::uint64_t{0}, 0, voxel, VoxelPlane::kSeveral, BoxLanes(NearReturn{})});
-  plane.brick_count = bricks - 1;
-}
-
 }  // namespace
-
-void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,
-               const FragmentList& fragments, DisjointSets& subclusters) {
-  const std::uint64_t number_mask = (std::uint64_t{1} << layout.number_bits) - 1;
-  const auto numberOf = [&](std::uint64_t item) { return static_cast<std::size_t>(item & number_mask); };
-  const NearReturn* const first_part = fragments.parts.front().near->returns.data();
-  const auto inFirstPart = [&](std::uint64_t item) { return first_part + numberOf(item); };
-  const auto inAnyPart = [&](std::uint64_t item) {
-    const FragmentList::Part& part = fragments.partOf(numberOf(item));
-    return part.near->returns.data() + (numberOf(item) - part.first);
-  };
-  const auto sizeOf = [&](std::uint64_t item) { return fragments.endOf(numberOf(item)) - numberOf(item); };
-  const auto fillFrom = [&](auto&& returnOf) {
-    if (fragments.are_single)
-      fill<1>(plane, items, count, layout, subclusters, returnOf, [](std::uint64_t) { return std::size_t{1}; });
-    else
-      fill<kNearStep>(plane, items, count, layout, subclusters, returnOf, sizeOf);
-  };
-  if (fragments.parts.size() == 1)
-    fillFrom(inFirstPart);
-  else
-    fillFrom(inAnyPart);
-}
 
 void linkPlane(VoxelPlane& plane, const PlaneLayout& layout, DisjointSets& subclusters) {
   HWY_DYNAMIC_DISPATCH(linkWithin)(plane, layout, subclusters);

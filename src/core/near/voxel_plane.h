@@ -9,6 +9,7 @@
 
 #include "core/disjoint_sets.h"
 #include "core/growing_array.h"
+#include "core/near/brick_map.h"
 #include "core/near/constants.h"
 #include "core/near/near_returns.h"
 #include "core/neighbour.h"
@@ -20,12 +21,24 @@ namespace lisco {
 struct FragmentList {
   struct Part {
     const NearReturns* near;
-    std::size_t first;  ///< number of its first return, a multiple of 64
+    std::size_t first;   ///< number of its first return, a multiple of 64
+    std::uint32_t* set;  ///< of each return; only of single ones
   };
-  std::vector<Part> parts;
+  std::vector<Part> parts;  ///< those with returns
+  std::size_t end = 0;      ///< above all numbers, a multiple of 64
   std::vector<std::uint64_t> starts;  ///< bit i: return i begins a fragment, or is the end of a part
   bool are_single = false;            ///< each return is a fragment, as in unordered clouds; starts are not in use
 
+  void begin(bool single) {
+    parts.clear();
+    end = 0;
+    are_single = single;
+  }
+  void add(const NearReturns& near, std::uint32_t* set) {
+    if (near.count == 0) return;
+    parts.push_back({&near, end, set});
+    end += (near.count / 64 + 1) * 64;  // and one more behind the last
+  }
   const Part& partOf(std::size_t number) const {
     std::size_t part = parts.size() - 1;
     while (number < parts[part].first) --part;
@@ -85,7 +98,7 @@ struct VoxelPlane {
 
   struct Brick {
     std::uint64_t key;       ///< its numbers along the middle and minor axis
-    std::uint64_t occupied;  ///< bit i: voxel i
+    std::uint64_t occupied;  ///< bit i: voxel i; 0: few returns, each of which counts as a voxel
     std::uint32_t first_voxel;
     std::uint32_t root;  ///< common to all its voxels, perhaps outdated; kSeveral if they had several
     BoxLanes box{NearReturn{}};
@@ -94,6 +107,7 @@ struct VoxelPlane {
   /// Ordered by key, with an end mark behind the last. These arrays are longer than what is in use.
   GrowingArray<Brick> bricks;
   std::size_t brick_count = 0;
+  BrickMap map;  ///< of the bricks' keys
   GrowingArray<float> lo[3], hi[3];         ///< of each voxel's box
   GrowingArray<std::uint32_t> root;         ///< of its subcluster, perhaps outdated
   GrowingArray<std::uint32_t> first_point;  ///< and the end
@@ -121,12 +135,23 @@ struct PlaneLayout {
   unsigned minor_bits;   ///< of a brick's key
   unsigned brick_bits;   ///< the same, middle and minor
   float squared_tolerance;
+
+  std::uint64_t nextRow() const { return std::uint64_t{1} << minor_bits; }  ///< in a brick's key
 };
 
-/// Fills a plane with sorted fragments and joins the runs of each voxel.
+/// Fills a plane with sorted fragments of runs, and joins those of each voxel.
 /// \param items may be read up to kPrefetch behind the last
-void fillPlane(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,
-               const FragmentList& fragments, DisjointSets& subclusters);
+void fillPlaneFromRuns(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,
+                       const FragmentList& fragments, DisjointSets& subclusters);
+
+/// Fills a plane with sorted single returns. Voxel i is element first_voxel + i. In a brick of at most kFewReturns, each
+/// return counts as a voxel: comparing them with each other takes less than telling their voxels apart.
+/// \param items as above
+/// \param begins_voxel receives for each item whether it begins a voxel: 1 or 0
+/// \return number of voxels
+std::size_t fillPlaneFromSingle(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
+                                const PlaneLayout& layout, const FragmentList& fragments, std::uint32_t first_voxel,
+                                std::uint8_t* begins_voxel);
 
 /// Joins neighbours within a plane.
 void linkPlane(VoxelPlane& plane, const PlaneLayout& layout, DisjointSets& subclusters);

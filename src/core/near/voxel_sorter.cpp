@@ -70,15 +70,29 @@ void loadBatch(const NearReturn* returns, std::size_t size, const VoxelNumbering
   }
 }
 
-/// Adds the numbers along an axis to the keys of a batch.
-/// \param brick_shift of the brick's number in the key. \param voxel_shift of the voxel's number in it
-HWY_INLINE void addToKeys(const float* values, double corner, double per_metre, unsigned brick_shift,
-                          unsigned voxel_shift, std::uint64_t* keys) {
-  for (std::size_t i = 0; i < kBatch; ++i) {
-    const auto number =
-        static_cast<std::uint32_t>(static_cast<std::int32_t>((static_cast<double>(values[i]) - corner) * per_metre));
-    // Bricks begin with 1, so that those before and after one have keys too.
-    keys[i] += std::uint64_t{(number >> 2) + 1} << brick_shift | std::uint64_t{number & 3U} << voxel_shift;
+/// The keys of a batch.
+void keysOf(const VoxelNumbering& numbering, const float (&coordinates)[3][kBatch], std::uint64_t* keys) {
+  constexpr hn::CappedTag<double, 8> kDoubles;
+  const hn::Rebind<float, decltype(kDoubles)> half_floats;
+  const hn::Rebind<std::int32_t, decltype(kDoubles)> half_integers;
+  const hn::Rebind<std::uint32_t, decltype(kDoubles)> half_words;
+  const hn::Rebind<std::uint64_t, decltype(kDoubles)> words;
+  const auto per_metre = hn::Set(kDoubles, numbering.per_metre);
+  const int brick_shifts[3] = {6, static_cast<int>(6 + numbering.minor_bits),
+                               static_cast<int>(6 + numbering.minor_bits + numbering.middle_bits)};
+  for (std::size_t i = 0; i < kBatch; i += hn::MaxLanes(kDoubles)) {
+    auto key = hn::Zero(words);
+    for (int along = 0; along < 3; ++along) {
+      const std::size_t axis = numbering.axis[along];
+      const auto coordinate = hn::PromoteTo(kDoubles, hn::LoadU(half_floats, &coordinates[axis][i]));
+      const auto scaled = hn::Mul(hn::Sub(coordinate, hn::Set(kDoubles, numbering.corner[axis])), per_metre);
+      const auto number = hn::BitCast(half_words, hn::DemoteTo(half_integers, scaled));
+      // Bricks begin with 1, so that those before and after one have keys too.
+      const auto brick = hn::PromoteTo(words, hn::Add(hn::ShiftRight<2>(number), hn::Set(half_words, 1)));
+      const auto voxel = hn::PromoteTo(words, hn::And(number, hn::Set(half_words, 3)));
+      key = hn::Or(key, hn::Or(hn::ShiftLeftSame(brick, brick_shifts[along]), hn::ShiftLeftSame(voxel, 2 * along)));
+    }
+    hn::StoreU(key, words, keys + i);
   }
 }
 
@@ -106,7 +120,6 @@ std::size_t cutPart(const VoxelNumbering& numbering, unsigned number_bits, const
   std::uint32_t elements[1 + kBatch];
   keys[kBatch] = ~std::uint64_t{0};
   elements[kBatch] = 0;
-  const unsigned brick_shifts[3] = {6, 6 + numbering.minor_bits, 6 + numbering.minor_bits + numbering.middle_bits};
   const NearReturn* const returns = part.near->returns.data();
   std::size_t count = 0;
   for (std::size_t batch = 0; batch < part.near->count; batch += kBatch) {
@@ -114,11 +127,7 @@ std::size_t cutPart(const VoxelNumbering& numbering, unsigned number_bits, const
     keys[0] = keys[kBatch];
     elements[0] = elements[kBatch];
     loadBatch(returns + batch, size, numbering, coordinates, elements + 1);
-    std::fill(keys + 1, keys + 1 + kBatch, 0);
-    for (unsigned i = 0; i < 3; ++i) {
-      const std::size_t axis = numbering.axis[i];
-      addToKeys(coordinates[axis], numbering.corner[axis], numbering.per_metre, brick_shifts[i], 2 * i, keys + 1);
-    }
+    keysOf(numbering, coordinates, keys + 1);
     std::uint64_t items_here[kBatch];
     std::uint64_t* const all = starts == nullptr ? items + batch : items_here;
     for (std::size_t i = 0; i < kBatch; ++i) all[i] = keys[1 + i] << number_bits | (part.first + batch + i);
@@ -155,24 +164,75 @@ unsigned bitsFor(std::uint64_t values) {
 
 bool VoxelSorter::link(const std::vector<const NearReturns*>& parts, const Tolerance& tolerance,
                        DisjointSets& subclusters) {
-  fragments_.parts.clear();
-  std::size_t end = 0;
-  for (const NearReturns* part : parts) {
-    if (part->count == 0) continue;
-    fragments_.parts.push_back({part, end});
-    end += (part->count / 64 + 1) * 64;  // and one more behind the last
-  }
-  if (end == 0 || !tolerance.joinsAnything()) return true;
+  fragments_.begin(false);
+  for (const NearReturns* part : parts) fragments_.add(*part, nullptr);
+  if (fragments_.parts.empty() || !tolerance.joinsAnything()) return true;
+  if (!sortFragments(tolerance)) return false;
+  linkSlabs(tolerance, subclusters);
+  return true;
+}
+
+bool VoxelSorter::label(const std::vector<Labelled>& parts, const Tolerance& tolerance,
+                        std::vector<std::uint32_t>& sizes) {
+  sizes.clear();
+  fragments_.begin(true);
+  for (const Labelled& part : parts) fragments_.add(*part.near, part.set);
+  if (fragments_.parts.empty()) return true;
+  if (!sortFragments(tolerance)) return false;
+  const std::size_t most = slabs_.back().end;
+  voxels_.grow(most);
+  voxels_.create(0, static_cast<std::uint32_t>(most));
+  voxel_sizes_.grow(most);
+  begins_voxel_.grow(most + 1);
+  number_of_voxel_.grow(most);
+  linkSlabs(tolerance, voxels_);
+  numberSets(sizes);
+  inParallel(slabs_.size(), [&](std::size_t slab) { labelSlab(slabs_[slab]); });
+  return true;
+}
+
+/// Sorts all fragments by voxel, in slabs. \return false if the voxels cannot be numbered
+bool VoxelSorter::sortFragments(const Tolerance& tolerance) {
   if (!number(tolerance)) return false;
   cutFragments();
   divide();
   if (planes_.size() < 2 * slabs_.size()) planes_.resize(2 * slabs_.size());
   inParallel(slabs_.size(), [&](std::size_t slab) { sort(slabs_[slab]); });
   std::fill_n(&items_[slabs_.back().end], kPrefetch, 0);
+  return true;
+}
+
+void VoxelSorter::linkSlabs(const Tolerance& tolerance, DisjointSets& subclusters) {
   subclusters.share(slabs_.size() > 1);
   inParallel(slabs_.size(), [&](std::size_t slab) { linkSlab(slab, tolerance, subclusters); });
   subclusters.share(false);
-  return true;
+}
+
+/// Numbers the sets of voxels by their first ones.
+void VoxelSorter::numberSets(std::vector<std::uint32_t>& sizes) {
+  for (const Slab& slab : slabs_)
+    for (std::size_t voxel = slab.begin; voxel < slab.begin + slab.voxels; ++voxel)
+      number_of_voxel_[voxel] = numberElement(static_cast<std::uint32_t>(voxel), voxel_sizes_[voxel], voxels_, sizes,
+                                              [&](std::uint32_t parent) { return number_of_voxel_[parent]; });
+}
+
+/// Hands the numbers of sets to the returns.
+void VoxelSorter::labelSlab(const Slab& slab) {
+  const auto labelAll = [&, number_bits = number_bits_, items = items_.data()](auto&& setAt) {
+    const std::uint64_t number_mask = (std::uint64_t{1} << number_bits) - 1;
+    const std::uint32_t* number_of_voxel = number_of_voxel_.data() + slab.begin;
+    for (std::size_t i = slab.begin; i < slab.end; ++i) {
+      setAt(static_cast<std::size_t>(items[i] & number_mask)) = *number_of_voxel;
+      number_of_voxel += begins_voxel_[i + 1];
+    }
+  };
+  if (fragments_.parts.size() == 1)
+    labelAll([sets = fragments_.parts[0].set](std::size_t number) -> std::uint32_t& { return sets[number]; });
+  else
+    labelAll([this](std::size_t number) -> std::uint32_t& {
+      const FragmentList::Part& part = fragments_.partOf(number);
+      return part.set[number - part.first];
+    });
 }
 
 /// Chooses the axes and the bits of the keys.
@@ -204,19 +264,16 @@ bool VoxelSorter::number(const Tolerance& tolerance) {
   numbering_.minor_bits = bitsAlong(0);
   numbering_.middle_bits = bitsAlong(1);
   numbering_.bits = numbering_.minor_bits + numbering_.middle_bits + bitsAlong(2) + 6;
-  const FragmentList::Part& last = fragments_.parts.back();
-  number_bits_ = bitsFor(last.first + last.near->count);
+  number_bits_ = bitsFor(fragments_.end);
   plane_shift_ = number_bits_ + 6 + numbering_.minor_bits + numbering_.middle_bits;
   return numbering_.bits + number_bits_ <= 64;
 }
 
 /// Numbers the voxels of all returns, each part by a thread of its own.
 void VoxelSorter::cutFragments() {
-  const FragmentList::Part& last = fragments_.parts.back();
-  const std::size_t size = (last.first / 64 + last.near->count / 64 + 1) * 64;
+  const std::size_t size = fragments_.end;
   items_.grow(size + kPrefetch);
   scratch_.grow(size + kPrefetch);
-  fragments_.are_single = areSingle();
   if (!fragments_.are_single && fragments_.starts.size() < size / 64) fragments_.starts.resize(size / 64);
   part_sizes_.resize(fragments_.parts.size());
   inParallel(fragments_.parts.size(), [&](std::size_t i) {
@@ -226,23 +283,10 @@ void VoxelSorter::cutFragments() {
   });
 }
 
-/// Whether most returns begin a run, in a sample.
-bool VoxelSorter::areSingle() const {
-  constexpr std::size_t kSampled = 61;  // one in this many
-  std::size_t sampled = 0;
-  std::size_t runs = 0;
-  for (const FragmentList::Part& part : fragments_.parts) {
-    const NearReturn* const returns = part.near->returns.data();
-    for (std::size_t i = 1; i < part.near->count; i += kSampled, ++sampled)
-      runs += returns[i].element != returns[i - 1].element ? 1 : 0;
-  }
-  return static_cast<double>(runs) > kManyRuns * static_cast<double>(sampled);
-}
-
 /// Moves the fragments of each slab of planes together: slabs of about equal work, one for each part.
 void VoxelSorter::divide() {
   const std::size_t parts = fragments_.parts.size();
-  slabs_.assign(1, {0, part_sizes_[0]});
+  slabs_.assign(1, {0, part_sizes_[0], 0});
   if (parts == 1) return;
   constexpr unsigned kGroupBits = 10;
   constexpr std::size_t kGroups = std::size_t{1} << kGroupBits;  // of planes
@@ -266,7 +310,7 @@ void VoxelSorter::divide() {
       sum += count;
     }
     if (sum > begin && (sum >= all * (slabs_.size() + 1) / parts)) {
-      slabs_.push_back({begin, sum});
+      slabs_.push_back({begin, sum, 0});
       begin = sum;
     }
   }
@@ -290,14 +334,18 @@ void VoxelSorter::sort(const Slab& slab) {
   std::uint64_t* from = items_.data() + slab.begin;
   std::uint64_t* to = scratch_.data() + slab.begin;
   const std::size_t count = slab.end - slab.begin;
-  for (std::size_t i = 0; i < count; ++i)
-    for (unsigned pass = 0; pass < passes; ++pass) ++places[pass][from[i] >> (number_bits_ + pass * digit_bits) & mask];
+  const unsigned number_bits = number_bits_;  // a copy, which no store through a pointer may change
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint64_t rest = from[i] >> number_bits;
+    for (unsigned pass = 0; pass < passes; ++pass, rest >>= digit_bits) ++places[pass][rest & mask];
+  }
   for (unsigned pass = 0; pass < passes; ++pass) {
-    const unsigned shift = number_bits_ + pass * digit_bits;
-    if (places[pass][from[0] >> shift & mask] == count) continue;  // the same digit in all
+    std::uint32_t* const place = places[pass];
+    const unsigned shift = number_bits + pass * digit_bits;
+    if (place[from[0] >> shift & mask] == count) continue;  // the same digit in all
     std::uint32_t sum = 0;
-    for (std::size_t digit = 0; digit <= mask; ++digit) sum += std::exchange(places[pass][digit], sum);
-    for (std::size_t i = 0; i < count; ++i) to[places[pass][from[i] >> shift & mask]++] = from[i];
+    for (std::size_t digit = 0; digit <= mask; ++digit) sum += std::exchange(place[digit], sum);
+    for (std::size_t i = 0; i < count; ++i) to[place[from[i] >> shift & mask]++] = from[i];
     std::swap(from, to);
   }
   if (from != items_.data() + slab.begin) std::copy_n(from, count, to);
@@ -310,6 +358,13 @@ std::size_t VoxelSorter::endOfPlane(std::size_t begin, std::size_t end) const {
   return static_cast<std::size_t>(std::lower_bound(items + begin, items + end, next) - items);
 }
 
+/// Enters the sizes of a plane's voxels, which are elements.
+void VoxelSorter::addVoxels(std::size_t slab, const VoxelPlane& plane, std::size_t voxels) {
+  std::uint32_t* const sizes = voxel_sizes_.data() + slabs_[slab].begin + slabs_[slab].voxels;
+  for (std::size_t i = 0; i < voxels; ++i) sizes[i] = plane.first_point[i + 1] - plane.first_point[i];
+  slabs_[slab].voxels += voxels;
+}
+
 /// Links the planes of a slab within and with the next ones, the first of the next slab included.
 void VoxelSorter::linkSlab(std::size_t slab, const Tolerance& tolerance, DisjointSets& subclusters) {
   const PlaneLayout layout{number_bits_, numbering_.minor_bits, numbering_.minor_bits + numbering_.middle_bits,
@@ -317,13 +372,22 @@ void VoxelSorter::linkSlab(std::size_t slab, const Tolerance& tolerance, Disjoin
   VoxelPlane* plane = &planes_[2 * slab];
   VoxelPlane* last = plane + 1;
   std::uint64_t last_number = ~std::uint64_t{0} - 1;
+  std::size_t first_voxel = slabs_[slab].begin;
   const std::size_t end_of_all = slabs_.back().end;
   for (std::size_t begin = slabs_[slab].begin; begin < end_of_all;) {
     const std::uint64_t number = planeOf(items_[begin]);
     const bool is_own = begin < slabs_[slab].end;
     if (!is_own && number != last_number + 1) return;
     const std::size_t end = endOfPlane(begin, end_of_all);
-    fillPlane(*plane, &items_[begin], end - begin, layout, fragments_, subclusters);
+    if (!is_own) first_voxel = slabs_[slab + 1].begin;
+    if (fragments_.are_single) {
+      const std::size_t voxels = fillPlaneFromSingle(*plane, &items_[begin], end - begin, layout, fragments_,
+                                                     static_cast<std::uint32_t>(first_voxel), &begins_voxel_[begin]);
+      if (is_own) addVoxels(slab, *plane, voxels);
+      first_voxel += voxels;
+    } else {
+      fillPlaneFromRuns(*plane, &items_[begin], end - begin, layout, fragments_, subclusters);
+    }
     if (is_own) linkPlane(*plane, layout, subclusters);
     if (number == last_number + 1) linkPlanes(*last, *plane, layout, subclusters);
     if (!is_own) return;

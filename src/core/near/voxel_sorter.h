@@ -37,18 +37,34 @@ class VoxelSorter {
   ///         of too many voxels
   bool link(const std::vector<const NearReturns*>& parts, const Tolerance& tolerance, DisjointSets& subclusters);
 
+  /// Returns that are each a run of its own; their elements are not in use.
+  struct Labelled {
+    const NearReturns* near;
+    std::uint32_t* set;  ///< receives the number of each return's set
+  };
+  /// Numbers the sets of neighbours of such returns, in the order of their voxels.
+  /// \param tolerance joins something
+  /// \param sizes receives the number of returns of each set
+  /// \return as link ()
+  bool label(const std::vector<Labelled>& parts, const Tolerance& tolerance, std::vector<std::uint32_t>& sizes);
+
  private:
   /// Fragments of consecutive planes, the work of one thread.
   struct Slab {
     std::size_t begin, end;  ///< among the sorted fragments
+    std::size_t voxels = 0;  ///< of single returns: number of them; voxel i is element begin + i
   };
 
+  bool sortFragments(const Tolerance& tolerance);
   bool number(const Tolerance& tolerance);
   void cutFragments();
-  bool areSingle() const;
   void divide();
   void sort(const Slab& slab);
+  void linkSlabs(const Tolerance& tolerance, DisjointSets& subclusters);
+  void numberSets(std::vector<std::uint32_t>& sizes);
+  void labelSlab(const Slab& slab);
   void linkSlab(std::size_t slab, const Tolerance& tolerance, DisjointSets& subclusters);
+  void addVoxels(std::size_t slab, const VoxelPlane& plane, std::size_t voxels);
   std::uint64_t planeOf(std::uint64_t item) const { return item >> plane_shift_; }
   std::size_t endOfPlane(std::size_t begin, std::size_t end) const;
 
@@ -62,6 +78,10 @@ class VoxelSorter {
   std::vector<std::uint32_t> histogram_;
   std::vector<Slab> slabs_;
   std::vector<VoxelPlane> planes_;  ///< two for each slab
+  GrowingArray<std::uint8_t> begins_voxel_;
+  DisjointSets voxels_;             ///< of single returns
+  GrowingArray<std::uint32_t> voxel_sizes_;    ///< of each element
+  GrowingArray<std::uint32_t> number_of_voxel_;  ///< of its set
 };
 
 }  // namespace lisco

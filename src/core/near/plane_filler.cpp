@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include <algorithm>
+
+#include "core/near/constants.h"
+#include "core/near/voxel_plane.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/near/plane_filler.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
+
+#include "core/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lisco {
+namespace HWY_NAMESPACE {
+
+/// Puts sorted fragments into a plane, in place of what was there.
+/// \tparam ReturnOf callable as const NearReturn* (std::size_t number): the first of a fragment
+template <typename ReturnOf>
+class PlaneFiller {
+ public:
+  PlaneFiller(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,
+              ReturnOf return_of)
+      : plane_(plane),
+        items_(items),
+        count_(count),
+        number_bits_(layout.number_bits),
+        number_mask_((std::uint64_t{1} << layout.number_bits) - 1),
+        key_mask_((std::uint64_t{1} << layout.brick_bits) - 1),
+        return_of_(return_of) {
+    for (std::size_t i = 0; i < plane.brick_count; ++i) plane.map.remove(plane.bricks[i].key);
+    plane.brick_count = 0;
+    plane.map.reserve(std::size_t{1} << layout.brick_bits);
+  }
+
+  /// Fragments of runs, which are elements: those of a voxel are joined.
+  std::size_t fillFromRuns(const FragmentList& fragments, DisjointSets& subclusters) {
+    for (std::size_t i = 0; i < count_;) {
+      const std::uint64_t brick = brickOf(i);
+      beginBrick(brick);
+      do {
+        const std::uint64_t voxel = keyOf(i);
+        beginVoxel(voxel);
+        std::uint32_t root = subclusters.find(returnOf(i)->element);
+        BoxLanes box(*returnOf(i));
+        do {
+          // In unordered clouds, returns and their sets are scattered in memory.
+          __builtin_prefetch(returnOf(i + kPrefetch));
+          subclusters.prefetch(returnOf(i + kPrefetch / 2)->element);
+          const NearReturn* const near = returnOf(i);
+          root = subclusters.add(root, near->element);
+          const std::size_t number = numberOf(i);
+          const std::size_t size = fragments.endOf(number) - number;
+          plane_.reservePoints(points_ + size);
+          for (std::size_t k = 0; k < size; k += kNearStep)
+            for (std::size_t some = k; some < k + kNearStep; ++some) {
+              plane_.points[points_ + some] = near[some];
+              box.add(near[std::min(some, size - 1)]);
+            }
+          points_ += size;
+          ++i;
+        } while (i < count_ && keyOf(i) == voxel);
+        endVoxel(box, root);
+      } while (i < count_ && brickOf(i) == brick);
+    }
+    return finish();
+  }
+
+  /// Single returns. Voxels are elements.
+  /// \param begins_voxel receives whether a return, in the order of the items, begins a voxel
+  std::size_t fillFromSingle(std::uint32_t first_voxel, std::uint8_t* begins_voxel) {
+    for (std::size_t i = 0; i < count_;) {
+      const std::uint64_t brick = brickOf(i);
+      const std::size_t most = std::min(count_, i + kFewReturns + 1);
+      std::size_t end = i + 1;
+      while (end < most && brickOf(end) == brick) ++end;
+      beginBrick(brick);
+      if (end - i <= kFewReturns) {
+        addFew(i, end, first_voxel);
+        std::fill(begins_voxel + i, begins_voxel + end, std::uint8_t{1});
+        i = end;
+        continue;
+      }
+      do {
+        const std::uint64_t voxel = keyOf(i);
+        begins_voxel[i] = 1;
+        beginVoxel(voxel);
+        BoxLanes box = addReturn(i);
+        while (++i < count_ && keyOf(i) == voxel) {
+          begins_voxel[i] = 0;
+          box.add(addReturn(i));
+        }
+        endVoxel(box, first_voxel + voxels_);
+      } while (i < count_ && brickOf(i) == brick);
+    }
+    return finish();
+  }
+
+ private:
+  std::uint64_t keyOf(std::size_t i) const { return items_[i] >> number_bits_; }
+  std::uint64_t brickOf(std::size_t i) const { return keyOf(i) >> 6; }
+  std::size_t numberOf(std::size_t i) const { return static_cast<std::size_t>(items_[i] & number_mask_); }
+  const NearReturn* returnOf(std::size_t i) const { return return_of_(numberOf(i)); }
+
+  void beginBrick(std::uint64_t brick) {
+    const std::uint64_t key = brick & key_mask_;
+    plane_.reserveBricks(bricks_ + 1);
+    plane_.bricks[bricks_] = {key, 0, voxels_, VoxelPlane::kSeveral, BoxLanes(NearReturn{})};
+    plane_.map.add(key, bricks_);
+    plane_.brick_count = ++bricks_;
+  }
+
+  void beginVoxel(std::uint64_t key) {
+    plane_.reserveVoxels(voxels_ + 2);
+    plane_.first_point[voxels_] = static_cast<std::uint32_t>(points_);
+    plane_.bricks[bricks_ - 1].occupied |= std::uint64_t{1} << (key & 63U);
+  }
+
+  void endVoxel(const BoxLanes& box, std::uint32_t root) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      plane_.lo[axis][voxels_] = box.lo(axis);
+      plane_.hi[axis][voxels_] = box.hi(axis);
+    }
+    plane_.root[voxels_] = root;
+    VoxelPlane::Brick& brick = plane_.bricks[bricks_ - 1];
+    if (brick.first_voxel == voxels_)
+      brick.box = box;
+    else
+      brick.box.add(box);
+    ++voxels_;
+  }
+
+  BoxLanes addReturn(std::size_t i) {
+    __builtin_prefetch(returnOf(i + kPrefetch));
+    const NearReturn* const near = returnOf(i);
+    plane_.reservePoints(points_ + 1);
+    plane_.points[points_++] = *near;
+    return BoxLanes(*near);
+  }
+
+  /// Adds the returns of a brick as voxels of their own.
+  void addFew(std::size_t begin, std::size_t end, std::uint32_t first_voxel) {
+    plane_.reserveVoxels(voxels_ + kFewReturns + 1);
+    BoxLanes box(*returnOf(begin));
+    for (std::size_t i = begin; i < end; ++i, ++voxels_) {
+      plane_.first_point[voxels_] = static_cast<std::uint32_t>(points_);
+      plane_.root[voxels_] = first_voxel + voxels_;
+      const NearReturn& near = *returnOf(i);
+      plane_.lo[0][voxels_] = plane_.hi[0][voxels_] = near.x;
+      plane_.lo[1][voxels_] = plane_.hi[1][voxels_] = near.y;
+      plane_.lo[2][voxels_] = plane_.hi[2][voxels_] = near.z;
+      box.add(addReturn(i));
+    }
+    plane_.bricks[bricks_ - 1].box = box;
+  }
+
+  std::size_t finish() {
+    plane_.reserveVoxels(voxels_ + 1);
+    plane_.first_point[voxels_] = static_cast<std::uint32_t>(points_);
+    plane_.reserveBricks(bricks_ + 1);
+    plane_.bricks[bricks_] = {~std::uint64_t{0}, 0, voxels_, VoxelPlane::kSeveral, BoxLanes(NearReturn{})};
+    return voxels_;
+  }
+
+  VoxelPlane& plane_;
+  const std::uint64_t* const items_;
+  const std::size_t count_;
+  const unsigned number_bits_;
+  const std::uint64_t number_mask_, key_mask_;
+  const ReturnOf return_of_;
+  std::uint32_t bricks_ = 0;
+  std::uint32_t voxels_ = 0;
+  std::size_t points_ = 0;
+};
+
+/// Calls fill(filler) with a filler of a plane. \return what it returns
+template <typename Fill>
+std::size_t fillWith(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,
+                     const FragmentList& fragments, Fill&& fill) {
+  const auto fillFrom = [&](auto return_of) {
+    PlaneFiller<decltype(return_of)> filler(plane, items, count, layout, return_of);
+    return fill(filler);
+  };
+  if (fragments.parts.size() > 1)
+    return fillFrom([&fragments](std::size_t number) {
+      const FragmentList::Part& part = fragments.partOf(number);
+      return part.near->returns.data() + (number - part.first);
+    });
+  return fillFrom([returns = fragments.parts.front().near->returns.data()](std::size_t number) {
+    return returns + number;
+  });
+}
+
+std::size_t fillFromRuns(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,
+                         const FragmentList& fragments, DisjointSets& subclusters) {
+  return fillWith(plane, items, count, layout, fragments,
+                  [&](auto& filler) { return filler.fillFromRuns(fragments, subclusters); });
+}
+
+std::size_t fillFromSingle(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,
+                           const FragmentList& fragments, std::uint32_t first_voxel, std::uint8_t* begins_voxel) {
+  return fillWith(plane, items, count, layout, fragments,
+                  [&](auto& filler) { return filler.fillFromSingle(first_voxel, begins_voxel); });
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lisco
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lisco {
+namespace {
+
+HWY_EXPORT(fillFromRuns);
+HWY_EXPORT(fillFromSingle);
+
+}  // namespace
+
+void fillPlaneFromRuns(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,
+                       const FragmentList& fragments, DisjointSets& subclusters) {
+  HWY_DYNAMIC_DISPATCH(fillFromRuns)(plane, items, count, layout, fragments, subclusters);
+}
+
+std::size_t fillPlaneFromSingle(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
+                                const PlaneLayout& layout, const FragmentList& fragments, std::uint32_t first_voxel,
+                                std::uint8_t* begins_voxel) {
+  return HWY_DYNAMIC_DISPATCH(fillFromSingle)(plane, items, count, layout, fragments, first_voxel, begins_voxel);
+}
+
+}  // namespace lisco
+#endif

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "core/near/unordered_returns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/near/constants.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/near/unordered_returns.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
+
+#include "core/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lisco {
+namespace HWY_NAMESPACE {
+
+/// Copies the returns of a ring block side by side. Up to kReadBehind more are written.
+/// \param columns those behind are no returns
+/// \return bit i: column i is a return
+ColumnBits copyReturns(const RingBlock& block, std::size_t columns, NearReturn* to, std::uint32_t* source_index) {
+  static_assert(kLanes <= kReadBehind, "a vector fits behind the last");
+  static_assert(sizeof(NearReturn) == 4 * sizeof(float), "lane 4 i + k is coordinate k");
+  ColumnBits all = 0;
+  for (std::size_t k = 0; k < columns; k += kLanes) {
+    const FloatVector x = hn::LoadU(kFloats, block.x + RingBlock::kMargin + k);
+    const FloatVector y = hn::LoadU(kFloats, block.y + RingBlock::kMargin + k);
+    const FloatVector z = hn::LoadU(kFloats, block.z + RingBlock::kMargin + k);
+    const std::uint64_t returns = bitsOf(areReturns(x, y, z)) & lanesBelow(columns - k);
+    const FloatMask chosen = lanesOf(returns);
+    hn::StoreInterleaved4(hn::Compress(x, chosen), hn::Compress(y, chosen), hn::Compress(z, chosen),
+                          hn::Zero(kFloats), kFloats, &to->x);
+    const FloatVector sources = hn::BitCast(kFloats, hn::LoadU(kWords, block.source_index + k));
+    hn::StoreU(hn::BitCast(kWords, hn::Compress(sources, chosen)), kWords, source_index);
+    const std::uint32_t count = countBits(returns);
+    to += count;
+    source_index += count;
+    all |= returns << k;
+  }
+  return all;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lisco
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lisco {
+
+namespace {
+
+HWY_EXPORT(copyReturns);
+
+/// Shares of returns that begin a run, and that begin a fragment: a run or its part in another voxel. Above either, runs
+/// take more time than they save; lower ones slow down dense clouds in order, higher ones sparse clouds
+/// (benchmarks/suite.sh recordings).
+constexpr double kManyRuns = 0.4;
+constexpr double kManyFragments = 0.9;
+/// Pairs of adjacent cells that are sampled, at most.
+constexpr std::size_t kSampledPairs = 128;
+
+}  // namespace
+
+bool UnorderedReturns::areIn(std::size_t columns, std::size_t lasers, const CellSource& cells,
+                             const Tolerance& tolerance) {
+  if (!tolerance.joinsAnything()) return false;
+  // Odd, so that not always the same laser is met where the columns are firings.
+  const std::size_t step = std::max<std::size_t>(1, columns * lasers / kSampledPairs) | 1;
+  std::size_t returns = 0;
+  std::size_t runs = 0;
+  double fragments = 0;
+  for (std::size_t cell = step / 2; cell < columns * lasers; cell += step) {
+    const std::size_t laser = cell / columns;
+    const std::size_t column = cell % columns;
+    if (column == 0) continue;
+    const Return here = cells.at(laser, column);
+    if (!isReturn(here.x, here.y, here.z)) continue;
+    ++returns;
+    const Return before = cells.at(laser, column - 1);
+    const float dx = std::fabs(here.x - before.x);
+    const float dy = std::fabs(here.y - before.y);
+    const float dz = std::fabs(here.z - before.z);
+    const bool goes_on = isReturn(before.x, before.y, before.z) && squaredDistance(dx, dy, dz) < tolerance.squared();
+    runs += goes_on ? 0 : 1;
+    // About the probability of a voxel's border in between.
+    const double border = static_cast<double>(dx + dy + dz) / (kVoxelSide * tolerance.reach());
+    fragments += goes_on ? std::min(1.0, border) : 1.0;
+  }
+  const auto all = static_cast<double>(returns);
+  return static_cast<double>(runs) > kManyRuns * all || fragments > kManyFragments * all;
+}
+
+void UnorderedReturns::begin(std::size_t parts) {
+  if (parts_.size() < parts) parts_.resize(parts);
+  part_count_ = parts;
+  for (Part& part : parts_) {
+    part.near.count = 0;
+    part.blocks.clear();
+  }
+  is_sorted_ = false;
+}
+
+void UnorderedReturns::readPart(std::size_t number, const CellSource& cells, std::size_t first, std::size_t end,
+                                std::size_t lasers) {
+  Part& part = parts_[number];
+  const std::size_t most = (end - first) * lasers + RingBlock::kColumns + kReadBehind;
+  part.near.returns.grow(most);
+  part.source_index.grow(most);
+  RingBlock block;
+  for (std::size_t laser = 0; laser < lasers; ++laser)
+    for (std::size_t column = first; column < end; column += RingBlock::kColumns) {
+      const std::size_t columns = std::min(end - column, RingBlock::kColumns);
+      block.read(0, cells, laser, column, columns);
+      const std::size_t count = part.near.count;
+      const ColumnBits returns = HWY_DYNAMIC_DISPATCH(copyReturns)(block, columns, part.near.returns.data() + count,
+                                                                   part.source_index.data() + count);
+      if (returns == 0) continue;
+      part.near.count += countBits(returns);
+      reserveInSteps(part.blocks, part.blocks.size() + 1);
+      part.blocks.push_back({static_cast<std::uint32_t>(laser), static_cast<std::uint32_t>(column),
+                             static_cast<std::uint32_t>(count), returns});
+    }
+  part.number.grow(part.near.count);
+}
+
+bool UnorderedReturns::link(VoxelSorter& sorter, const Tolerance& tolerance, std::vector<std::uint32_t>& sizes) {
+  labelled_.clear();
+  for (std::size_t i = 0; i < part_count_; ++i) labelled_.push_back({&parts_[i].near, parts_[i].number.data()});
+  return sorter.label(labelled_, tolerance, sizes);
+}
+
+std::size_t UnorderedReturns::count() const {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < part_count_; ++i) count += parts_[i].near.count;
+  return count;
+}
+
+void UnorderedReturns::sortBlocks() {
+  if (is_sorted_) return;
+  order_.sort(part_count_, [this](std::size_t i) -> const Part& { return parts_[i]; });
+  is_sorted_ = true;
+}
+
+void UnorderedReturns::visit(const RunVisitor& visit) {
+  sortBlocks();
+  order_.forEachBlock([this](std::size_t i) -> const Part& { return parts_[i]; },
+                      [&](std::size_t, const Part& part, const Block& block) {
+                        visit.visitSingle(part.number.data() + block.first_return, countBits(block.returns),
+                                          part.source_index.data() + block.first_return);
+                      });
+}
+
+std::uint32_t UnorderedReturns::numberAt(std::size_t laser, std::size_t column) {
+  sortBlocks();
+  LaserOrder::Entry entry{};
+  if (!order_.find(laser, column, [this](std::size_t i) -> const Part& { return parts_[i]; }, entry)) return kNone;
+  const Part& part = parts_[entry.partition];
+  const Block& block = part.blocks[entry.block];
+  const std::size_t offset = column - block.first_column;
+  if ((block.returns >> offset & 1) == 0) return kNone;
+  return part.number[block.first_return + countBits(block.returns & ~bitsFrom(offset))];
+}
+
+void UnorderedReturns::moveTo(Partition& partition, DisjointSets& subclusters) {
+  RingBlock ring{};
+  for (std::size_t i = 0; i < part_count_; ++i)
+    for (const Block& block : parts_[i].blocks) {
+      std::fill(ring.x, ring.x + RingBlock::kSize, std::numeric_limits<float>::quiet_NaN());
+      std::size_t number = block.first_return;
+      forEachBit(block.returns, [&](std::size_t column) {
+        const NearReturn& near = parts_[i].near.returns[number];
+        ring.x[RingBlock::kMargin + column] = near.x;
+        ring.y[RingBlock::kMargin + column] = near.y;
+        ring.z[RingBlock::kMargin + column] = near.z;
+        ring.source_index[column] = parts_[i].source_index[number];
+        ++number;
+      });
+      const auto columns = static_cast<std::size_t>(64 - __builtin_clzll(block.returns));
+      partition.readRing(ring, block.laser, block.first_column, columns, subclusters);
+    }
+  begin(0);
+}
+
+}  // namespace lisco
+#endif
