@@ -160,8 +160,8 @@ SensorFrame SensorFrameEstimator::middle() const {
 }
 
 SensorFrame SensorFrameEstimator::fit() const {
-  constexpr int kSteps = 8;
-  constexpr double kSettled = 0.002;  // metres
+  constexpr int kSteps = 5;
+  constexpr double kSettled = 0.02;  // metres
   constexpr double kMaxTilt = 0.3;
   constexpr double kMinScale = 1e-5;  // of slopes: rounding
   SensorFrame frame = middle();

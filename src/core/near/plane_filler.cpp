@@ -30,9 +30,7 @@ class PlaneFiller {
         number_mask_((std::uint64_t{1} << layout.number_bits) - 1),
         key_mask_((std::uint64_t{1} << layout.brick_bits) - 1),
         return_of_(return_of) {
-    for (std::size_t i = 0; i < plane.brick_count; ++i) plane.map.remove(plane.bricks[i].key);
-    plane.brick_count = 0;
-    plane.map.reserve(std::size_t{1} << layout.brick_bits);
+    plane.map.clear(count, layout.brick_bits);
   }
 
   /// Fragments of runs, which are elements: those of a voxel are joined.
@@ -109,7 +107,7 @@ class PlaneFiller {
     plane_.reserveBricks(bricks_ + 1);
     plane_.bricks[bricks_] = {key, 0, voxels_, VoxelPlane::kSeveral, BoxLanes(NearReturn{})};
     plane_.map.add(key, bricks_);
-    plane_.brick_count = ++bricks_;
+    ++bricks_;
   }
 
   void beginVoxel(std::uint64_t key) {
@@ -159,6 +157,7 @@ class PlaneFiller {
   std::size_t finish() {
     plane_.reserveVoxels(voxels_ + 1);
     plane_.first_point[voxels_] = static_cast<std::uint32_t>(points_);
+    plane_.brick_count = bricks_;
     plane_.reserveBricks(bricks_ + 1);
     plane_.bricks[bricks_] = {~std::uint64_t{0}, 0, voxels_, VoxelPlane::kSeveral, BoxLanes(NearReturn{})};
     return voxels_;

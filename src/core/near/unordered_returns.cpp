@@ -61,7 +61,7 @@ HWY_EXPORT(copyReturns);
 constexpr double kManyRuns = 0.4;
 constexpr double kManyFragments = 0.9;
 /// Pairs of adjacent cells that are sampled, at most.
-constexpr std::size_t kSampledPairs = 128;
+constexpr std::size_t kSampledPairs = 256;
 
 }  // namespace
 

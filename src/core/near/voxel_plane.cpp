@@ -27,29 +27,17 @@ class PlaneLinker {
 
   void linkWithin(VoxelPlane& plane) {
     for (VoxelPlane::Brick& brick : bricksOf(plane)) linkBrick(plane, brick);
-    const std::uint64_t next_row = layout_.nextRow();
-    for (VoxelPlane::Brick& brick : bricksOf(plane)) {
-      // The next one in its row, and three of the next row.
-      const std::uint32_t near = (plane.map.near(brick.key + 1) >> 1 & 1U) | plane.map.near(brick.key + next_row) << 1;
-      forEachBit(near, [&](std::size_t i) {
-        const std::uint64_t key = i == 0 ? brick.key + 1 : brick.key + next_row + i - 2;
-        linkBricks(plane, brick, plane, plane.bricks[plane.map.numberOf(key)], kOwnBrick + 1 + i);
-      });
-    }
+    if (plane.map.isInOrder())
+      linkToRows<true>(plane);
+    else
+      linkToRows<false>(plane);
   }
 
   void linkAcross(VoxelPlane& plane, VoxelPlane& next) {
-    const std::uint64_t next_row = layout_.nextRow();
-    for (VoxelPlane::Brick& brick : bricksOf(plane)) {
-      // Three of each of three rows.
-      const std::uint64_t first = brick.key - next_row;
-      const std::uint32_t near =
-          next.map.near(first) | next.map.near(brick.key) << 3 | next.map.near(brick.key + next_row) << 6;
-      forEachBit(near, [&](std::size_t i) {
-        const std::uint64_t key = first + i / 3 * next_row + i % 3 - 1;
-        linkBricks(plane, brick, next, next.bricks[next.map.numberOf(key)], kOwnBrick + 5 + i);
-      });
-    }
+    if (next.map.isInOrder())
+      linkToRows<true>(plane, next);
+    else
+      linkToRows<false>(plane, next);
   }
 
  private:
@@ -62,6 +50,35 @@ class PlaneLinker {
   static Range bricksOf(VoxelPlane& plane) { return {plane.bricks.data(), plane.bricks.data() + plane.brick_count}; }
 
   std::uint32_t endOf(const VoxelPlane::Brick& brick) const { return (&brick + 1)->first_voxel; }
+
+  /// Links each brick with the next one in its row, and with three of the next row.
+  template <bool kInOrder>
+  void linkToRows(VoxelPlane& plane) {
+    const std::uint64_t next_row = layout_.nextRow();
+    for (VoxelPlane::Brick& brick : bricksOf(plane)) {
+      const std::uint32_t near = (plane.map.near<kInOrder>(brick.key + 1) >> 1 & 1U) |
+                                 plane.map.near<kInOrder>(brick.key + next_row) << 1;
+      forEachBit(near, [&](std::size_t i) {
+        const std::uint64_t key = i == 0 ? brick.key + 1 : brick.key + next_row + i - 2;
+        linkBricks(plane, brick, plane, plane.bricks[plane.map.numberOf<kInOrder>(key)], kOwnBrick + 1 + i);
+      });
+    }
+  }
+
+  /// Links each brick with three of each of three rows of the next plane.
+  template <bool kInOrder>
+  void linkToRows(VoxelPlane& plane, VoxelPlane& next) {
+    const std::uint64_t next_row = layout_.nextRow();
+    for (VoxelPlane::Brick& brick : bricksOf(plane)) {
+      const std::uint64_t first = brick.key - next_row;
+      const std::uint32_t near = next.map.near<kInOrder>(first) | next.map.near<kInOrder>(brick.key) << 3 |
+                                 next.map.near<kInOrder>(brick.key + next_row) << 6;
+      forEachBit(near, [&](std::size_t i) {
+        const std::uint64_t key = first + i / 3 * next_row + i % 3 - 1;
+        linkBricks(plane, brick, next, next.bricks[next.map.numberOf<kInOrder>(key)], kOwnBrick + 5 + i);
+      });
+    }
+  }
 
   /// Links the voxels of a brick with each other: each that joins a set is compared with those in no set yet.
   void linkBrick(VoxelPlane& plane, VoxelPlane::Brick& brick) {
@@ -163,9 +180,10 @@ class PlaneLinker {
                   std::size_t number) {
     if (!(BoxLanes::squaredGap(brick.box, near.box) < layout_.squared_tolerance) || haveOneRoot(brick, near)) return;
     if (isSingle(brick) && isSingle(near)) {  // their boxes are those of the bricks
+      std::uint32_t& root = plane.root[brick.first_voxel];
+      std::uint32_t& near_root = other.root[near.first_voxel];
       if (haveNeighbours(plane, brick.first_voxel, other, near.first_voxel))
-        brick.root = near.root = plane.root[brick.first_voxel] = other.root[near.first_voxel] =
-            subclusters_.merge(brick.root, near.root);
+        root = near_root = subclusters_.merge(root, near_root);
       return;
     }
     if (brick.occupied == 0 && near.occupied == 0) {
