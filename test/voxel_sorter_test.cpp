@@ -113,7 +113,40 @@ bool isEasy(const Cloud& cloud) {
   return bits < 64;
 }
 
-/// Links a cloud, and holds the sets against brute force.
+/// Numbers the sets of a cloud's points, each for itself, and holds them against brute force.
+/// \param is_sorted whether the sorter is expected to take the cloud
+void expectTrueNumbers(lisco::VoxelSorter& sorter, Cloud cloud, bool is_sorted) {
+  cloud.merged.clear();
+  cloud.elements.resize(cloud.points.size());
+  std::iota(cloud.elements.begin(), cloud.elements.end(), 0U);
+  const std::vector<lisco::NearReturns> parts = partsOf(cloud);
+  constexpr std::uint32_t kUnset = ~std::uint32_t{0};
+  std::vector<std::uint32_t> numbers(cloud.points.size(), kUnset);
+  std::vector<lisco::VoxelSorter::Numbered> numbered;
+  std::size_t first = 0;
+  for (const lisco::NearReturns& part : parts) {
+    numbered.push_back({&part, numbers.data() + first});
+    first += part.count;
+  }
+  std::vector<std::uint32_t> sizes{7, 7};
+  EXPECT_EQ(sorter.number(numbered, lisco::Tolerance(cloud.tolerance), sizes), is_sorted) << cloud;
+  if (!is_sorted) return;
+  const std::vector<std::uint32_t> right = trueSets(cloud, true);
+  std::vector<std::uint32_t> set_of_number(sizes.size(), kUnset);
+  std::vector<std::uint32_t> true_sizes(sizes.size(), 0);
+  for (std::size_t i = 0; i < right.size(); ++i) {
+    ASSERT_LT(numbers[i], sizes.size()) << "point " << i << ", " << cloud;
+    std::uint32_t& set = set_of_number[numbers[i]];
+    if (set == kUnset) set = right[i];
+    ASSERT_EQ(set, right[i]) << "point " << i << ", " << lisco::simdLevel() << ", " << cloud;
+    ++true_sizes[numbers[i]];
+  }
+  EXPECT_EQ(sizes, true_sizes) << cloud;
+  std::sort(set_of_number.begin(), set_of_number.end());
+  EXPECT_EQ(std::unique(set_of_number.begin(), set_of_number.end()), set_of_number.end()) << "a set of two numbers";
+}
+
+/// Links a cloud, and holds the sets against brute force; and those of its points without runs.
 /// \return whether the returns were sorted
 bool expectTrueSets(lisco::VoxelSorter& sorter, const Cloud& cloud) {
   lisco::DisjointSets subclusters;
@@ -134,6 +167,7 @@ bool expectTrueSets(lisco::VoxelSorter& sorter, const Cloud& cloud) {
                   << lisco::simdLevel() << (is_sorted ? ", " : ", not sorted, ") << cloud;
     break;
   }
+  if (lisco::Tolerance(cloud.tolerance).joinsAnything()) expectTrueNumbers(sorter, cloud, is_sorted);
   return is_sorted;
 }
 

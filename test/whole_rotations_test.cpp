@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "core/near/unordered_returns.h"
+#include "core/neighbour.h"
 #include "engine.h"
 #include "lisco/column_clusterer.h"
 #include "lisco/simd.h"
@@ -202,6 +204,39 @@ TEST(WholeRotations, OfAnyScanEqualTheOracle) {
     feeder.expectExact();
     if (HasFailure()) return;
   }
+}
+
+// Columns of which each return is a run: some at first, then one by one.
+TEST_P(WholeRotations, OfUnorderedReturnsEqualTheOracle) {
+  lisco::ColumnClusterer clusterer;
+  std::size_t unordered = 0;
+  const std::uint64_t count = timesEffort(150);
+  for (std::uint64_t seed = 3'000'000; seed < 3'000'000 + count; ++seed) {
+    Random random(seed);
+    Recording recording = randomRecording(random);
+    recording.scan = widened(random, recording.scan, kSortedColumns + random.below(300));
+    std::vector<Point> points = recording.scan.points();
+    random.shuffle(points);
+    const std::size_t lasers = recording.scan.lasers;
+    const std::size_t columns = recording.scan.columns;
+    for (std::size_t cell = 0; cell < points.size(); ++cell)
+      recording.scan.set(cell / columns, cell % columns, points[cell]);
+    lisco::Parameters parameters = parametersFor(random, recording, random.chance(0.3) ? 1 + random.below(8) : 1);
+    parameters.sensor = lisco::SensorHints();
+    const auto cells = [&](std::size_t laser, std::size_t column) { return recording.scan.at(laser, column); };
+    unordered += lisco::UnorderedReturns::areIn(columns, lasers, lisco::CellSource(cells),
+                                                lisco::Tolerance(recording.tolerance))
+                     ? 1
+                     : 0;
+    const SimdLevel level(levels()[seed % levels().size()]);
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", " + lisco::simdLevel() + ", " + std::to_string(lasers) + " x " +
+                 std::to_string(columns) + ", " + std::to_string(parameters.threads) + " threads");
+    Feeder feeder(clusterer, recording, parameters);
+    GetParam().feed(random, feeder);
+    feeder.expectExact();
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(unordered, count / 3);
 }
 
 }  // namespace

@@ -128,9 +128,9 @@ void UnorderedReturns::readPart(std::size_t number, const CellSource& cells, std
 }
 
 bool UnorderedReturns::link(VoxelSorter& sorter, const Tolerance& tolerance, std::vector<std::uint32_t>& sizes) {
-  labelled_.clear();
-  for (std::size_t i = 0; i < part_count_; ++i) labelled_.push_back({&parts_[i].near, parts_[i].number.data()});
-  return sorter.label(labelled_, tolerance, sizes);
+  numbered_.clear();
+  for (std::size_t i = 0; i < part_count_; ++i) numbered_.push_back({&parts_[i].near, parts_[i].number.data()});
+  return sorter.number(numbered_, tolerance, sizes);
 }
 
 std::size_t UnorderedReturns::count() const {

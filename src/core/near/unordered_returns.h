@@ -63,7 +63,7 @@ class UnorderedReturns {
 
   std::vector<Part> parts_;
   std::size_t part_count_ = 0;
-  std::vector<VoxelSorter::Labelled> labelled_;
+  std::vector<VoxelSorter::Numbered> numbered_;
   LaserOrder order_;
   bool is_sorted_ = false;  ///< order_, since begin ()
 };

@@ -172,11 +172,11 @@ bool VoxelSorter::link(const std::vector<const NearReturns*>& parts, const Toler
   return true;
 }
 
-bool VoxelSorter::label(const std::vector<Labelled>& parts, const Tolerance& tolerance,
+bool VoxelSorter::number(const std::vector<Numbered>& parts, const Tolerance& tolerance,
                         std::vector<std::uint32_t>& sizes) {
   sizes.clear();
   fragments_.begin(true);
-  for (const Labelled& part : parts) fragments_.add(*part.near, part.set);
+  for (const Numbered& part : parts) fragments_.add(*part.near, part.set);
   if (fragments_.parts.empty()) return true;
   if (!sortFragments(tolerance)) return false;
   const std::size_t most = slabs_.back().end;
@@ -187,13 +187,13 @@ bool VoxelSorter::label(const std::vector<Labelled>& parts, const Tolerance& tol
   number_of_voxel_.grow(most);
   linkSlabs(tolerance, voxels_);
   numberSets(sizes);
-  inParallel(slabs_.size(), [&](std::size_t slab) { labelSlab(slabs_[slab]); });
+  inParallel(slabs_.size(), [&](std::size_t slab) { numberReturns(slabs_[slab]); });
   return true;
 }
 
 /// Sorts all fragments by voxel, in slabs. \return false if the voxels cannot be numbered
 bool VoxelSorter::sortFragments(const Tolerance& tolerance) {
-  if (!number(tolerance)) return false;
+  if (!numberVoxels(tolerance)) return false;
   cutFragments();
   divide();
   if (planes_.size() < 2 * slabs_.size()) planes_.resize(2 * slabs_.size());
@@ -217,26 +217,26 @@ void VoxelSorter::numberSets(std::vector<std::uint32_t>& sizes) {
 }
 
 /// Hands the numbers of sets to the returns.
-void VoxelSorter::labelSlab(const Slab& slab) {
-  const auto labelAll = [&, number_bits = number_bits_, items = items_.data()](auto&& setAt) {
+void VoxelSorter::numberReturns(const Slab& slab) {
+  const auto numberAll = [&, number_bits = number_bits_, items = items_.data()](auto&& numberAt) {
     const std::uint64_t number_mask = (std::uint64_t{1} << number_bits) - 1;
     const std::uint32_t* number_of_voxel = number_of_voxel_.data() + slab.begin;
     for (std::size_t i = slab.begin; i < slab.end; ++i) {
-      setAt(static_cast<std::size_t>(items[i] & number_mask)) = *number_of_voxel;
+      numberAt(static_cast<std::size_t>(items[i] & number_mask)) = *number_of_voxel;
       number_of_voxel += begins_voxel_[i + 1];
     }
   };
   if (fragments_.parts.size() == 1)
-    labelAll([sets = fragments_.parts[0].set](std::size_t number) -> std::uint32_t& { return sets[number]; });
+    numberAll([sets = fragments_.parts[0].set](std::size_t number) -> std::uint32_t& { return sets[number]; });
   else
-    labelAll([this](std::size_t number) -> std::uint32_t& {
+    numberAll([this](std::size_t number) -> std::uint32_t& {
       const FragmentList::Part& part = fragments_.partOf(number);
       return part.set[number - part.first];
     });
 }
 
 /// Chooses the axes and the bits of the keys.
-bool VoxelSorter::number(const Tolerance& tolerance) {
+bool VoxelSorter::numberVoxels(const Tolerance& tolerance) {
   if (tolerance.reach() < kMinSortedTolerance || tolerance.reach() > kMaxSortedTolerance) return false;
   numbering_.per_metre = 1 / (kVoxelSide * tolerance.reach());
   double bricks[3];

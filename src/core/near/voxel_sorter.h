@@ -38,7 +38,7 @@ class VoxelSorter {
   bool link(const std::vector<const NearReturns*>& parts, const Tolerance& tolerance, DisjointSets& subclusters);
 
   /// Returns that are each a run of its own; their elements are not in use.
-  struct Labelled {
+  struct Numbered {
     const NearReturns* near;
     std::uint32_t* set;  ///< receives the number of each return's set
   };
@@ -46,7 +46,7 @@ class VoxelSorter {
   /// \param tolerance joins something
   /// \param sizes receives the number of returns of each set
   /// \return as link ()
-  bool label(const std::vector<Labelled>& parts, const Tolerance& tolerance, std::vector<std::uint32_t>& sizes);
+  bool number(const std::vector<Numbered>& parts, const Tolerance& tolerance, std::vector<std::uint32_t>& sizes);
 
  private:
   /// Fragments of consecutive planes, the work of one thread.
@@ -56,13 +56,13 @@ class VoxelSorter {
   };
 
   bool sortFragments(const Tolerance& tolerance);
-  bool number(const Tolerance& tolerance);
+  bool numberVoxels(const Tolerance& tolerance);
   void cutFragments();
   void divide();
   void sort(const Slab& slab);
   void linkSlabs(const Tolerance& tolerance, DisjointSets& subclusters);
   void numberSets(std::vector<std::uint32_t>& sizes);
-  void labelSlab(const Slab& slab);
+  void numberReturns(const Slab& slab);
   void linkSlab(std::size_t slab, const Tolerance& tolerance, DisjointSets& subclusters);
   void addVoxels(std::size_t slab, const VoxelPlane& plane, std::size_t voxels);
   std::uint64_t planeOf(std::uint64_t item) const { return item >> plane_shift_; }
