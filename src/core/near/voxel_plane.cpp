@@ -80,17 +80,29 @@ class PlaneLinker {
     }
   }
 
-  /// Links the voxels of a brick with each other: each that joins a set is compared with those in no set yet.
+  /// Links the voxels of a brick with each other.
   void linkBrick(VoxelPlane& plane, VoxelPlane::Brick& brick) {
     const std::uint32_t first = brick.first_voxel;
-    if (isSingle(brick)) {
+    if (isSingle(brick))
       brick.root = plane.root[first];
-      return;
-    }
-    if (brick.occupied == 0) {
-      linkPoints(plane, brick);
-      return;
-    }
+    else if (brick.holdsFewReturns())
+      spread(plane, brick, [&](std::uint32_t voxel, std::uint64_t left, std::uint32_t& root) {
+        const std::uint64_t joined = neighboursOf(plane, voxel, plane, first) & left;
+        forEachBit(joined, [&](std::size_t i) { root = subclusters_.add(root, plane.root[first + i]); });
+        return joined;
+      });
+    else
+      spread(plane, brick, [&](std::uint32_t voxel, std::uint64_t left, std::uint32_t& root) {
+        return linkVoxel(plane, voxel, plane, first, left, root);
+      });
+  }
+
+  /// Links a voxel that joins a set with those that are in none yet.
+  /// \param link callable as std::uint64_t (std::uint32_t voxel, std::uint64_t left, std::uint32_t& root): links a voxel
+  ///        with some of the brick, and returns those that join its set
+  template <typename Link>
+  void spread(VoxelPlane& plane, VoxelPlane::Brick& brick, Link&& link) {
+    const std::uint32_t first = brick.first_voxel;
     std::uint64_t left = allOf(brick);
     std::uint32_t root = 0;
     std::uint32_t parts = 0;
@@ -99,66 +111,13 @@ class PlaneLinker {
       left -= joined;
       root = subclusters_.find(plane.root[first + static_cast<std::uint32_t>(__builtin_ctzll(joined))]);
       while (joined != 0 && left != 0) {
-        const auto voxel = static_cast<std::uint32_t>(__builtin_ctzll(joined));
-        const std::uint64_t more = linkVoxel(plane, first + voxel, plane, first, left, root);
+        const std::uint64_t more = link(first + static_cast<std::uint32_t>(__builtin_ctzll(joined)), left, root);
         joined = (joined & (joined - 1)) | more;
         left &= ~more;
       }
     }
     brick.root = parts == 1 ? root : VoxelPlane::kSeveral;
     if (parts == 1) std::fill_n(&plane.root[first], endOf(brick) - first, root);
-  }
-
-  /// Links the returns of a brick with each other.
-  void linkPoints(VoxelPlane& plane, VoxelPlane::Brick& brick) {
-    const std::uint32_t first = brick.first_voxel;
-    auto left = static_cast<std::uint32_t>(allOf(brick));
-    std::uint32_t root = 0;
-    std::uint32_t parts = 0;
-    for (; left != 0; ++parts) {
-      std::uint32_t joined = left & (~left + 1);
-      left -= joined;
-      root = subclusters_.find(plane.root[first + static_cast<std::uint32_t>(__builtin_ctz(joined))]);
-      while (joined != 0 && left != 0) {
-        const std::uint32_t more =
-            neighboursOf(plane, first + static_cast<std::uint32_t>(__builtin_ctz(joined)), plane, first) & left;
-        joined = (joined & (joined - 1)) | more;
-        left &= ~more;
-        for (std::uint32_t bits = more; bits != 0; bits &= bits - 1)
-          root = subclusters_.add(root, plane.root[first + static_cast<std::uint32_t>(__builtin_ctz(bits))]);
-      }
-    }
-    brick.root = parts == 1 ? root : VoxelPlane::kSeveral;
-    if (parts == 1) std::fill_n(&plane.root[first], endOf(brick) - first, root);
-  }
-
-  /// Bit i: point first + i of another is a neighbour of a point.
-  std::uint32_t neighboursOf(const VoxelPlane& plane, std::uint32_t point, const VoxelPlane& other,
-                             std::uint32_t first) const {
-    std::uint32_t near = 0;
-    for (std::uint32_t k = 0; k < 16; k += std::uint32_t{kLanes}) {
-      const auto apart = [&](std::size_t axis) {
-        return hn::Sub(hn::Set(kFloats, plane.lo[axis][point]), hn::LoadU(kFloats, &other.lo[axis][first + k]));
-      };
-      near |= bitsOf(areNeighbours(apart(0), apart(1), apart(2), squared_tolerance_)) << k;
-    }
-    return near;
-  }
-
-  /// Links the returns of two bricks.
-  void linkPoints(VoxelPlane& plane, VoxelPlane::Brick& brick, VoxelPlane& other, VoxelPlane::Brick& near) {
-    const auto all = static_cast<std::uint32_t>(allOf(near));
-    for (std::uint32_t point = brick.first_voxel; point < endOf(brick); ++point) {
-      std::uint32_t joined = neighboursOf(plane, point, other, near.first_voxel) & all;
-      if (joined == 0) continue;
-      std::uint32_t root = plane.root[point];
-      for (; joined != 0; joined &= joined - 1) {
-        std::uint32_t& other_root = other.root[near.first_voxel + static_cast<std::uint32_t>(__builtin_ctz(joined))];
-        root = other_root = subclusters_.merge(root, other_root);
-      }
-      plane.root[point] = root;
-      if (haveOneRoot(brick, near)) return;
-    }
   }
 
   /// Whether a brick has one voxel.
@@ -186,33 +145,54 @@ class PlaneLinker {
         root = near_root = subclusters_.merge(root, near_root);
       return;
     }
-    if (brick.occupied == 0 && near.occupied == 0) {
-      if (endOf(brick) - brick.first_voxel <= endOf(near) - near.first_voxel)
-        linkPoints(plane, brick, other, near);
+    const bool has_fewer = endOf(brick) - brick.first_voxel <= endOf(near) - near.first_voxel;
+    if (brick.holdsFewReturns() && near.holdsFewReturns()) {
+      if (has_fewer)
+        linkReturns(plane, brick, other, near);
       else
-        linkPoints(other, near, plane, brick);
-      return;
+        linkReturns(other, near, plane, brick);
+    } else {
+      if (has_fewer)
+        linkVoxels(plane, brick, other, near, number);
+      else
+        linkVoxels(other, near, plane, brick, kNearBricks - 1 - number);
     }
-    if (endOf(brick) - brick.first_voxel <= endOf(near) - near.first_voxel)
-      linkVoxels(plane, brick, other, near, number);
-    else
-      linkVoxels(other, near, plane, brick, kNearBricks - 1 - number);
+  }
+
+  /// The same for two bricks of few returns.
+  void linkReturns(VoxelPlane& plane, VoxelPlane::Brick& brick, VoxelPlane& other, VoxelPlane::Brick& near) {
+    const std::uint32_t first = near.first_voxel;
+    for (std::uint32_t voxel = brick.first_voxel; voxel < endOf(brick); ++voxel) {
+      const std::uint64_t joined = neighboursOf(plane, voxel, other, first) & allOf(near);
+      if (joined == 0) continue;
+      std::uint32_t root = plane.root[voxel];
+      forEachBit(joined, [&](std::size_t i) {
+        root = other.root[first + i] = subclusters_.merge(root, other.root[first + i]);
+      });
+      plane.root[voxel] = root;
+      if (haveOneRoot(brick, near)) return;
+    }
+  }
+
+  /// Bit i, up to kFewReturns: single return first + i is a neighbour of another one.
+  std::uint64_t neighboursOf(const VoxelPlane& plane, std::uint32_t one, const VoxelPlane& other,
+                             std::uint32_t first) const {
+    std::uint64_t near = 0;
+    for (std::uint32_t k = 0; k < kFewReturns; k += std::uint32_t{kLanes}) {
+      const auto apart = [&](std::size_t axis) {
+        return hn::Sub(hn::Set(kFloats, plane.lo[axis][one]), hn::LoadU(kFloats, &other.lo[axis][first + k]));
+      };
+      near |= std::uint64_t{bitsOf(areNeighbours(apart(0), apart(1), apart(2), squared_tolerance_))} << k;
+    }
+    return near;
   }
 
   void linkVoxels(VoxelPlane& plane, VoxelPlane::Brick& brick, VoxelPlane& other, VoxelPlane::Brick& near,
                   std::size_t number) {
-    std::uint32_t voxel = brick.first_voxel;
-    if (brick.occupied == 0) {
-      for (; voxel < endOf(brick); ++voxel) {
-        std::uint32_t root = subclusters_.find(plane.root[voxel]);
-        const std::uint64_t joined = linkVoxel(plane, voxel, other, near.first_voxel, allOf(near), root);
-        plane.root[voxel] = root;
-        if (joined != 0 && haveOneRoot(brick, near)) return;
-      }
-      return;
-    }
-    for (std::uint64_t left = brick.occupied; left != 0; left &= left - 1, ++voxel) {
-      if (near.occupied != 0 && (near.occupied & kNeighbourhood.of[__builtin_ctzll(left)][number]) == 0) continue;
+    const bool are_numbered = !brick.holdsFewReturns() && !near.holdsFewReturns();
+    std::uint64_t numbers = brick.occupied;
+    for (std::uint32_t voxel = brick.first_voxel; voxel < endOf(brick); ++voxel, numbers &= numbers - 1) {
+      if (are_numbered && (near.occupied & kNeighbourhood.of[__builtin_ctzll(numbers)][number]) == 0) continue;
       std::uint32_t root = subclusters_.find(plane.root[voxel]);
       const std::uint64_t joined = linkVoxel(plane, voxel, other, near.first_voxel, allOf(near), root);
       plane.root[voxel] = root;

@@ -98,10 +98,13 @@ struct VoxelPlane {
 
   struct Brick {
     std::uint64_t key;       ///< its numbers along the middle and minor axis
-    std::uint64_t occupied;  ///< bit i: voxel i; 0: few returns, each of which counts as a voxel
+    std::uint64_t occupied;  ///< bit i: voxel i; 0: holdsFewReturns ()
     std::uint32_t first_voxel;
     std::uint32_t root;  ///< common to all its voxels, perhaps outdated; kSeveral if they had several
     BoxLanes box{NearReturn{}};
+
+    /// At most kFewReturns, each of which counts as a voxel.
+    bool holdsFewReturns() const { return occupied == 0; }
   };
 
   /// Ordered by key, with an end mark behind the last. These arrays are longer than what is in use.
