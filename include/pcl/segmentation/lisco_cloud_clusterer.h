@@ -45,7 +45,7 @@ class LISCO_EXPORT LiscoCloudClusterer {
       constexpr std::size_t kCacheLine = 64;
       if (first + cloud.width + count <= cloud.size())
         for (std::size_t i = 0; i < count; i += std::max<std::size_t>(1, kCacheLine / sizeof(PointT)))
-          __builtin_prefetch(points + cloud.width + i);
+          __builtin_prefetch(points + cloud.width + i, 0, 2);
       for (std::size_t i = 0; i < count; ++i) {
         to.x[i] = points[i].x;
         to.y[i] = points[i].y;
