@@ -19,7 +19,7 @@ class LiscoCloudClusterer::State {
   std::vector<char> is_selected;                   ///< per point of the cloud; where many are selected
   Indices few_points;                              ///< ascending; where few are selected
   std::vector<std::uint32_t> subcluster_of_point;  ///< only where the order of the indices is needed
-  std::vector<index_t*> next_index;                ///< memory of LiscoClusterWriter
+  std::vector<LiscoClusterPlace> places;            ///< memory of LiscoClusterWriter
 };
 
 LiscoCloudClusterer::LiscoCloudClusterer() : state_(std::make_unique<State>()) {}
@@ -102,7 +102,7 @@ void LiscoCloudClusterer::collect(const Indices* indices, const PCLHeader& heade
                                   std::vector<PointIndices>& clusters) {
   lisco::ColumnClusterer& clusterer = state_->clusterer;
   std::vector<std::uint32_t>& subcluster_of_point = state_->subcluster_of_point;
-  LiscoClusterWriter writer(clusterer, header, min_size, max_size, state_->next_index, clusters);
+  LiscoClusterWriter writer(clusterer, header, min_size, max_size, state_->places, clusters);
 
   // Clusters are in the order of their first points in the indices; within each, indices ascend.
   if (indices && !std::is_sorted(indices->begin(), indices->end())) {

@@ -23,49 +23,56 @@ inline void sortLiscoClusters(std::vector<PointIndices>& clusters) {
   std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);
 }
 
+/** \brief Where the next point of a subcluster goes. */
+struct LiscoClusterPlace {
+  index_t* next;     ///< nullptr: its cluster has no place yet
+  std::size_t kept;  ///< all bits set; none if its size is not accepted: then next stays where it is
+};
+
 /** \brief Appends subclusters of accepted sizes to a vector as PCL's clusters, in the order of their first place (). */
 template <typename Clusterer>
 class LiscoClusterWriter {
  public:
   /** \param[in] clusterer lisco::ColumnClusterer or lisco::WindowClusterer, after update ()
-   * \param next_index memory of the writer, which a caller may keep for the next one
+   * \param places memory of the writer, which a caller may keep for the next one
    */
   LiscoClusterWriter(const Clusterer& clusterer, const PCLHeader& header, uindex_t min_size, uindex_t max_size,
-                     std::vector<index_t*>& next_index, std::vector<PointIndices>& clusters)
-      : clusterer_(clusterer),
-        header_(header),
-        min_size_(min_size),
-        max_size_(max_size),
-        next_index_(next_index),
-        clusters_(clusters) {
-    next_index_.assign(clusterer.subclusterCount(), nullptr);
+                     std::vector<LiscoClusterPlace>& places, std::vector<PointIndices>& clusters)
+      : clusterer_(clusterer), header_(header), places_(places), clusters_(clusters) {
+    places_.resize(clusterer.subclusterCount());
+    std::uint32_t subcluster = 0;
+    for (LiscoClusterPlace& place : places_) {
+      const std::uint32_t size = clusterer.sizeOf(subcluster++);
+      const bool is_accepted = size >= min_size && size <= max_size;
+      place = {is_accepted ? nullptr : ignored_, is_accepted ? ~std::size_t{0} : std::size_t{0}};
+    }
   }
   LiscoClusterWriter(const LiscoClusterWriter&) = delete;
   LiscoClusterWriter& operator=(const LiscoClusterWriter&) = delete;
 
-  /** \brief Gives the cluster of a subcluster the next place, unless it has one or its size is not accepted.
-   * \return whether the size is accepted
-   */
-  bool place(std::uint32_t subcluster) {
-    index_t*& next = next_index_[subcluster];
-    if (next == nullptr) next = begin(clusterer_.sizeOf(subcluster));
-    return (next != &ignored_);
+  /** \brief Gives the cluster of a subcluster the next place, unless it has one or its size is not accepted. */
+  void place(std::uint32_t subcluster) {
+    if (places_[subcluster].next == nullptr) places_[subcluster].next = begin(clusterer_.sizeOf(subcluster));
   }
 
   /** \brief Appends points to the cluster of a subcluster, if its size is accepted. In all, as many points are appended
    * as its size says.
    * \param[in] count at least 1
-   * \param[in] point_at callable as index_t (std::size_t i), i below \a count; may be called several times
+   * \param[in] point_at callable as index_t (std::size_t i), below \a count; may be called several times
    */
   template <typename PointAt>
   void append(std::uint32_t subcluster, std::size_t count, PointAt&& point_at) {
-    if (!place(subcluster)) return;
-    index_t*& next = next_index_[subcluster];
-    copy(next, count, point_at);
-    next += count;
+    place(subcluster);
+    LiscoClusterPlace& place = places_[subcluster];
+    if (count > kMaxIgnored && place.kept == 0) return;
+    // Those of sizes not accepted are written as well: which sizes follow each other is not foreseen.
+    copy(place.next, count, point_at);
+    place.next += count & place.kept;
   }
 
  private:
+  static constexpr std::size_t kMaxIgnored = 64;
+
   /** \brief Writes four points at a time, the last four again if need be: a branch for each point costs more. */
   template <typename PointAt>
   static void copy(index_t* to, std::size_t count, PointAt&& point_at) {
@@ -83,7 +90,6 @@ class LiscoClusterWriter {
 
   index_t* begin(std::uint32_t size) {
     static_assert(std::is_nothrow_move_constructible<PointIndices>::value, "clusters that move keep their indices");
-    if (size < min_size_ || size > max_size_) return (&ignored_);
     clusters_.emplace_back();
     clusters_.back().header = header_;
     clusters_.back().indices.resize(size);
@@ -92,9 +98,8 @@ class LiscoClusterWriter {
 
   const Clusterer& clusterer_;
   const PCLHeader& header_;
-  const uindex_t min_size_, max_size_;
-  std::vector<index_t*>& next_index_;  ///< of each subcluster: where it goes; nullptr: undecided
-  index_t ignored_ = 0;                ///< where those of sizes not accepted would go
+  std::vector<LiscoClusterPlace>& places_;  ///< of each subcluster
+  index_t ignored_[kMaxIgnored];            ///< where points of subclusters of other sizes go
   std::vector<PointIndices>& clusters_;
 };
 

@@ -204,7 +204,7 @@ class LiscoReceivedColumns {
     }
     const std::uint64_t width = end_column - first_column;
     LiscoClusterWriter writer(clusterer, settings.getHeader(), settings.getMinClusterSize(),
-                              settings.getMaxClusterSize(), next_index_, clusters);
+                              settings.getMaxClusterSize(), places_, clusters);
     clusterer.forEachRun([&](const std::uint32_t* names, std::size_t count, std::uint32_t subcluster) {
       const auto cell = store.cellOf(names[0]);  // the others follow it in its row
       const auto first = static_cast<index_t>(cell.row * width + (cell.column - first_column));
@@ -221,7 +221,7 @@ class LiscoReceivedColumns {
 
  private:
   std::size_t max_rows_ = 0;
-  std::vector<index_t*> next_index_;  ///< memory of LiscoClusterWriter
+  std::vector<LiscoClusterPlace> places_;  ///< memory of LiscoClusterWriter
   std::vector<lisco::Return> named_column_;
 };
 
