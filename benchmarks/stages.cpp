@@ -96,14 +96,14 @@ class StagedExtraction {
   /// As LiscoCloudClusterer::collect () does it.
   void collect(const Problem& problem, Clusters& clusters) {
     pcl::detail::LiscoClusterWriter writer(clusterer_, problem.cloud->header, problem.min_size, problem.max_size,
-                                           next_index_, clusters);
+                                           places_, clusters);
     clusterer_.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
       writer.append(subcluster, count, [cells](std::size_t i) { return static_cast<pcl::index_t>(cells[i]); });
     });
   }
 
   lisco::ColumnClusterer clusterer_;
-  std::vector<pcl::index_t*> next_index_;
+  std::vector<pcl::detail::LiscoClusterPlace> places_;
   Clock::time_point latest_;
   std::array<double, kStages> times_{};
 };

@@ -406,7 +406,9 @@ std::uint32_t ColumnClusterer::Rotation::subclusterAt(std::size_t laser, std::si
   if (is_unordered_) return unordered_.numberAt(laser, column);
   sortRuns();
   LaserOrder::Entry entry{};
-  if (!order_.find(laser, column, [this](std::size_t i) -> const Runs& { return runsOf(i); }, entry)) return kNone;
+  if (!order_.find(
+          laser, column, [this](std::size_t i) -> const Runs& { return runsOf(i); }, entry))
+    return kNone;
   const Runs& runs = runsOf(entry.partition);
   const Runs::Block& block = runs.blocks[entry.block];
   const std::uint32_t run = runs.runAt(block, static_cast<std::uint32_t>(column - block.first_column));

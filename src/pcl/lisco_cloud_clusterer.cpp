@@ -19,7 +19,7 @@ class LiscoCloudClusterer::State {
   std::vector<char> is_selected;                   ///< per point of the cloud; where many are selected
   Indices few_points;                              ///< ascending; where few are selected
   std::vector<std::uint32_t> subcluster_of_point;  ///< only where the order of the indices is needed
-  std::vector<LiscoClusterPlace> places;            ///< memory of LiscoClusterWriter
+  std::vector<LiscoClusterPlace> places;           ///< memory of LiscoClusterWriter
 };
 
 LiscoCloudClusterer::LiscoCloudClusterer() : state_(std::make_unique<State>()) {}

@@ -88,8 +88,8 @@ class BrickMap {
   }
 
   GrowingArray<Word> words_;
-  GrowingArray<std::uint64_t> ids_;     ///< of words in use, in a table by a hash
-  GrowingArray<std::uint32_t> slots_;   ///< of words in use
+  GrowingArray<std::uint64_t> ids_;    ///< of words in use, in a table by a hash
+  GrowingArray<std::uint32_t> slots_;  ///< of words in use
   std::size_t words_in_use_ = 0;
   bool is_in_order_ = true;
   unsigned shift_ = 64;  ///< of a hash

@@ -187,9 +187,8 @@ std::size_t fillWith(VoxelPlane& plane, const std::uint64_t* items, std::size_t 
       const FragmentList::Part& part = fragments.partOf(number);
       return part.near->returns.data() + (number - part.first);
     });
-  return fillFrom([returns = fragments.parts.front().near->returns.data()](std::size_t number) {
-    return returns + number;
-  });
+  return fillFrom(
+      [returns = fragments.parts.front().near->returns.data()](std::size_t number) { return returns + number; });
 }
 
 std::size_t fillFromRuns(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,

@@ -32,8 +32,8 @@ ColumnBits copyReturns(const RingBlock& block, std::size_t columns, NearReturn* 
     const FloatVector z = hn::LoadU(kFloats, block.z + RingBlock::kMargin + k);
     const std::uint64_t returns = bitsOf(areReturns(x, y, z)) & lanesBelow(columns - k);
     const FloatMask chosen = lanesOf(returns);
-    hn::StoreInterleaved4(hn::Compress(x, chosen), hn::Compress(y, chosen), hn::Compress(z, chosen),
-                          hn::Zero(kFloats), kFloats, &to->x);
+    hn::StoreInterleaved4(hn::Compress(x, chosen), hn::Compress(y, chosen), hn::Compress(z, chosen), hn::Zero(kFloats),
+                          kFloats, &to->x);
     const FloatVector sources = hn::BitCast(kFloats, hn::LoadU(kWords, block.source_index + k));
     hn::StoreU(hn::BitCast(kWords, hn::Compress(sources, chosen)), kWords, source_index);
     const std::uint32_t count = countBits(returns);
@@ -157,7 +157,9 @@ void UnorderedReturns::visit(const RunVisitor& visit) {
 std::uint32_t UnorderedReturns::numberAt(std::size_t laser, std::size_t column) {
   sortBlocks();
   LaserOrder::Entry entry{};
-  if (!order_.find(laser, column, [this](std::size_t i) -> const Part& { return parts_[i]; }, entry)) return kNone;
+  if (!order_.find(
+          laser, column, [this](std::size_t i) -> const Part& { return parts_[i]; }, entry))
+    return kNone;
   const Part& part = parts_[entry.partition];
   const Block& block = part.blocks[entry.block];
   const std::size_t offset = column - block.first_column;

@@ -56,8 +56,8 @@ class PlaneLinker {
   void linkToRows(VoxelPlane& plane) {
     const std::uint64_t next_row = layout_.nextRow();
     for (VoxelPlane::Brick& brick : bricksOf(plane)) {
-      const std::uint32_t near = (plane.map.near<kInOrder>(brick.key + 1) >> 1 & 1U) |
-                                 plane.map.near<kInOrder>(brick.key + next_row) << 1;
+      const std::uint32_t near =
+          (plane.map.near<kInOrder>(brick.key + 1) >> 1 & 1U) | plane.map.near<kInOrder>(brick.key + next_row) << 1;
       forEachBit(near, [&](std::size_t i) {
         const std::uint64_t key = i == 0 ? brick.key + 1 : brick.key + next_row + i - 2;
         linkBricks(plane, brick, plane, plane.bricks[plane.map.numberOf<kInOrder>(key)], kOwnBrick + 1 + i);

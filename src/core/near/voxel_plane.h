@@ -24,8 +24,8 @@ struct FragmentList {
     std::size_t first;   ///< number of its first return, a multiple of 64
     std::uint32_t* set;  ///< of each return; only of single ones
   };
-  std::vector<Part> parts;  ///< those with returns
-  std::size_t end = 0;      ///< above all numbers, a multiple of 64
+  std::vector<Part> parts;            ///< those with returns
+  std::size_t end = 0;                ///< above all numbers, a multiple of 64
   std::vector<std::uint64_t> starts;  ///< bit i: return i begins a fragment, or is the end of a part
   bool are_single = false;            ///< each return is a fragment, as in unordered clouds; starts are not in use
 
@@ -110,7 +110,7 @@ struct VoxelPlane {
   /// Ordered by key, with an end mark behind the last. These arrays are longer than what is in use.
   GrowingArray<Brick> bricks;
   std::size_t brick_count = 0;
-  BrickMap map;  ///< of the bricks' keys
+  BrickMap map;                             ///< of the bricks' keys
   GrowingArray<float> lo[3], hi[3];         ///< of each voxel's box
   GrowingArray<std::uint32_t> root;         ///< of its subcluster, perhaps outdated
   GrowingArray<std::uint32_t> first_point;  ///< and the end

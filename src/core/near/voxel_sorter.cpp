@@ -173,7 +173,7 @@ bool VoxelSorter::link(const std::vector<const NearReturns*>& parts, const Toler
 }
 
 bool VoxelSorter::number(const std::vector<Numbered>& parts, const Tolerance& tolerance,
-                        std::vector<std::uint32_t>& sizes) {
+                         std::vector<std::uint32_t>& sizes) {
   sizes.clear();
   fragments_.begin(true);
   for (const Numbered& part : parts) fragments_.add(*part.near, part.set);

@@ -79,8 +79,8 @@ class VoxelSorter {
   std::vector<Slab> slabs_;
   std::vector<VoxelPlane> planes_;  ///< two for each slab
   GrowingArray<std::uint8_t> begins_voxel_;
-  DisjointSets voxels_;             ///< of single returns
-  GrowingArray<std::uint32_t> voxel_sizes_;    ///< of each element
+  DisjointSets voxels_;                          ///< of single returns
+  GrowingArray<std::uint32_t> voxel_sizes_;      ///< of each element
   GrowingArray<std::uint32_t> number_of_voxel_;  ///< of its set
 };
 
