@@ -76,8 +76,7 @@ class PlaneFiller {
       while (end < most && brickOf(end) == brick) ++end;
       beginBrick(brick);
       if (end - i <= kFewReturns) {
-        addFew(i, end, first_voxel);
-        std::fill(begins_voxel + i, begins_voxel + end, std::uint8_t{1});
+        addFew(i, end, first_voxel, begins_voxel);
         i = end;
         continue;
       }
@@ -139,12 +138,13 @@ class PlaneFiller {
   }
 
   /// Adds the returns of a brick as voxels of their own.
-  void addFew(std::size_t begin, std::size_t end, std::uint32_t first_voxel) {
+  void addFew(std::size_t begin, std::size_t end, std::uint32_t first_voxel, std::uint8_t* begins_voxel) {
     plane_.reserveVoxels(voxels_ + kFewReturns + 1);
     BoxLanes box(*returnOf(begin));
     for (std::size_t i = begin; i < end; ++i, ++voxels_) {
       plane_.first_point[voxels_] = static_cast<std::uint32_t>(points_);
       plane_.root[voxels_] = first_voxel + voxels_;
+      begins_voxel[i] = 1;
       const NearReturn& near = *returnOf(i);
       plane_.lo[0][voxels_] = plane_.hi[0][voxels_] = near.x;
       plane_.lo[1][voxels_] = plane_.hi[1][voxels_] = near.y;

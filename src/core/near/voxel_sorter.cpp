@@ -352,10 +352,17 @@ void VoxelSorter::sort(const Slab& slab) {
 }
 
 std::size_t VoxelSorter::endOfPlane(std::size_t begin, std::size_t end) const {
-  const std::uint64_t next = (planeOf(items_[begin]) + 1) << plane_shift_;
-  if (next == 0) return end;
+  const std::uint64_t plane = planeOf(items_[begin]);
+  // Planes are short compared with all that follows.
+  std::size_t step = 32;
+  while (begin + step < end && planeOf(items_[begin + step]) == plane) {
+    begin += step;
+    step *= 2;
+  }
   const std::uint64_t* const items = items_.data();
-  return static_cast<std::size_t>(std::lower_bound(items + begin, items + end, next) - items);
+  const auto is_before = [&](std::uint64_t item) { return planeOf(item) == plane; };
+  return static_cast<std::size_t>(
+      std::partition_point(items + begin, items + std::min(begin + step, end), is_before) - items);
 }
 
 /// Enters the sizes of a plane's voxels, which are elements.
