@@ -11,8 +11,8 @@
 
 namespace lisco {
 
-/// Which keys of a plane's bricks are in use, a bit for each, and the numbers of their bricks, which are in the order of
-/// the keys. Words of 64 keys lie in a table: in order, or by a hash if there may be too many.
+/// Which keys of a plane's bricks are in use, a bit for each, and the numbers of their bricks, which are in the order
+/// of the keys. Words of 64 keys lie in a table: in order, or by a hash if there may be too many.
 class BrickMap {
  public:
   /// No key is in use any more.

@@ -55,8 +55,8 @@ namespace {
 
 HWY_EXPORT(copyReturns);
 
-/// Shares of returns that begin a run, and that begin a fragment: a run or its part in another voxel. Above either, runs
-/// take more time than they save; lower ones slow down dense clouds in order, higher ones sparse clouds
+/// Shares of returns that begin a run, and that begin a fragment: a run or its part in another voxel. Above either,
+/// runs take more time than they save; lower ones slow down dense clouds in order, higher ones sparse clouds
 /// (benchmarks/suite.sh recordings).
 constexpr double kManyRuns = 0.36;
 constexpr double kManyFragments = 0.9;

@@ -98,8 +98,8 @@ class PlaneLinker {
   }
 
   /// Links a voxel that joins a set with those that are in none yet.
-  /// \param link callable as std::uint64_t (std::uint32_t voxel, std::uint64_t left, std::uint32_t& root): links a voxel
-  ///        with some of the brick, and returns those that join its set
+  /// \param link callable as std::uint64_t (std::uint32_t voxel, std::uint64_t left, std::uint32_t& root): links a
+  ///        voxel with some of the brick, and returns those that join its set
   template <typename Link>
   void spread(VoxelPlane& plane, VoxelPlane::Brick& brick, Link&& link) {
     const std::uint32_t first = brick.first_voxel;

@@ -147,8 +147,8 @@ struct PlaneLayout {
 void fillPlaneFromRuns(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,
                        const FragmentList& fragments, DisjointSets& subclusters);
 
-/// Fills a plane with sorted single returns. Voxel i is element first_voxel + i. In a brick of at most kFewReturns, each
-/// return counts as a voxel: comparing them with each other takes less than telling their voxels apart.
+/// Fills a plane with sorted single returns. Voxel i is element first_voxel + i. In a brick of at most kFewReturns,
+/// each return counts as a voxel: comparing them with each other takes less than telling their voxels apart.
 /// \param items as above
 /// \param begins_voxel receives for each item whether it begins a voxel: 1 or 0
 /// \return number of voxels

@@ -361,8 +361,8 @@ std::size_t VoxelSorter::endOfPlane(std::size_t begin, std::size_t end) const {
   }
   const std::uint64_t* const items = items_.data();
   const auto is_before = [&](std::uint64_t item) { return planeOf(item) == plane; };
-  return static_cast<std::size_t>(
-      std::partition_point(items + begin, items + std::min(begin + step, end), is_before) - items);
+  return static_cast<std::size_t>(std::partition_point(items + begin, items + std::min(begin + step, end), is_before) -
+                                  items);
 }
 
 /// Enters the sizes of a plane's voxels, which are elements.
