@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "core/near/unordered_returns.h"
 #include "core/neighbour.h"
+#include "core/unordered_returns.h"
 #include "engine.h"
 #include "lisco/column_clusterer.h"
 #include "lisco/simd.h"

@@ -11,11 +11,11 @@
 #include "core/far/image_circle.h"
 #include "core/far_trial.h"
 #include "core/load_balancer.h"
-#include "core/near/unordered_returns.h"
 #include "core/near/voxel_sorter.h"
 #include "core/parallel.h"
 #include "core/partition.h"
 #include "core/runs.h"
+#include "core/unordered_returns.h"
 
 namespace lisco {
 
