@@ -67,8 +67,9 @@ class PlaneFiller {
   }
 
   /// Single returns. Voxels are elements.
-  /// \param begins_voxel receives whether a return, in the order of the items, begins a voxel
-  std::size_t fillFromSingle(std::uint32_t first_voxel, std::uint8_t* begins_voxel) {
+  std::size_t fillFromSingle(std::uint32_t first_voxel) {
+    plane_.begins_voxel.growInSteps(count_);
+    std::uint8_t* const begins_voxel = plane_.begins_voxel.data();
     for (std::size_t i = 0; i < count_;) {
       const std::uint64_t brick = brickOf(i);
       const std::size_t most = std::min(count_, i + kFewReturns + 1);
@@ -198,9 +199,9 @@ std::size_t fillFromRuns(VoxelPlane& plane, const std::uint64_t* items, std::siz
 }
 
 std::size_t fillFromSingle(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,
-                           const FragmentList& fragments, std::uint32_t first_voxel, std::uint8_t* begins_voxel) {
+                           const FragmentList& fragments, std::uint32_t first_voxel) {
   return fillWith(plane, items, count, layout, fragments,
-                  [&](auto& filler) { return filler.fillFromSingle(first_voxel, begins_voxel); });
+                  [&](auto& filler) { return filler.fillFromSingle(first_voxel); });
 }
 
 }  // namespace HWY_NAMESPACE
@@ -222,9 +223,8 @@ void fillPlaneFromRuns(VoxelPlane& plane, const std::uint64_t* items, std::size_
 }
 
 std::size_t fillPlaneFromSingle(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
-                                const PlaneLayout& layout, const FragmentList& fragments, std::uint32_t first_voxel,
-                                std::uint8_t* begins_voxel) {
-  return HWY_DYNAMIC_DISPATCH(fillFromSingle)(plane, items, count, layout, fragments, first_voxel, begins_voxel);
+                                const PlaneLayout& layout, const FragmentList& fragments, std::uint32_t first_voxel) {
+  return HWY_DYNAMIC_DISPATCH(fillFromSingle)(plane, items, count, layout, fragments, first_voxel);
 }
 
 }  // namespace lisco

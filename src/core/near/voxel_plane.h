@@ -115,6 +115,7 @@ struct VoxelPlane {
   GrowingArray<std::uint32_t> root;         ///< of its subcluster, perhaps outdated
   GrowingArray<std::uint32_t> first_point;  ///< and the end
   GrowingArray<NearReturn> points;
+  GrowingArray<std::uint8_t> begins_voxel;  ///< of single returns: whether each begins a voxel, 1 or 0
 
   // The arrays grow by these, to what is in use and some more, with the elements that are there.
 
@@ -150,11 +151,9 @@ void fillPlaneFromRuns(VoxelPlane& plane, const std::uint64_t* items, std::size_
 /// Fills a plane with sorted single returns. Voxel i is element first_voxel + i. In a brick of at most kFewReturns,
 /// each return counts as a voxel: comparing them with each other takes less than telling their voxels apart.
 /// \param items as above
-/// \param begins_voxel receives for each item whether it begins a voxel: 1 or 0
 /// \return number of voxels
 std::size_t fillPlaneFromSingle(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
-                                const PlaneLayout& layout, const FragmentList& fragments, std::uint32_t first_voxel,
-                                std::uint8_t* begins_voxel);
+                                const PlaneLayout& layout, const FragmentList& fragments, std::uint32_t first_voxel);
 
 /// Joins neighbours within a plane.
 void linkPlane(VoxelPlane& plane, const PlaneLayout& layout, DisjointSets& subclusters);

@@ -185,6 +185,7 @@ bool VoxelSorter::number(const std::vector<Numbered>& parts, const Tolerance& to
   voxel_sizes_.grow(most);
   begins_voxel_.grow(most + 1);
   number_of_voxel_.grow(most);
+  begins_voxel_[most] = 0;
   linkSlabs(tolerance, voxels_);
   numberSets(sizes);
   inParallel(slabs_.size(), [&](std::size_t slab) { numberReturns(slabs_[slab]); });
@@ -365,11 +366,13 @@ std::size_t VoxelSorter::endOfPlane(std::size_t begin, std::size_t end) const {
                                   items);
 }
 
-/// Enters the sizes of a plane's voxels, which are elements.
-void VoxelSorter::addVoxels(std::size_t slab, const VoxelPlane& plane, std::size_t voxels) {
+/// Enters a plane's voxels, which are elements, and those of its returns [begin, end).
+void VoxelSorter::addVoxels(std::size_t slab, const VoxelPlane& plane, std::size_t voxels, std::size_t begin,
+                            std::size_t end) {
   std::uint32_t* const sizes = voxel_sizes_.data() + slabs_[slab].begin + slabs_[slab].voxels;
   for (std::size_t i = 0; i < voxels; ++i) sizes[i] = plane.first_point[i + 1] - plane.first_point[i];
   slabs_[slab].voxels += voxels;
+  std::copy_n(plane.begins_voxel.data(), end - begin, &begins_voxel_[begin]);
 }
 
 /// Links the planes of a slab within and with the next ones, the first of the next slab included.
@@ -389,8 +392,8 @@ void VoxelSorter::linkSlab(std::size_t slab, const Tolerance& tolerance, Disjoin
     if (!is_own) first_voxel = slabs_[slab + 1].begin;
     if (fragments_.are_single) {
       const std::size_t voxels = fillPlaneFromSingle(*plane, &items_[begin], end - begin, layout, fragments_,
-                                                     static_cast<std::uint32_t>(first_voxel), &begins_voxel_[begin]);
-      if (is_own) addVoxels(slab, *plane, voxels);
+                                                     static_cast<std::uint32_t>(first_voxel));
+      if (is_own) addVoxels(slab, *plane, voxels, begin, end);
       first_voxel += voxels;
     } else {
       fillPlaneFromRuns(*plane, &items_[begin], end - begin, layout, fragments_, subclusters);

@@ -64,7 +64,7 @@ class VoxelSorter {
   void numberSets(std::vector<std::uint32_t>& sizes);
   void numberReturns(const Slab& slab);
   void linkSlab(std::size_t slab, const Tolerance& tolerance, DisjointSets& subclusters);
-  void addVoxels(std::size_t slab, const VoxelPlane& plane, std::size_t voxels);
+  void addVoxels(std::size_t slab, const VoxelPlane& plane, std::size_t voxels, std::size_t begin, std::size_t end);
   std::uint64_t planeOf(std::uint64_t item) const { return item >> plane_shift_; }
   std::size_t endOfPlane(std::size_t begin, std::size_t end) const;
 
@@ -78,10 +78,11 @@ class VoxelSorter {
   std::vector<std::uint32_t> histogram_;
   std::vector<Slab> slabs_;
   std::vector<VoxelPlane> planes_;  ///< two for each slab
-  GrowingArray<std::uint8_t> begins_voxel_;
-  DisjointSets voxels_;                          ///< of single returns
-  GrowingArray<std::uint32_t> voxel_sizes_;      ///< of each element
-  GrowingArray<std::uint32_t> number_of_voxel_;  ///< of its set
+  // Of single returns, whose voxels are elements:
+  DisjointSets voxels_;
+  GrowingArray<std::uint32_t> voxel_sizes_;
+  GrowingArray<std::uint32_t> number_of_voxel_;  ///< of each one's set
+  GrowingArray<std::uint8_t> begins_voxel_;  ///< whether each return, as sorted, begins a voxel; and behind the last
 };
 
 }  // namespace lisco
