@@ -195,6 +195,7 @@ void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hi
 /// \return false, with part of it read, if there are no far returns, or linking those of the first columns takes longer
 ///         than sorting them
 bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSource& cells) {
+  if (parameters_.sensor.steps_per_turn == 0) return false;  // nothing to prepare
   FarTrial trial;
   inParallel(partition_count_, [&](std::size_t i) {
     try {

@@ -44,7 +44,7 @@ class PlaneFiller {
         std::uint32_t root = subclusters.find(returnOf(i)->element);
         BoxLanes box(*returnOf(i));
         do {
-          // In unordered clouds, returns and their sets are scattered in memory.
+          // In the order of voxels, returns and their sets are scattered in memory.
           __builtin_prefetch(returnOf(i + kPrefetch));
           subclusters.prefetch(returnOf(i + kPrefetch / 2)->element);
           const NearReturn* const near = returnOf(i);
