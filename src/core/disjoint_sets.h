@@ -65,7 +65,9 @@ class DisjointSets {
 
   /// The same as merge () of a root and another element, which is usually a set of its own.
   std::uint32_t add(std::uint32_t root, std::uint32_t element) {
-    if (is_shared_ || root >= element || parentOf(element) != element || log_ != nullptr) return merge(root, element);
+    const std::uint32_t parent = parentOf(element);
+    if (parent == root) return root;
+    if (is_shared_ || root >= element || parent != element || log_ != nullptr) return merge(root, element);
     parents_[element] = root;
     return root;
   }

@@ -7,7 +7,7 @@
 namespace lisco {
 
 void NearReturns::add(const RingBlock& block, const RingBlockInfo& info, ColumnBits which) {
-  returns.growInSteps(count + RingBlock::kColumns + kNearStep);
+  returns.growInSteps(count + RingBlock::kColumns + kReadBehind);
   const float* const x = block.x + RingBlock::kMargin;
   const float* const y = block.y + RingBlock::kMargin;
   const float* const z = block.z + RingBlock::kMargin;

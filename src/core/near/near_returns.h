@@ -19,7 +19,7 @@ struct NearReturn {
 
 /// Near returns in the order in which they are read, collected until VoxelSorter links them.
 struct NearReturns {
-  GrowingArray<NearReturn> returns;  ///< kNearStep longer than count, at least
+  GrowingArray<NearReturn> returns;  ///< kReadBehind longer than count, at least
   std::size_t count = 0;
 
   /// Appends some returns of a ring block, after Runs::add.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 #include <algorithm>
+#include <limits>
 
 #include "core/near/constants.h"
 #include "core/near/voxel_plane.h"
@@ -15,6 +16,55 @@
 HWY_BEFORE_NAMESPACE();
 namespace lisco {
 namespace HWY_NAMESPACE {
+
+/// The box around returns.
+#if HWY_TARGET == HWY_SCALAR
+class ReturnsBox {
+ public:
+  void add(const NearReturn* returns, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) box_.add(returns[i]);
+  }
+  const BoxLanes& box() const { return box_; }
+
+ private:
+  BoxLanes box_ = BoxLanes::empty();
+};
+#else
+class ReturnsBox {
+ public:
+  ReturnsBox() : lo_(hn::Set(kFloats, std::numeric_limits<float>::infinity())), hi_(hn::Neg(lo_)) {}
+
+  /// \param returns up to kReadBehind are read behind the last
+  void add(const NearReturn* returns, std::size_t count) {
+    static_assert(kLanes % 4 == 0 && 2 * kLanes <= 4 * kReadBehind,
+                  "vectors are whole returns, and fit behind the last");
+    const float* const values = &returns->x;
+    addVector(values, 4 * count);  // both at once: a branch for each costs more
+    addVector(values + kLanes, 4 * count > kLanes ? 4 * count - kLanes : 0);
+    for (std::size_t k = 2 * kLanes; k < 4 * count; k += kLanes) addVector(values + k, 4 * count - k);
+  }
+
+  BoxLanes box() const {
+    float lo[kLanes];
+    float hi[kLanes];
+    hn::StoreU(lo_, kFloats, lo);
+    hn::StoreU(hi_, kFloats, hi);
+    BoxLanes box = BoxLanes::empty();
+    for (std::size_t k = 0; k < kLanes; k += 4) box.add(BoxLanes(lo + k, hi + k));
+    return box;
+  }
+
+ private:
+  HWY_INLINE void addVector(const float* values, std::size_t count) {
+    const FloatVector coordinates = hn::LoadU(kFloats, values);
+    const FloatMask used = hn::FirstN(kFloats, count);
+    lo_ = hn::IfThenElse(used, hn::Min(lo_, coordinates), lo_);
+    hi_ = hn::IfThenElse(used, hn::Max(hi_, coordinates), hi_);
+  }
+
+  FloatVector lo_, hi_;  ///< lane 4 i + k is coordinate k
+};
+#endif
 
 /// Puts sorted fragments into a plane, in place of what was there.
 /// \tparam ReturnOf callable as const NearReturn* (std::size_t number): the first of a fragment
@@ -31,6 +81,7 @@ class PlaneFiller {
         key_mask_((std::uint64_t{1} << layout.brick_bits) - 1),
         return_of_(return_of) {
     plane.map.clear(count, layout.brick_bits);
+    plane.items = items;
   }
 
   /// Fragments of runs, which are elements: those of a voxel are joined.
@@ -40,27 +91,22 @@ class PlaneFiller {
       beginBrick(brick);
       do {
         const std::uint64_t voxel = keyOf(i);
-        beginVoxel(voxel);
+        beginVoxel(voxel, VoxelPlane::kInItems | i);
         std::uint32_t root = subclusters.find(returnOf(i)->element);
-        BoxLanes box(*returnOf(i));
+        std::size_t returns = 0;
+        ReturnsBox box;
         do {
           // In the order of voxels, returns and their sets are scattered in memory.
           __builtin_prefetch(returnOf(i + kPrefetch));
           subclusters.prefetch(returnOf(i + kPrefetch / 2)->element);
           const NearReturn* const near = returnOf(i);
           root = subclusters.add(root, near->element);
-          const std::size_t number = numberOf(i);
-          const std::size_t size = fragments.endOf(number) - number;
-          plane_.reservePoints(points_ + size);
-          for (std::size_t k = 0; k < size; k += kNearStep)
-            for (std::size_t some = k; some < k + kNearStep; ++some) {
-              plane_.points[points_ + some] = near[some];
-              box.add(near[std::min(some, size - 1)]);
-            }
-          points_ += size;
+          const std::size_t size = fragments.sizeOf(numberOf(i));
+          box.add(near, size);
+          returns += size;
           ++i;
         } while (i < count_ && keyOf(i) == voxel);
-        endVoxel(box, root);
+        endVoxel(box.box(), returns, root);
       } while (i < count_ && brickOf(i) == brick);
     }
     return finish();
@@ -83,14 +129,15 @@ class PlaneFiller {
       }
       do {
         const std::uint64_t voxel = keyOf(i);
+        const std::size_t first_point = points_;
         begins_voxel[i] = 1;
-        beginVoxel(voxel);
-        BoxLanes box = addReturn(i);
+        beginVoxel(voxel, first_point);
+        BoxLanes box(addPoint(i));
         while (++i < count_ && keyOf(i) == voxel) {
           begins_voxel[i] = 0;
-          box.add(addReturn(i));
+          box.add(addPoint(i));
         }
-        endVoxel(box, first_voxel + voxels_);
+        endVoxel(box, points_ - first_point, first_voxel + voxels_);
       } while (i < count_ && brickOf(i) == brick);
     }
     return finish();
@@ -110,13 +157,15 @@ class PlaneFiller {
     ++bricks_;
   }
 
-  void beginVoxel(std::uint64_t key) {
-    plane_.reserveVoxels(voxels_ + 2);
-    plane_.first_point[voxels_] = static_cast<std::uint32_t>(points_);
+  /// \param place see VoxelPlane
+  void beginVoxel(std::uint64_t key, std::size_t place) {
+    plane_.reserveVoxels(voxels_ + 1);
+    plane_.place[voxels_] = static_cast<std::uint32_t>(place);
     plane_.bricks[bricks_ - 1].occupied |= std::uint64_t{1} << (key & 63U);
   }
 
-  void endVoxel(const BoxLanes& box, std::uint32_t root) {
+  void endVoxel(const BoxLanes& box, std::size_t returns, std::uint32_t root) {
+    plane_.return_count[voxels_] = static_cast<std::uint32_t>(returns);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       plane_.lo[axis][voxels_] = box.lo(axis);
       plane_.hi[axis][voxels_] = box.hi(axis);
@@ -130,35 +179,39 @@ class PlaneFiller {
     ++voxels_;
   }
 
-  BoxLanes addReturn(std::size_t i) {
+  /// Single return i, which is used next.
+  const NearReturn& nextReturn(std::size_t i) const {
     __builtin_prefetch(returnOf(i + kPrefetch));
-    const NearReturn* const near = returnOf(i);
+    return *returnOf(i);
+  }
+
+  const NearReturn& addPoint(std::size_t i) {
+    const NearReturn& near = nextReturn(i);
     plane_.reservePoints(points_ + 1);
-    plane_.points[points_++] = *near;
-    return BoxLanes(*near);
+    plane_.points[points_++] = near;
+    return near;
   }
 
   /// Adds the returns of a brick as voxels of their own.
   void addFew(std::size_t begin, std::size_t end, std::uint32_t first_voxel, std::uint8_t* begins_voxel) {
-    plane_.reserveVoxels(voxels_ + kFewReturns + 1);
+    plane_.reserveVoxels(voxels_ + kFewReturns);
     BoxLanes box(*returnOf(begin));
     for (std::size_t i = begin; i < end; ++i, ++voxels_) {
-      plane_.first_point[voxels_] = static_cast<std::uint32_t>(points_);
+      plane_.return_count[voxels_] = 1;
       plane_.root[voxels_] = first_voxel + voxels_;
       begins_voxel[i] = 1;
-      const NearReturn& near = *returnOf(i);
+      const NearReturn& near = nextReturn(i);
       plane_.lo[0][voxels_] = plane_.hi[0][voxels_] = near.x;
       plane_.lo[1][voxels_] = plane_.hi[1][voxels_] = near.y;
       plane_.lo[2][voxels_] = plane_.hi[2][voxels_] = near.z;
-      box.add(addReturn(i));
+      box.add(near);
     }
     plane_.bricks[bricks_ - 1].box = box;
   }
 
   std::size_t finish() {
-    plane_.reserveVoxels(voxels_ + 1);
-    plane_.first_point[voxels_] = static_cast<std::uint32_t>(points_);
     plane_.brick_count = bricks_;
+    plane_.points_in_use = points_;
     plane_.reserveBricks(bricks_ + 1);
     plane_.bricks[bricks_] = {~std::uint64_t{0}, 0, voxels_, VoxelPlane::kSeveral, BoxLanes(NearReturn{})};
     return voxels_;
@@ -179,15 +232,13 @@ class PlaneFiller {
 template <typename Fill>
 std::size_t fillWith(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,
                      const FragmentList& fragments, Fill&& fill) {
+  plane.fragments = &fragments;
   const auto fillFrom = [&](auto return_of) {
     PlaneFiller<decltype(return_of)> filler(plane, items, count, layout, return_of);
     return fill(filler);
   };
   if (fragments.parts.size() > 1)
-    return fillFrom([&fragments](std::size_t number) {
-      const FragmentList::Part& part = fragments.partOf(number);
-      return part.near->returns.data() + (number - part.first);
-    });
+    return fillFrom([&fragments](std::size_t number) { return fragments.returnsOf(number); });
   return fillFrom(
       [returns = fragments.parts.front().near->returns.data()](std::size_t number) { return returns + number; });
 }

@@ -203,7 +203,7 @@ class PlaneLinker {
   /// Links a voxel with some of a brick. \return those of them found to be in its set
   /// \param others bit i: voxel first + i
   /// \param root of the voxel
-  std::uint64_t linkVoxel(const VoxelPlane& plane, std::uint32_t voxel, VoxelPlane& other, std::uint32_t first,
+  std::uint64_t linkVoxel(VoxelPlane& plane, std::uint32_t voxel, VoxelPlane& other, std::uint32_t first,
                           std::uint64_t others, std::uint32_t& root) {
     std::uint64_t joined = 0;
     for (std::uint32_t k = 0; k < 64 && others >> k != 0; k += std::uint32_t{kLanes}) {
@@ -241,19 +241,44 @@ class PlaneLinker {
     return box;
   }
 
+  static bool isGathered(const VoxelPlane& plane, std::uint32_t voxel) {
+    return (plane.place[voxel] & VoxelPlane::kInItems) == 0;
+  }
+
+  /// Copies the returns of a voxel of several to plane.points.
+  HWY_NOINLINE void gather(VoxelPlane& plane, std::uint32_t voxel) {
+    std::size_t item = plane.place[voxel] & ~VoxelPlane::kInItems;
+    const std::size_t begin = plane.points_in_use;
+    const std::size_t end = begin + plane.return_count[voxel];
+    const std::uint64_t number_mask = (std::uint64_t{1} << layout_.number_bits) - 1;
+    plane.reservePoints(end);
+    for (std::size_t to = begin; to < end; ++item) {
+      const auto number = static_cast<std::size_t>(plane.items[item] & number_mask);
+      const NearReturn* const from = plane.fragments->returnsOf(number);
+      const std::size_t size = plane.fragments->sizeOf(number);
+      for (std::size_t i = 0; i < size; i += kNearStep) std::copy_n(from + i, kNearStep, &plane.points[to + i]);
+      to += size;
+    }
+    plane.place[voxel] = static_cast<std::uint32_t>(begin);
+    plane.points_in_use = end;
+  }
+
   /// Whether any return of one voxel is a neighbour of any return of another, whose boxes are near enough.
-  bool haveNeighbours(const VoxelPlane& a_plane, std::uint32_t a, const VoxelPlane& b_plane, std::uint32_t b) const {
-    const VoxelPlane* few = &a_plane;
-    const VoxelPlane* many = &b_plane;
-    if (few->first_point[a + 1] - few->first_point[a] > many->first_point[b + 1] - many->first_point[b]) {
+  bool haveNeighbours(VoxelPlane& a_plane, std::uint32_t a, VoxelPlane& b_plane, std::uint32_t b) {
+    VoxelPlane* few = &a_plane;
+    VoxelPlane* many = &b_plane;
+    if (few->return_count[a] > many->return_count[b]) {
       std::swap(few, many);
       std::swap(a, b);
     }
-    const NearReturn* const own = few->points.data() + few->first_point[a];
-    const std::size_t own_count = few->first_point[a + 1] - few->first_point[a];
-    const NearReturn* const others = many->points.data() + many->first_point[b];
-    const std::size_t other_count = many->first_point[b + 1] - many->first_point[b];
+    const std::size_t other_count = many->return_count[b];
     if (other_count == 1) return true;  // the boxes are the returns
+    const std::size_t own_count = few->return_count[a];
+    if (own_count > 1 && !isGathered(*few, a)) gather(*few, a);
+    if (!isGathered(*many, b)) gather(*many, b);
+    const NearReturn single{few->lo[0][a], few->lo[1][a], few->lo[2][a], 0};
+    const NearReturn* const own = own_count > 1 ? few->points.data() + few->place[a] : &single;
+    const NearReturn* const others = many->points.data() + many->place[b];
     if (other_count <= kLanes) {
       const Coordinates other = load(others);
       const std::uint32_t lanes = lanesBelow(other_count);

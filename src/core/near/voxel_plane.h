@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 #include "core/disjoint_sets.h"
@@ -44,7 +45,14 @@ struct FragmentList {
     while (number < parts[part].first) --part;
     return parts[part];
   }
-  /// The end of the fragment that begins with a return.
+  /// The first return of a fragment. Up to kReadBehind may be read behind its last.
+  const NearReturn* returnsOf(std::size_t number) const {
+    const Part& part = partOf(number);
+    return part.near->returns.data() + (number - part.first);
+  }
+  /// The number of returns of the fragment that begins with a return.
+  std::size_t sizeOf(std::size_t number) const { return are_single ? 1 : endOf(number) - number; }
+  /// The end of the fragment that begins with a return; not of single ones.
   std::size_t endOf(std::size_t number) const {
     std::size_t word = ++number / 64;
     std::uint64_t left = starts[word] >> number % 64;
@@ -59,6 +67,19 @@ struct FragmentList {
 class BoxLanes {
  public:
   explicit BoxLanes(const NearReturn& near) : lo_(lanesOf(near)), hi_(lo_) {}
+  /// \param lo four floats, which are lanes; hi likewise
+  BoxLanes(const float* lo, const float* hi) {
+    std::memcpy(&lo_, lo, sizeof lo_);
+    std::memcpy(&hi_, hi, sizeof hi_);
+  }
+  /// A box around nothing.
+  static BoxLanes empty() {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    BoxLanes box{NearReturn{}};
+    box.lo_ = Lanes{kInfinity, kInfinity, kInfinity, kInfinity};
+    box.hi_ = -box.lo_;
+    return box;
+  }
   void add(const NearReturn& near) {
     const Lanes point = lanesOf(near);
     lo_ = point < lo_ ? point : lo_;
@@ -95,6 +116,7 @@ class BoxLanes {
 /// The voxels of a plane of bricks, ordered by brick and voxel, each with the box around its returns.
 struct VoxelPlane {
   static constexpr std::uint32_t kSeveral = ~std::uint32_t{0};
+  static constexpr std::uint32_t kInItems = std::uint32_t{1} << 31;  ///< bit of `place`
 
   struct Brick {
     std::uint64_t key;       ///< its numbers along the middle and minor axis
@@ -110,25 +132,33 @@ struct VoxelPlane {
   /// Ordered by key, with an end mark behind the last. These arrays are longer than what is in use.
   GrowingArray<Brick> bricks;
   std::size_t brick_count = 0;
-  BrickMap map;                             ///< of the bricks' keys
-  GrowingArray<float> lo[3], hi[3];         ///< of each voxel's box
-  GrowingArray<std::uint32_t> root;         ///< of its subcluster, perhaps outdated
-  GrowingArray<std::uint32_t> first_point;  ///< and the end
+  BrickMap map;                      ///< of the bricks' keys
+  GrowingArray<float> lo[3], hi[3];  ///< of each voxel's box
+  GrowingArray<std::uint32_t> root;  ///< of its subcluster, perhaps outdated
+  GrowingArray<std::uint32_t> return_count;
+  /// Where a voxel's returns begin in `points`, or, with kInItems, its fragments in `items`. Fragments are put into
+  /// `points` when they are first compared: most voxels are joined or kept apart by their boxes. Single returns of
+  /// bricks of few have no place.
+  GrowingArray<std::uint32_t> place;
   GrowingArray<NearReturn> points;
+  std::size_t points_in_use = 0;
+  const std::uint64_t* items = nullptr;  ///< sorted
+  const FragmentList* fragments = nullptr;
   GrowingArray<std::uint8_t> begins_voxel;  ///< of single returns: whether each begins a voxel, 1 or 0
 
   // The arrays grow by these, to what is in use and some more, with the elements that are there.
 
   void reserveBricks(std::size_t count) { bricks.growInSteps(count); }
   void reserveVoxels(std::size_t count) {
-    count += kReadBehind;
-    if (first_point.size() >= count) return;
+    const std::size_t size = count + kReadBehind;
+    if (place.size() >= size) return;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      lo[axis].growInSteps(count);
-      hi[axis].growInSteps(count);
+      lo[axis].growInSteps(size);
+      hi[axis].growInSteps(size);
     }
-    root.growInSteps(count);
-    first_point.growInSteps(count);
+    root.growInSteps(size);
+    return_count.growInSteps(size);
+    place.growInSteps(size);
   }
   void reservePoints(std::size_t count) { points.growInSteps(count + kReadBehind); }
 };

@@ -239,6 +239,7 @@ void VoxelSorter::numberReturns(const Slab& slab) {
 /// Chooses the axes and the bits of the keys.
 bool VoxelSorter::numberVoxels(const Tolerance& tolerance) {
   if (tolerance.reach() < kMinSortedTolerance || tolerance.reach() > kMaxSortedTolerance) return false;
+  if (fragments_.end > VoxelPlane::kInItems) return false;
   numbering_.per_metre = 1 / (kVoxelSide * tolerance.reach());
   double bricks[3];
   part_boxes_.resize(fragments_.parts.size());
@@ -370,7 +371,7 @@ std::size_t VoxelSorter::endOfPlane(std::size_t begin, std::size_t end) const {
 void VoxelSorter::addVoxels(std::size_t slab, const VoxelPlane& plane, std::size_t voxels, std::size_t begin,
                             std::size_t end) {
   std::uint32_t* const sizes = voxel_sizes_.data() + slabs_[slab].begin + slabs_[slab].voxels;
-  for (std::size_t i = 0; i < voxels; ++i) sizes[i] = plane.first_point[i + 1] - plane.first_point[i];
+  std::copy_n(plane.return_count.data(), voxels, sizes);
   slabs_[slab].voxels += voxels;
   std::copy_n(plane.begins_voxel.data(), end - begin, &begins_voxel_[begin]);
 }
