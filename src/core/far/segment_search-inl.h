@@ -153,37 +153,49 @@ class SegmentSearch {
   void compareBins(std::int64_t sector, std::size_t row) {
     const NeighborMask& mask = state_.masks[row];
     const std::int64_t bin = sector * static_cast<std::int64_t>(RangeImage::kSector);
-    const std::size_t own = image_.at(row, bin);
     const std::size_t compared = image_.rowInSameBins(row);
-    for (std::uint32_t other = mask.first_row; other <= mask.last_row; ++other) {
-      if (image_.rows[other].isEmpty()) continue;
-      const std::size_t same = image_.at(other, bin);
-      const bool both_ways = other < row && !state_.masks[other].by_bins;
-      const int first = both_ways ? -mask.before : other > row && other != compared ? 0 : 1;
-      state_.work += static_cast<std::size_t>(mask.before + 1 - first) * (RangeImage::kSector / kLanes) * kWorkOfBins;
-      for (int k = first; k <= mask.before; ++k)
-        compareBinsWith(own, same - static_cast<std::size_t>(static_cast<std::int64_t>(k)));
+    for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
+      const Bins own(image_.cells, image_.at(row, bin) + k);
+      for (std::uint32_t other = mask.first_row; other <= mask.last_row; ++other) {
+        if (image_.rows[other].isEmpty()) continue;
+        const std::size_t same = image_.at(other, bin) + k;
+        const bool both_ways = other < row && !state_.masks[other].by_bins;
+        const int first = both_ways ? -mask.before : other > row && other != compared ? 0 : 1;
+        state_.work += static_cast<std::size_t>(mask.before + 1 - first) * kWorkOfBins;
+        for (int before = first; before <= mask.before; ++before)
+          compareBinsWith(own, same - static_cast<std::size_t>(static_cast<std::int64_t>(before)));
+      }
     }
   }
 
-  HWY_INLINE void compareBinsWith(std::size_t own, std::size_t other) {
-    const FloatVector r2 = hn::Set(kFloats, image_.tolerance.squared());
-    for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
-      const auto apart = [&](const float* coordinate) {
-        return hn::Sub(hn::LoadU(kFloats, &coordinate[own + k]), hn::LoadU(kFloats, &coordinate[other + k]));
-      };
-      const FloatMask near = areNeighbours(apart(image_.cells.x), apart(image_.cells.y), apart(image_.cells.z), r2);
-      const FloatMask unlike =
-          differ(&image_.cells.element[own + k], hn::LoadU(kWords, &image_.cells.element[other + k]));
-      for (std::uint32_t left = bitsOf(hn::And(near, unlike)); left != 0; left &= left - 1) {
-        const auto i = k + static_cast<std::size_t>(__builtin_ctz(left));
-        const std::uint32_t a = image_.cells.element[own + i];
-        const std::uint32_t b = image_.cells.element[other + i];
-        if (a == last_a_ && b == last_b_) continue;
-        last_a_ = a;
-        last_b_ = b;
-        subclusters_.merge(a, b);
-      }
+  /// Consecutive bins of a row.
+  struct Bins {
+    HWY_INLINE Bins(const ImageCells& cells, std::size_t cell)
+        : x(hn::LoadU(kFloats, cells.x + cell)),
+          y(hn::LoadU(kFloats, cells.y + cell)),
+          z(hn::LoadU(kFloats, cells.z + cell)),
+          element(hn::LoadU(kWords, cells.element + cell)) {}
+    FloatVector x, y, z;
+    hn::Vec<Words> element;
+  };
+
+  HWY_INLINE void compareBinsWith(const Bins& own, std::size_t other) {
+    const Bins others(image_.cells, other);
+    const FloatMask near = areNeighbours(hn::Sub(own.x, others.x), hn::Sub(own.y, others.y), hn::Sub(own.z, others.z),
+                                         hn::Set(kFloats, image_.tolerance.squared()));
+    const FloatMask unlike = hn::RebindMask(kFloats, hn::Ne(own.element, others.element));
+    std::uint32_t left = bitsOf(hn::And(near, unlike));
+    if (left == 0) return;
+    std::uint32_t elements[kLanes];
+    hn::StoreU(own.element, kWords, elements);
+    for (; left != 0; left &= left - 1) {
+      const auto i = static_cast<std::size_t>(__builtin_ctz(left));
+      const std::uint32_t a = elements[i];
+      const std::uint32_t b = image_.cells.element[other + i];
+      if (a == last_a_ && b == last_b_) continue;
+      last_a_ = a;
+      last_b_ = b;
+      subclusters_.merge(a, b);
     }
   }
 
