@@ -37,9 +37,9 @@ Scan rotation(const Origin& sensor = kHere) {
   return scan;
 }
 
-lisco::SensorHints estimate(const Scan& scan, const Origin& sensor = kHere) {
+lisco::SensorHints estimate(const Scan& scan, const Origin& sensor = kHere, const lisco::SensorHints& former = {}) {
   const auto cell_at = [&](std::size_t laser, std::size_t column) { return scan.at(laser, column); };
-  return lisco::estimateSensor(scan.columns, scan.lasers, sensor, lisco::CellSource(cell_at));
+  return lisco::estimateSensor(scan.columns, scan.lasers, sensor, lisco::CellSource(cell_at), former);
 }
 
 bool isUnknown(const lisco::SensorHints& hints) {
@@ -116,6 +116,40 @@ TEST(SensorEstimator, FindsTheSensorInTheFrameOfAVehicle) {
 TEST(SensorEstimator, FindsTheSensorInMapCoordinates) {
   const Mounting mounting{{500000.0, 540000.0, 310.0}, 0.0};
   expectFound(mounting, estimate(mountedRotation(mounting)), 0.3);
+}
+
+TEST(SensorEstimator, KeepsTheFrameOfTheCloudBefore) {
+  const Mounting mounting{{-2.5, 0.4, 1.7}, 0.01};
+  const lisco::SensorHints first = estimate(mountedRotation(mounting, 0.1));
+  EXPECT_GT(first.slope_spread, 0.0F);
+  lisco::SensorHints former = first;
+  former.origin[0] += 0.01F;  // as no estimate of the cloud itself
+  for (int cloud = 0; cloud < 3; ++cloud) {
+    const lisco::SensorHints hints = estimate(mountedRotation(mounting, 0.1), kHere, former);
+    EXPECT_EQ(hints.origin, former.origin);
+    EXPECT_EQ(hints.tilt, former.tilt);
+    EXPECT_EQ(hints.slope_spread, former.slope_spread);
+    EXPECT_EQ(hints.steps_per_turn, first.steps_per_turn);
+    EXPECT_NEAR(hints.elevation_step, first.elevation_step, 1e-4F);
+    former = hints;
+  }
+}
+
+TEST(SensorEstimator, DropsAFrameThatDoesNotFit) {
+  const Mounting before{{-2.5, 0.4, 1.7}, 0.0};
+  const Mounting now{{1.0, -0.6, 0.9}, 0.02};
+  expectFound(now, estimate(mountedRotation(now), kHere, estimate(mountedRotation(before))), 0.15);
+  EXPECT_EQ(estimate(rotation(), kHere, estimate(mountedRotation(before))).origin, kHere);
+  // One that no sensor may have, or that was measured on a cloud that fits nowhere.
+  for (const float spread : {0.5F, 100.0F, std::numeric_limits<float>::infinity()}) {
+    lisco::SensorHints former = estimate(mountedRotation(before));
+    former.slope_spread = spread;
+    for (const float x :
+         {2.0F, 1e6F, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
+      former.origin[0] = x;
+      expectFound(now, estimate(mountedRotation(now), kHere, former), 0.15);
+    }
+  }
 }
 
 TEST(SensorEstimator, KeepsAnExactOrigin) {

@@ -24,13 +24,19 @@ struct SensorHints {
   /// Typical difference between the ranges of one laser's returns in adjacent columns, metres; infinite if most have
   /// none in the next column.
   float roughness = 0.0F;
+  /// By how much the slopes of a laser's returns differ as seen from the origin, in steps between lasers; 0: not
+  /// measured.
+  float slope_spread = 0.0F;
 };
 
 /// Estimates the sensor of an organized cloud (lasers > 1) from about a hundred of its cells, or of a rotation before.
 /// Allocates nothing. Without a clear answer, steps_per_turn is 0. The origin is (0, 0, 0), the declared one, or an
 /// estimate, if the cloud shows clearly that it is there; so is the tilt, which otherwise is 0.
 /// \param declared_origin position that the cloud states for its sensor, metres
+/// \param former the estimate of the cloud before, whose origin and tilt are kept if this cloud has about its
+///        slope_spread there: finding them is most of the work
 LISCO_EXPORT SensorHints estimateSensor(std::size_t columns, std::size_t lasers,
-                                        const std::array<float, 3>& declared_origin, const CellSource& cells);
+                                        const std::array<float, 3>& declared_origin, const CellSource& cells,
+                                        const SensorHints& former = {});
 
 }  // namespace lisco

@@ -24,6 +24,9 @@ constexpr double kTidy = 0.25;
 constexpr double kClearlyBetter = 0.5;
 /// The spread that is good enough, in steps between lasers, where no other frame may have seen the cloud.
 constexpr double kClear = 1.0;
+/// Ratio of spreads, either way, up to which the frame of the cloud before is kept. More: frames that have become worse
+/// are kept; less: frames are fitted to every cloud of a sequence.
+constexpr double kAsBefore = 1.5;
 
 /// Pairs of adjacent returns, and of returns further apart in a row, that an estimate needs. More: small and sparse
 /// clouds get no hints; fewer: chance decides the medians.
@@ -50,16 +53,28 @@ constexpr std::size_t kFewReturns = 4;
 /// Of a turn, 1 / kMinTurn; a cloud of less would leave the range image mostly empty.
 constexpr std::size_t kMinTurn = 4;
 
-/// Of a point as seen from the sensor, radians.
-struct Direction {
-  double azimuth, elevation;
+/// Of a point as seen from the sensor, metres.
+struct Seen {
+  double x, y, z;
+
+  Seen(const Return& point, const std::array<float, 3>& origin)
+      : x(static_cast<double>(point.x) - static_cast<double>(origin[0])),
+        y(static_cast<double>(point.y) - static_cast<double>(origin[1])),
+        z(static_cast<double>(point.z) - static_cast<double>(origin[2])) {}
+  double rho() const { return std::sqrt(x * x + y * y); }
+  double range() const { return std::sqrt(x * x + y * y + z * z); }
 };
 
-Direction directionOf(const Return& point, const std::array<float, 3>& origin) {
-  const double x = static_cast<double>(point.x) - static_cast<double>(origin[0]);
-  const double y = static_cast<double>(point.y) - static_cast<double>(origin[1]);
-  const double z = static_cast<double>(point.z) - static_cast<double>(origin[2]);
-  return {std::atan2(y, x), std::atan2(z, std::hypot(x, y))};
+/// From one azimuth to another, radians within half a turn.
+double azimuthStep(const Seen& from, const Seen& to) {
+  return std::atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y);
+}
+
+/// Between two elevations, radians.
+double elevationStep(const Seen& a, const Seen& b) {
+  const double a_rho = a.rho();
+  const double b_rho = b.rho();
+  return std::fabs(std::atan2(a_rho * b.z - a.z * b_rho, a_rho * b_rho + a.z * b.z));
 }
 
 float median(Sample<double>& values, float if_empty) {
@@ -86,13 +101,30 @@ std::array<double, 3> toDouble(const std::array<float, 3>& point) {
 
 }  // namespace
 
-/// Chooses the origin from which the lasers' slopes spread least: (0, 0, 0), the declared one if that is clearly
-/// better, or the one that fits best if that is. \return false if none may have seen the cloud
-bool SensorEstimator::estimateFrame(const std::array<float, 3>& declared_origin, SensorHints& hints) const {
+/// Chooses the origin from which the lasers' slopes spread least: that of the cloud before if they spread as much there,
+/// (0, 0, 0), the declared one if that is clearly better, or the one that fits best if that is.
+/// \return false if none may have seen the cloud
+bool SensorEstimator::estimateFrame(const std::array<float, 3>& declared_origin, const SensorHints& former,
+                                    SensorHints& hints) const {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
   for (const auto* pairs : {&along_row_, &along_column_})
     for (const Pair& pair : *pairs) box.add(Box::around(pair.a.x, pair.a.y, pair.a.z));
+
+  const auto take = [&hints](const std::array<float, 3>& origin, const std::array<double, 2>& tilt, double spread) {
+    hints.origin = origin;
+    hints.tilt = {static_cast<float>(tilt[0]), static_cast<float>(tilt[1])};
+    hints.slope_spread = static_cast<float>(spread);
+  };
+  const auto before = static_cast<double>(former.slope_spread);
+  if (before > 0 && !std::isinf(before) && mayHaveSeen(former.origin, box)) {
+    const std::array<double, 2> tilt{static_cast<double>(former.tilt[0]), static_cast<double>(former.tilt[1])};
+    const double seen = frame_.spread({toDouble(former.origin), tilt});
+    if (seen <= kAsBefore * before && before <= kAsBefore * seen) {
+      take(former.origin, tilt, before);  // as estimated, so that many clouds do not add up to a worse frame
+      return true;
+    }
+  }
 
   bool found = false;
   double spread = kClear / kClearlyBetter;
@@ -100,7 +132,7 @@ bool SensorEstimator::estimateFrame(const std::array<float, 3>& declared_origin,
     if ((found && (spread < kTidy || origin == hints.origin)) || !mayHaveSeen(origin, box)) continue;
     const double seen = frame_.spread({toDouble(origin), {}});
     if (found && !(seen < kClearlyBetter * spread)) continue;
-    hints.origin = origin;
+    take(origin, {}, seen);
     spread = seen;
     found = true;
   }
@@ -108,41 +140,35 @@ bool SensorEstimator::estimateFrame(const std::array<float, 3>& declared_origin,
   const SensorFrame fit = frame_.fit();
   const std::array<float, 3> origin{static_cast<float>(fit.origin[0]), static_cast<float>(fit.origin[1]),
                                     static_cast<float>(fit.origin[2])};
-  if (!mayHaveSeen(origin, box) || !(frame_.spread({toDouble(origin), fit.tilt}) < kClearlyBetter * spread))
-    return found;
-  hints.origin = origin;
-  hints.tilt = {static_cast<float>(fit.tilt[0]), static_cast<float>(fit.tilt[1])};
+  if (!mayHaveSeen(origin, box)) return found;
+  const double seen = frame_.spread({toDouble(origin), fit.tilt});
+  if (!(seen < kClearlyBetter * spread)) return found;
+  take(origin, fit.tilt, seen);
   return true;
 }
 
-SensorHints SensorEstimator::estimate(const std::array<float, 3>& declared_origin) const {
+SensorHints SensorEstimator::estimate(const std::array<float, 3>& declared_origin, const SensorHints& former) const {
   SensorHints hints;
   if (along_row_.size() + along_column_.size() < kMinPairs || further_.size() < kMinPairs) return hints;
 
-  if (!estimateFrame(declared_origin, hints)) return hints;
+  if (!estimateFrame(declared_origin, former, hints)) return hints;
   const auto& origin = hints.origin;
 
-  const auto rangeOf = [&origin](const Return& point) {
-    return std::hypot(static_cast<double>(point.x) - static_cast<double>(origin[0]),
-                      static_cast<double>(point.y) - static_cast<double>(origin[1]),
-                      static_cast<double>(point.z) - static_cast<double>(origin[2]));
-  };
   Sample<double> jumps;
-  for (const Pair& pair : along_row_) jumps.push_back(std::fabs(rangeOf(pair.a) - rangeOf(pair.b)));
+  for (const Pair& pair : along_row_)
+    jumps.push_back(std::fabs(Seen(pair.a, origin).range() - Seen(pair.b, origin).range()));
   for (std::size_t i = 0; i < alone_; ++i) jumps.push_back(std::numeric_limits<double>::infinity());
   hints.roughness = median(jumps, 0.0F);
 
   Sample<double> elevation_steps;
   for (const Pair& pair : along_column_)
-    elevation_steps.push_back(std::fabs(directionOf(pair.a, origin).elevation - directionOf(pair.b, origin).elevation));
+    elevation_steps.push_back(elevationStep(Seen(pair.a, origin), Seen(pair.b, origin)));
   hints.elevation_step = median(elevation_steps, hints.elevation_step);
 
   // Over many columns, the step and the sense of rotation are measured more finely.
   Sample<double> turns;
   for (const Pair& pair : further_)
-    turns.push_back(
-        std::remainder(directionOf(pair.b, origin).azimuth - directionOf(pair.a, origin).azimuth, 2.0 * kPi) /
-        static_cast<double>(kDriftColumns));
+    turns.push_back(azimuthStep(Seen(pair.a, origin), Seen(pair.b, origin)) / static_cast<double>(kDriftColumns));
   const auto step = static_cast<double>(median(turns, 0.0F));
   Sample<double> deviations;
   for (const double turn : turns) deviations.push_back(std::fabs(turn - step));
@@ -152,24 +178,22 @@ SensorHints SensorEstimator::estimate(const std::array<float, 3>& declared_origi
   if (hints.steps_per_turn > 0)
     hints.drift =
         static_cast<float>(quantile(deviations, kSteadyShare) / std::fabs(step)) * static_cast<float>(kDriftColumns);
-  Sample<double> jitters;
-  for (const Pair& pair : along_row_)
-    jitters.push_back(std::fabs(
-        std::remainder(directionOf(pair.b, origin).azimuth - directionOf(pair.a, origin).azimuth, 2.0 * kPi) - step));
-  if (!jitters.empty() && hints.steps_per_turn > 0)
+  if (hints.steps_per_turn > 0 && !along_row_.empty()) {
+    Sample<double> jitters;
+    for (const Pair& pair : along_row_)
+      jitters.push_back(std::fabs(azimuthStep(Seen(pair.a, origin), Seen(pair.b, origin)) - step));
     hints.jitter = static_cast<float>(quantile(jitters, kSteadyShare) / std::fabs(step));
+  }
 
   Sample<double> distances;
-  for (const Pair& pair : along_row_)
-    distances.push_back(std::hypot(static_cast<double>(pair.a.x) - static_cast<double>(origin[0]),
-                                   static_cast<double>(pair.a.y) - static_cast<double>(origin[1])));
+  for (const Pair& pair : along_row_) distances.push_back(Seen(pair.a, origin).rho());
   const auto few = static_cast<std::size_t>(kFarShare * static_cast<double>(distances.size()));
   if (!distances.empty()) hints.far_distance = static_cast<float>(sortedElement(distances, distances.size() - 1 - few));
   return hints;
 }
 
 SensorHints estimateSensor(std::size_t columns, std::size_t lasers, const std::array<float, 3>& declared_origin,
-                           const CellSource& cells) {
+                           const CellSource& cells, const SensorHints& former) {
   if (lasers < 2 || columns * lasers < kMinCells) return SensorHints();
   const auto valid = [](const Return& cell) { return isReturn(cell.x, cell.y, cell.z); };
 
@@ -206,7 +230,7 @@ SensorHints estimateSensor(std::size_t columns, std::size_t lasers, const std::a
         below_ones.push_back({laser + 1, below});
       }
     for (const BelowOne& one : below_ones) estimator.addOfLaser(one.laser, one.point);
-    return estimator.estimate(declared_origin);
+    return estimator.estimate(declared_origin, former);
   };
   SensorHints hints = estimateFrom(row_step / 2);
   // These may be the rows of second returns, of which few rays have one.

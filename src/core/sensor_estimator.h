@@ -28,11 +28,11 @@ class SensorEstimator {
   /// Returns of a laser, one laser after the other.
   void addOfLaser(std::size_t laser, const Return& point) { frame_.add(laser, point); }
 
-  /// \param declared_origin position that the cloud states for its sensor
-  SensorHints estimate(const std::array<float, 3>& declared_origin) const;
+  /// See estimateSensor.
+  SensorHints estimate(const std::array<float, 3>& declared_origin, const SensorHints& former) const;
 
  private:
-  bool estimateFrame(const std::array<float, 3>& declared_origin, SensorHints& hints) const;
+  bool estimateFrame(const std::array<float, 3>& declared_origin, const SensorHints& former, SensorHints& hints) const;
 
   struct Pair {
     Return a, b;

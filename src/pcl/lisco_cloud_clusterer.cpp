@@ -16,6 +16,7 @@ namespace pcl::detail {
 class LiscoCloudClusterer::State {
  public:
   lisco::ColumnClusterer clusterer;
+  lisco::SensorHints sensor;                       ///< estimated for the latest cloud
   std::vector<char> is_selected;                   ///< per point of the cloud; where many are selected
   Indices few_points;                              ///< ascending; where few are selected
   std::vector<std::uint32_t> subcluster_of_point;  ///< only where the order of the indices is needed
@@ -62,7 +63,9 @@ bool LiscoCloudClusterer::clusterPoints(const Layout& layout, const lisco::CellS
   const auto cluster = [&](const auto& cells) {
     lisco::Parameters parameters;
     parameters.tolerance = tolerance;
-    parameters.sensor = lisco::estimateSensor(columns, lasers, layout.sensor_origin, lisco::CellSource(cells));
+    state_->sensor =
+        lisco::estimateSensor(columns, lasers, layout.sensor_origin, lisco::CellSource(cells), state_->sensor);
+    parameters.sensor = state_->sensor;
     parameters.expected_returns = columns * lasers;
     parameters.threads = threads;
     state_->clusterer.begin(parameters);
