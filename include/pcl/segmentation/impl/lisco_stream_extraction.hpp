@@ -28,7 +28,7 @@ class pcl::LiscoStreamExtraction<PointT>::State : public detail::LiscoReceivedCo
       const PointT& point = store.at(laser, column);
       return (lisco::Return{point.x, point.y, point.z, 0});
     };
-    hints = lisco::estimateSensor(this->store.size(), this->maxRows(), origin, lisco::CellSource(cell_at));
+    hints = lisco::estimateSensor(this->store.size(), this->maxRows(), origin, lisco::CellSource(cell_at), hints);
   }
 
   lisco::ColumnClusterer clusterer;
