@@ -101,8 +101,9 @@ std::array<double, 3> toDouble(const std::array<float, 3>& point) {
 
 }  // namespace
 
-/// Chooses the origin from which the lasers' slopes spread least: that of the cloud before if they spread as much there,
-/// (0, 0, 0), the declared one if that is clearly better, or the one that fits best if that is.
+/// Keeps the frame of the cloud before if the lasers' slopes spread as much there. Otherwise chooses the origin from
+/// which they spread least: (0, 0, 0), the declared one if that is clearly better, or the one that fits best if that
+/// is.
 /// \return false if none may have seen the cloud
 bool SensorEstimator::estimateFrame(const std::array<float, 3>& declared_origin, const SensorHints& former,
                                     SensorHints& hints) const {
