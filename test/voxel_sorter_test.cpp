@@ -85,7 +85,7 @@ std::vector<lisco::NearReturns> partsOf(const Cloud& cloud) {
   for (const std::size_t end : cloud.part_ends) {
     lisco::NearReturns& part = parts.emplace_back();
     part.count = end - begin;
-    const std::size_t behind = (begin + end) % 3 == 0 || begin == end ? lisco::kNearStep : 70;
+    const std::size_t behind = (begin + end) % 3 == 0 || begin == end ? lisco::kReadBehind : 70;
     part.returns.grow(part.count + behind);
     for (std::size_t i = 0; i < part.returns.size(); ++i) {
       if (part.count == 0) break;
@@ -543,7 +543,7 @@ TEST(VoxelSorter, LosesNoJoinOfAnotherThread) {
     std::vector<lisco::NearReturns> parts(count);
     for (std::size_t pair = 0; pair < kSets; ++pair) {
       lisco::NearReturns& part = parts[pair % count];
-      part.returns.grow(part.count + 2 + lisco::kNearStep);
+      part.returns.grow(part.count + 2 + lisco::kReadBehind);
       const auto a = static_cast<std::uint32_t>(random.below(kSets));
       const auto b = static_cast<std::uint32_t>(random.below(kSets));
       part.returns[part.count++] = {0, 3 * static_cast<float>(pair), 0, a};

@@ -43,6 +43,7 @@ class ColumnClusterer::Rotation {
   void preparePart(std::size_t i, const SensorHints& hints, std::size_t columns);
   bool readFarAndNear(std::size_t lasers, const CellSource& cells);
   void readPart(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial);
+  void reserveNear(Partition& partition, std::size_t columns);
   void readNear(std::size_t lasers, const CellSource& cells);
   void readUnordered(std::size_t lasers, const CellSource& cells);
   void prepareForColumns();
@@ -68,7 +69,10 @@ class ColumnClusterer::Rotation {
   bool comes_at_once_ = false;             ///< the latest columns, of this rotation or the one before
   bool is_prepared_ = false;               ///< the last partition, for columns that follow
   bool was_far_worthwhile_ = false;        ///< in the latest trial
-  bool are_linked_ = false;                ///< all partitions but the last, with each other
+  struct TriedNear {
+    std::size_t returns, columns;
+  } tried_near_{};           ///< near returns of the columns of this rotation's trial; {0, 0}: none
+  bool are_linked_ = false;  ///< all partitions but the last, with each other
   enum class Near { kCollected, kSorted, kInVoxels } near_ = Near::kInVoxels;  ///< state of the near returns
   bool is_unordered_ = false;  ///< all returns are in unordered_, near and collected or sorted; partitions are empty
   UnorderedReturns unordered_;
@@ -175,6 +179,7 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
   if (partition_count_ == 1) parts_.assign(1, {0, columns});
   near_ = Near::kCollected;
   is_prepared_ = false;
+  tried_near_ = {0, 0};
   scheduler_.skipColumns(columns);
   if (partition_count_ > 1) subclusters_.reserve(lasers * columns + RingBlock::kColumns);
   const bool drifts = parameters_.sensor.drift > kMaxDrift;
@@ -215,12 +220,20 @@ bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSou
   return trial.await();
 }
 
+/// Makes room for the near returns of some columns, as far as a trial tells how many to expect.
+void ColumnClusterer::Rotation::reserveNear(Partition& partition, std::size_t columns) {
+  if (tried_near_.columns == 0) return;
+  const std::size_t near = tried_near_.returns + tried_near_.returns / 64;
+  partition.reserveNear(near * columns / tried_near_.columns + 2 * RingBlock::kColumns);
+}
+
 /// Each thread reads its part of the columns, without far returns.
 void ColumnClusterer::Rotation::readNear(std::size_t lasers, const CellSource& cells) {
   inParallel(partition_count_, [&](std::size_t i) {
     preparePart(i, SensorHints(), 0);
     Partition& partition = partitions_[i];
     const auto [begin, end] = parts_[i];
+    reserveNear(partition, end - begin);
     partition.readLasers(cells, begin, end, lasers, subclusters_);
     if (partition_count_ > 1)
       balancer_.record(begin, end - begin, (end - begin) * lasers * kWorkOfCell + partition.workDone());
@@ -256,7 +269,8 @@ void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, cons
       trial.decide(is_worthwhile);
       if (is_worthwhile) partition.expectColumns(end - begin);
       const std::size_t near = is_worthwhile ? partition.nearReturns().count : partition.runs.returns;
-      partition.reserveNear((near + near / 64) * (end - begin) / (first + count) + 2 * RingBlock::kColumns);
+      tried_near_ = {near, first + count};
+      if (is_worthwhile) reserveNear(partition, end - begin);
     }
   }
 }

@@ -182,9 +182,7 @@ bool VoxelSorter::number(const std::vector<Numbered>& parts, const Tolerance& to
   const std::size_t most = slabs_.back().end;
   voxels_.grow(most);
   voxels_.create(0, static_cast<std::uint32_t>(most));
-  voxel_sizes_.grow(most);
   begins_voxel_.grow(most + 1);
-  number_of_voxel_.grow(most);
   begins_voxel_[most] = 0;
   linkSlabs(tolerance, voxels_);
   numberSets(sizes);
@@ -209,21 +207,23 @@ void VoxelSorter::linkSlabs(const Tolerance& tolerance, DisjointSets& subcluster
   subclusters.share(false);
 }
 
-/// Numbers the sets of voxels by their first ones.
+/// Numbers the sets of voxels by their first ones: replaces the sizes of the voxels in scratch_ by their numbers.
 void VoxelSorter::numberSets(std::vector<std::uint32_t>& sizes) {
+  std::uint64_t* const scratch = scratch_.data();
+  const auto number_of = [scratch](std::uint32_t parent) { return static_cast<std::uint32_t>(scratch[parent]); };
   for (const Slab& slab : slabs_)
     for (std::size_t voxel = slab.begin; voxel < slab.begin + slab.voxels; ++voxel)
-      number_of_voxel_[voxel] = numberElement(static_cast<std::uint32_t>(voxel), voxel_sizes_[voxel], voxels_, sizes,
-                                              [&](std::uint32_t parent) { return number_of_voxel_[parent]; });
+      scratch[voxel] = numberElement(static_cast<std::uint32_t>(voxel), static_cast<std::uint32_t>(scratch[voxel]),
+                                     voxels_, sizes, number_of);
 }
 
 /// Hands the numbers of sets to the returns.
 void VoxelSorter::numberReturns(const Slab& slab) {
   const auto numberAll = [&, number_bits = number_bits_, items = items_.data()](auto&& numberAt) {
     const std::uint64_t number_mask = (std::uint64_t{1} << number_bits) - 1;
-    const std::uint32_t* number_of_voxel = number_of_voxel_.data() + slab.begin;
+    const std::uint64_t* number_of_voxel = scratch_.data() + slab.begin;
     for (std::size_t i = slab.begin; i < slab.end; ++i) {
-      numberAt(static_cast<std::size_t>(items[i] & number_mask)) = *number_of_voxel;
+      numberAt(static_cast<std::size_t>(items[i] & number_mask)) = static_cast<std::uint32_t>(*number_of_voxel);
       number_of_voxel += begins_voxel_[i + 1];
     }
   };
@@ -367,10 +367,11 @@ std::size_t VoxelSorter::endOfPlane(std::size_t begin, std::size_t end) const {
                                   items);
 }
 
-/// Enters a plane's voxels, which are elements, and those of its returns [begin, end).
+/// Enters a plane's voxels, which are elements, and those of its returns [begin, end). Their sizes go into scratch_,
+/// which is free once the fragments are sorted.
 void VoxelSorter::addVoxels(std::size_t slab, const VoxelPlane& plane, std::size_t voxels, std::size_t begin,
                             std::size_t end) {
-  std::uint32_t* const sizes = voxel_sizes_.data() + slabs_[slab].begin + slabs_[slab].voxels;
+  std::uint64_t* const sizes = scratch_.data() + slabs_[slab].begin + slabs_[slab].voxels;
   std::copy_n(plane.return_count.data(), voxels, sizes);
   slabs_[slab].voxels += voxels;
   std::copy_n(plane.begins_voxel.data(), end - begin, &begins_voxel_[begin]);

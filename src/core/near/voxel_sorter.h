@@ -72,7 +72,8 @@ class VoxelSorter {
   unsigned number_bits_ = 0;  ///< of an item: the lowest
   unsigned plane_shift_ = 0;
   FragmentList fragments_;
-  GrowingArray<std::uint64_t> items_, scratch_;  ///< a fragment's key and number
+  GrowingArray<std::uint64_t> items_;    ///< a fragment's key and number
+  GrowingArray<std::uint64_t> scratch_;  ///< the same while sorting; then, by element, a voxel's size or set
   std::vector<Box> part_boxes_;
   std::vector<std::size_t> part_sizes_;  ///< in fragments
   std::vector<std::uint32_t> histogram_;
@@ -80,8 +81,6 @@ class VoxelSorter {
   std::vector<VoxelPlane> planes_;  ///< two for each slab
   // Of single returns, whose voxels are elements:
   DisjointSets voxels_;
-  GrowingArray<std::uint32_t> voxel_sizes_;
-  GrowingArray<std::uint32_t> number_of_voxel_;  ///< of each one's set
   GrowingArray<std::uint8_t> begins_voxel_;  ///< whether each return, as sorted, begins a voxel; and behind the last
 };
 
