@@ -50,9 +50,9 @@ struct FragmentList {
     const Part& part = partOf(number);
     return part.near->returns.data() + (number - part.first);
   }
-  /// The number of returns of the fragment that begins with a return.
-  std::size_t sizeOf(std::size_t number) const { return are_single ? 1 : endOf(number) - number; }
-  /// The end of the fragment that begins with a return; not of single ones.
+  /// The number of returns of the fragment that begins with a return; not of single ones.
+  std::size_t sizeOf(std::size_t number) const { return endOf(number) - number; }
+  /// The end of that fragment.
   std::size_t endOf(std::size_t number) const {
     std::size_t word = ++number / 64;
     std::uint64_t left = starts[word] >> number % 64;
