@@ -3,7 +3,6 @@
 #include "core/near/voxel_sorter.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "core/bits.h"
@@ -15,32 +14,21 @@
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
-#include "core/lanes-inl.h"
+#include "core/near/returns_box-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace lisco {
 namespace HWY_NAMESPACE {
 
-/// The box around some returns. \param count at least 1
+/// The box around some returns.
 void boundReturns(const NearReturn* returns, std::size_t count, Box& box) {
-  static_assert(sizeof(NearReturn) == 4 * sizeof(float), "lane 4 i + k is coordinate k");
-  const auto* const values = reinterpret_cast<const float*>(returns);
-  FloatVector least = hn::Set(kFloats, std::numeric_limits<float>::infinity());
-  FloatVector greatest = hn::Neg(least);
-  std::size_t i = 0;
-  for (; kLanes % 4 == 0 && i + kLanes <= 4 * count; i += kLanes) {
-    const FloatVector coordinates = hn::LoadU(kFloats, values + i);
-    least = hn::Min(least, coordinates);
-    greatest = hn::Max(greatest, coordinates);
+  ReturnsBox around;
+  around.add(returns, count);
+  const BoxLanes lanes = around.box();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.lo[axis] = lanes.lo(axis);
+    box.hi[axis] = lanes.hi(axis);
   }
-  float lo[kLanes];
-  float hi[kLanes];
-  hn::StoreU(least, kFloats, lo);
-  hn::StoreU(greatest, kFloats, hi);
-  box = Box::around(returns[count - 1].x, returns[count - 1].y, returns[count - 1].z);
-  for (std::size_t k = 0; k < kLanes && i > 0; k += 4)
-    box.add({{lo[k], lo[k + 1], lo[k + 2]}, {hi[k], hi[k + 1], hi[k + 2]}});
-  for (i /= 4; i < count; ++i) box.add(Box::around(returns[i].x, returns[i].y, returns[i].z));
 }
 
 constexpr std::size_t kBatch = 64;  // returns
