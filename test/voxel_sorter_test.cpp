@@ -121,16 +121,14 @@ void expectTrueNumbers(lisco::VoxelSorter& sorter, Cloud cloud, bool is_sorted) 
   std::iota(cloud.elements.begin(), cloud.elements.end(), 0U);
   const std::vector<lisco::NearReturns> parts = partsOf(cloud);
   constexpr std::uint32_t kUnset = ~std::uint32_t{0};
-  std::vector<std::uint32_t> numbers(cloud.points.size(), kUnset);
-  std::vector<lisco::VoxelSorter::Numbered> numbered;
-  std::size_t first = 0;
-  for (const lisco::NearReturns& part : parts) {
-    numbered.push_back({&part, numbers.data() + first});
-    first += part.count;
-  }
+  std::vector<lisco::VoxelSorter::SingleReturns> single;
+  for (const lisco::NearReturns& part : parts) single.push_back({&part, 0});
   std::vector<std::uint32_t> sizes{7, 7};
-  EXPECT_EQ(sorter.number(numbered, lisco::Tolerance(cloud.tolerance), sizes), is_sorted) << cloud;
+  EXPECT_EQ(sorter.number(single, lisco::Tolerance(cloud.tolerance), sizes), is_sorted) << cloud;
   if (!is_sorted) return;
+  std::vector<std::uint32_t> numbers;
+  for (const auto& part : single)
+    for (std::size_t i = 0; i < part.near->count; ++i) numbers.push_back(sorter.setOf(part.first + i));
   const std::vector<std::uint32_t> right = trueSets(cloud, true);
   std::vector<std::uint32_t> set_of_number(sizes.size(), kUnset);
   std::vector<std::uint32_t> true_sizes(sizes.size(), 0);

@@ -43,6 +43,7 @@ class ColumnClusterer::Rotation {
   void preparePart(std::size_t i, const SensorHints& hints, std::size_t columns);
   bool readFarAndNear(std::size_t lasers, const CellSource& cells);
   void readPart(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial);
+  void reserveRuns(Partition& partition);
   void reserveNear(Partition& partition, std::size_t columns);
   void readNear(std::size_t lasers, const CellSource& cells);
   void readUnordered(std::size_t lasers, const CellSource& cells);
@@ -201,6 +202,7 @@ void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hi
 ///         than sorting them
 bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSource& cells) {
   if (parameters_.sensor.steps_per_turn == 0) return false;  // nothing to prepare
+  partitions_.front().takeLargerMemory(unordered_.memory());
   FarTrial trial;
   inParallel(partition_count_, [&](std::size_t i) {
     try {
@@ -233,6 +235,7 @@ void ColumnClusterer::Rotation::readNear(std::size_t lasers, const CellSource& c
     preparePart(i, SensorHints(), 0);
     Partition& partition = partitions_[i];
     const auto [begin, end] = parts_[i];
+    reserveRuns(partition);
     reserveNear(partition, end - begin);
     partition.readLasers(cells, begin, end, lasers, subclusters_);
     if (partition_count_ > 1)
@@ -242,6 +245,7 @@ void ColumnClusterer::Rotation::readNear(std::size_t lasers, const CellSource& c
 
 /// The same without runs.
 void ColumnClusterer::Rotation::readUnordered(std::size_t lasers, const CellSource& cells) {
+  partitions_.front().leaveLargerMemory(unordered_.memory());  // which a trial of far returns has used
   unordered_.begin(partition_count_);
   inParallel(partition_count_, [&](std::size_t i) {
     const auto [begin, end] = parts_[i];
@@ -257,6 +261,7 @@ void ColumnClusterer::Rotation::readUnordered(std::size_t lasers, const CellSour
 void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial) {
   Partition& partition = partitions_[i];
   const auto [begin, end] = parts_[i];
+  if (i > 0) reserveRuns(partition);  // the first part's trial may refuse it
   for (std::size_t first = begin; first < end; first += RingBlock::kColumns) {
     if (trial.isRefused()) return;
     const std::size_t count = std::min(end - first, RingBlock::kColumns);
@@ -267,10 +272,11 @@ void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, cons
     if (i == 0 && first + count == std::min(kTriedColumns, end)) {
       const bool is_worthwhile = was_far_worthwhile_ = partition.isFarWorthwhile();
       trial.decide(is_worthwhile);
-      if (is_worthwhile) partition.expectColumns(end - begin);
-      const std::size_t near = is_worthwhile ? partition.nearReturns().count : partition.runs.returns;
-      tried_near_ = {near, first + count};
-      if (is_worthwhile) reserveNear(partition, end - begin);
+      tried_near_ = {is_worthwhile ? partition.nearReturns().count : partition.runs.returns, first + count};
+      if (!is_worthwhile) return;
+      partition.expectColumns(end - begin);
+      reserveRuns(partition);
+      reserveNear(partition, end - begin);
     }
   }
 }
@@ -284,6 +290,7 @@ void ColumnClusterer::Rotation::prepareForColumns() {
     lastPartition().expectColumns(kWholeTurn);
   } else {
     lastPartition().prepare(tolerance_, parameters_.sensor, kWholeTurn);
+    reserveRuns(lastPartition());
   }
 }
 
@@ -387,8 +394,11 @@ void ColumnClusterer::Rotation::numberSubclusters() {
 void ColumnClusterer::Rotation::usePartitions(std::size_t count) {
   if (partitions_.size() < count) partitions_.resize(count);
   partition_count_ = count;
-  for (std::size_t i = 0; i < count; ++i)
-    partitions_[i].runs.source_index.reserve(parameters_.expected_returns / count);
+}
+
+/// Makes room for the runs of one of the partitions, which get equal shares of the returns expected.
+void ColumnClusterer::Rotation::reserveRuns(Partition& partition) {
+  partition.runs.source_index.reserve(parameters_.expected_returns / partition_count_);
 }
 
 // --- Results --------------------------------------------------------------------------------------------------------
@@ -407,7 +417,7 @@ void ColumnClusterer::Rotation::sortRuns() {
 
 void ColumnClusterer::Rotation::visitRuns(const RunVisitor& visit) {
   if (is_unordered_) {
-    unordered_.visit(visit);
+    unordered_.visit(sorter_, visit);
     return;
   }
   sortRuns();
@@ -418,7 +428,7 @@ void ColumnClusterer::Rotation::visitRuns(const RunVisitor& visit) {
 }
 
 std::uint32_t ColumnClusterer::Rotation::subclusterAt(std::size_t laser, std::size_t column) {
-  if (is_unordered_) return unordered_.numberAt(laser, column);
+  if (is_unordered_) return unordered_.setAt(sorter_, laser, column);
   sortRuns();
   LaserOrder::Entry entry{};
   if (!order_.find(

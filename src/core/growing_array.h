@@ -58,6 +58,18 @@ class GrowingArray {
   T& operator[](std::size_t i) { return data_[i]; }
   const T& operator[](std::size_t i) const { return data_[i]; }
 
+  /// Exchanges memory with an array of other elements; the values of both are lost.
+  template <typename Other>
+  void exchangeMemory(GrowingArray<Other>& other) noexcept {
+    static_assert(alignof(T) <= alignof(std::max_align_t) && alignof(Other) <= alignof(std::max_align_t));
+    T* const data = reinterpret_cast<T*>(other.data_);
+    const std::size_t size = other.size_ * sizeof(Other) / sizeof(T);
+    other.data_ = reinterpret_cast<Other*>(data_);
+    other.size_ = size_ * sizeof(T) / sizeof(Other);
+    data_ = data;
+    size_ = size;
+  }
+
   /// The same as grow (), for a size that grows step by step.
   void growInSteps(std::size_t size) {
     if (size > size_) grow(withSpare(size));
@@ -89,6 +101,8 @@ class GrowingArray {
   }
 
  private:
+  template <typename Other>
+  friend class GrowingArray;
   static constexpr std::size_t kHugePage = std::size_t{1} << 21;  ///< bytes
 
   T* data_ = nullptr;

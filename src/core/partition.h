@@ -29,6 +29,10 @@ class Partition {
   /// \param columns number of columns expected; more than a turn needs no more memory
   void prepare(const Tolerance& tolerance, const SensorHints& hints, std::size_t columns);
 
+  /// See RangeImage::takeLargerMemory.
+  void takeLargerMemory(NearReturns& near) noexcept { image_.takeLargerMemory(near.returns); }
+  void leaveLargerMemory(NearReturns& near) noexcept { image_.leaveLargerMemory(near.returns); }
+
   /// Makes room in the range image for a number of lasers, before their rings are read.
   void addLasers(std::size_t lasers) {
     if (image_.inUse()) image_.addLasers(lasers);

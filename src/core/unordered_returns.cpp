@@ -22,7 +22,7 @@ namespace HWY_NAMESPACE {
 /// Copies the returns of a ring block side by side. Up to kReadBehind more are written.
 /// \param columns those behind are no returns
 /// \return bit i: column i is a return
-ColumnBits copyReturns(const RingBlock& block, std::size_t columns, NearReturn* to, std::uint32_t* source_index) {
+ColumnBits copyReturns(const RingBlock& block, std::size_t columns, NearReturn* to) {
   static_assert(kLanes <= kReadBehind, "a vector fits behind the last");
   static_assert(sizeof(NearReturn) == 4 * sizeof(float), "lane 4 i + k is coordinate k");
   ColumnBits all = 0;
@@ -32,13 +32,10 @@ ColumnBits copyReturns(const RingBlock& block, std::size_t columns, NearReturn* 
     const FloatVector z = hn::LoadU(kFloats, block.z + RingBlock::kMargin + k);
     const std::uint64_t returns = bitsOf(areReturns(x, y, z)) & lanesBelow(columns - k);
     const FloatMask chosen = lanesOf(returns);
-    hn::StoreInterleaved4(hn::Compress(x, chosen), hn::Compress(y, chosen), hn::Compress(z, chosen), hn::Zero(kFloats),
-                          kFloats, &to->x);
     const FloatVector sources = hn::BitCast(kFloats, hn::LoadU(kWords, block.source_index + k));
-    hn::StoreU(hn::BitCast(kWords, hn::Compress(sources, chosen)), kWords, source_index);
-    const std::uint32_t count = countBits(returns);
-    to += count;
-    source_index += count;
+    hn::StoreInterleaved4(hn::Compress(x, chosen), hn::Compress(y, chosen), hn::Compress(z, chosen),
+                          hn::Compress(sources, chosen), kFloats, &to->x);
+    to += countBits(returns);
     all |= returns << k;
   }
   return all;
@@ -101,6 +98,7 @@ void UnorderedReturns::begin(std::size_t parts) {
     part.near.count = 0;
     part.blocks.clear();
   }
+  numbered_.clear();
   is_sorted_ = false;
 }
 
@@ -109,27 +107,24 @@ void UnorderedReturns::readPart(std::size_t number, const CellSource& cells, std
   Part& part = parts_[number];
   const std::size_t most = (end - first) * lasers + RingBlock::kColumns + kReadBehind;
   part.near.returns.grow(most);
-  part.source_index.grow(most);
   RingBlock block;
   for (std::size_t laser = 0; laser < lasers; ++laser)
     for (std::size_t column = first; column < end; column += RingBlock::kColumns) {
       const std::size_t columns = std::min(end - column, RingBlock::kColumns);
       block.read(0, cells, laser, column, columns);
       const std::size_t count = part.near.count;
-      const ColumnBits returns = HWY_DYNAMIC_DISPATCH(copyReturns)(block, columns, part.near.returns.data() + count,
-                                                                   part.source_index.data() + count);
+      const ColumnBits returns = HWY_DYNAMIC_DISPATCH(copyReturns)(block, columns, part.near.returns.data() + count);
       if (returns == 0) continue;
       part.near.count += countBits(returns);
       reserveInSteps(part.blocks, part.blocks.size() + 1);
       part.blocks.push_back({static_cast<std::uint32_t>(laser), static_cast<std::uint32_t>(column),
                              static_cast<std::uint32_t>(count), returns});
     }
-  part.number.grow(part.near.count);
 }
 
 bool UnorderedReturns::link(VoxelSorter& sorter, const Tolerance& tolerance, std::vector<std::uint32_t>& sizes) {
   numbered_.clear();
-  for (std::size_t i = 0; i < part_count_; ++i) numbered_.push_back({&parts_[i].near, parts_[i].number.data()});
+  for (std::size_t i = 0; i < part_count_; ++i) numbered_.push_back({&parts_[i].near, 0});
   return sorter.number(numbered_, tolerance, sizes);
 }
 
@@ -145,16 +140,26 @@ void UnorderedReturns::sortBlocks() {
   is_sorted_ = true;
 }
 
-void UnorderedReturns::visit(const RunVisitor& visit) {
+void UnorderedReturns::visit(const VoxelSorter& sorter, const RunVisitor& visit) {
+  if (numbered_.size() != part_count_) return;
   sortBlocks();
   order_.forEachBlock([this](std::size_t i) -> const Part& { return parts_[i]; },
-                      [&](std::size_t, const Part& part, const Block& block) {
-                        visit.visitSingle(part.number.data() + block.first_return, countBits(block.returns),
-                                          part.source_index.data() + block.first_return);
+                      [&](std::size_t number, const Part& part, const Block& block) {
+                        const NearReturn* const returns = part.near.returns.data() + block.first_return;
+                        const std::size_t first = numbered_[number].first + block.first_return;
+                        const std::uint32_t count = countBits(block.returns);
+                        std::uint32_t sets[RingBlock::kColumns];
+                        std::uint32_t source_index[RingBlock::kColumns];
+                        for (std::size_t i = 0; i < count; ++i) {
+                          sets[i] = sorter.setOf(first + i);
+                          source_index[i] = returns[i].element;
+                        }
+                        visit.visitSingle(sets, count, source_index);
                       });
 }
 
-std::uint32_t UnorderedReturns::numberAt(std::size_t laser, std::size_t column) {
+std::uint32_t UnorderedReturns::setAt(const VoxelSorter& sorter, std::size_t laser, std::size_t column) {
+  if (numbered_.size() != part_count_) return kNone;
   sortBlocks();
   LaserOrder::Entry entry{};
   if (!order_.find(
@@ -164,7 +169,8 @@ std::uint32_t UnorderedReturns::numberAt(std::size_t laser, std::size_t column) 
   const Block& block = part.blocks[entry.block];
   const std::size_t offset = column - block.first_column;
   if ((block.returns >> offset & 1) == 0) return kNone;
-  return part.number[block.first_return + countBits(block.returns & ~bitsFrom(offset))];
+  return sorter.setOf(numbered_[entry.partition].first + block.first_return +
+                      countBits(block.returns & ~bitsFrom(offset)));
 }
 
 void UnorderedReturns::moveTo(Partition& partition, DisjointSets& subclusters) {
@@ -178,7 +184,7 @@ void UnorderedReturns::moveTo(Partition& partition, DisjointSets& subclusters) {
         ring.x[RingBlock::kMargin + column] = near.x;
         ring.y[RingBlock::kMargin + column] = near.y;
         ring.z[RingBlock::kMargin + column] = near.z;
-        ring.source_index[column] = parts_[i].source_index[number];
+        ring.source_index[column] = near.element;
         ++number;
       });
       const auto columns = static_cast<std::size_t>(64 - __builtin_clzll(block.returns));

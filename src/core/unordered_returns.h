@@ -30,16 +30,22 @@ class UnorderedReturns {
   /// Reads the columns [first, end), laser by laser. Threads may read different parts at once.
   void readPart(std::size_t part, const CellSource& cells, std::size_t first, std::size_t end, std::size_t lasers);
 
+  /// The returns of the first part, whose memory may serve others until begin ().
+  NearReturns& memory() {
+    if (parts_.empty()) parts_.resize(1);
+    return parts_.front().near;
+  }
+
   /// Finds and numbers the sets of neighbours. \param sizes receives the number of returns of each set
   /// \return false if the sorter refuses the returns
   bool link(VoxelSorter& sorter, const Tolerance& tolerance, std::vector<std::uint32_t>& sizes);
 
   std::size_t count() const;
-  /// Visits all returns laser by laser, after link ().
-  void visit(const RunVisitor& visit);
+  /// Visits all returns laser by laser. \param sorter of link (), which holds the numbers of the sets
+  void visit(const VoxelSorter& sorter, const RunVisitor& visit);
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  /// The number of a return's set, kNone if there is no return in the cell; after link ().
-  std::uint32_t numberAt(std::size_t laser, std::size_t column);
+  /// The number of a return's set, kNone if there is no return in the cell. \param sorter as above
+  std::uint32_t setAt(const VoxelSorter& sorter, std::size_t laser, std::size_t column);
 
   /// Puts all returns into a partition without far returns, as if it had read them.
   void moveTo(Partition& partition, DisjointSets& subclusters);
@@ -54,8 +60,6 @@ class UnorderedReturns {
   };
   struct Part {
     NearReturns near;
-    GrowingArray<std::uint32_t> source_index;
-    GrowingArray<std::uint32_t> number;  ///< of each return's set
     std::vector<Block> blocks;
   };
 
@@ -63,7 +67,7 @@ class UnorderedReturns {
 
   std::vector<Part> parts_;
   std::size_t part_count_ = 0;
-  std::vector<VoxelSorter::Numbered> numbered_;
+  std::vector<VoxelSorter::SingleReturns> numbered_;  ///< of each part, once linked
   LaserOrder order_;
   bool is_sorted_ = false;  ///< order_, since begin ()
 };

@@ -25,8 +25,7 @@ inline void sortLiscoClusters(std::vector<PointIndices>& clusters) {
 
 /** \brief Where the next point of a subcluster goes. */
 struct LiscoClusterPlace {
-  index_t* next;     ///< nullptr: its cluster has no place yet
-  std::size_t kept;  ///< all bits set; none if its size is not accepted: then next stays where it is
+  index_t* next;  ///< nullptr: its cluster has no place yet; if its size is not accepted, where all such points go
 };
 
 /** \brief Appends subclusters of accepted sizes to a vector as PCL's clusters, in the order of their first place (). */
@@ -44,7 +43,7 @@ class LiscoClusterWriter {
     for (LiscoClusterPlace& place : places_) {
       const std::uint32_t size = clusterer.sizeOf(subcluster++);
       const bool is_accepted = size >= min_size && size <= max_size;
-      place = {is_accepted ? nullptr : ignored_, is_accepted ? ~std::size_t{0} : std::size_t{0}};
+      place = {is_accepted ? nullptr : ignored_};
     }
   }
   LiscoClusterWriter(const LiscoClusterWriter&) = delete;
@@ -63,11 +62,12 @@ class LiscoClusterWriter {
   template <typename PointAt>
   void append(std::uint32_t subcluster, std::size_t count, PointAt&& point_at) {
     place(subcluster);
-    LiscoClusterPlace& place = places_[subcluster];
-    if (count > kMaxIgnored && place.kept == 0) return;
+    index_t* const to = places_[subcluster].next;
+    const bool is_accepted = to != ignored_;
+    if (count > kMaxIgnored && !is_accepted) return;
     // Those of sizes not accepted are written as well: which sizes follow each other is not foreseen.
-    copy(place.next, count, point_at);
-    place.next += count & place.kept;
+    copy(to, count, point_at);
+    places_[subcluster].next = to + (count & (std::size_t{0} - std::size_t{is_accepted}));  // without a branch
   }
 
  private:

@@ -46,6 +46,16 @@ class ImageCells {
     setRowSize(row_size_);
   }
 
+  /// Exchanges the memory of the bins, all free, with an array of other elements, whose values are lost. setRowSize ()
+  /// comes next.
+  template <typename Other>
+  void exchangeMemory(GrowingArray<Other>& other) noexcept {
+    floats_.exchangeMemory(other);
+    x = y = z = nullptr;
+    element = nullptr;
+  }
+  std::size_t bytes() const { return floats_.size() * sizeof(float); }
+
   /// Moves some rows apart, so that each has as many bins as setRowSize () says.
   /// \param former number of bins of a row
   /// \param used of these, from the first on; the others become free

@@ -10,6 +10,7 @@
 
 #include "core/bits.h"
 #include "core/far/image_cells.h"
+#include "core/growing_array.h"
 #include "core/neighbour.h"
 #include "core/ring_block.h"
 #include "lisco/sensor_hints.h"
@@ -57,6 +58,17 @@ struct RangeImage {
   /// Starts a rotation, or a part of one. Keeps its memory.
   /// \param columns number of columns expected; more than a turn needs no more memory
   void prepare(const Tolerance& new_tolerance, const SensorHints& hints, std::size_t columns);
+
+  /// Takes the larger one of its memory for bins and an array's, or leaves it to the array. Returns and elements are
+  /// lost; prepare () comes next.
+  template <typename Element>
+  void takeLargerMemory(GrowingArray<Element>& array) noexcept {
+    if (cells.bytes() < array.size() * sizeof(Element)) cells.exchangeMemory(array);
+  }
+  template <typename Element>
+  void leaveLargerMemory(GrowingArray<Element>& array) noexcept {
+    if (cells.bytes() > array.size() * sizeof(Element)) cells.exchangeMemory(array);
+  }
 
   /// Makes room for more columns than expected before, once returns are placed.
   void expectColumns(std::size_t columns);

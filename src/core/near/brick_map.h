@@ -79,7 +79,7 @@ class BrickMap {
   /// Of a place in a table by a hash, for 16 or more places per key; larger tables have 2 or more. Few places are taken
   /// then, so that most keys around one are missed at the first place: 1.2 times as fast on sparse clouds (recordings
   /// --cloud airborne).
-  static constexpr unsigned kMaxSparseBits = 14;
+  static constexpr unsigned kMaxSparseBits = 12;
 
   /// Where a word is, or would be.
   template <bool kInOrder>

@@ -22,8 +22,7 @@ namespace lisco {
 struct FragmentList {
   struct Part {
     const NearReturns* near;
-    std::size_t first;   ///< number of its first return, a multiple of 64
-    std::uint32_t* set;  ///< of each return; only of single ones
+    std::size_t first;  ///< number of its first return, a multiple of 64
   };
   std::vector<Part> parts;            ///< those with returns
   std::size_t end = 0;                ///< above all numbers, a multiple of 64
@@ -35,10 +34,13 @@ struct FragmentList {
     end = 0;
     are_single = single;
   }
-  void add(const NearReturns& near, std::uint32_t* set) {
-    if (near.count == 0) return;
-    parts.push_back({&near, end, set});
+  /// \return the number of the part's first return
+  std::size_t add(const NearReturns& near) {
+    const std::size_t first = end;
+    if (near.count == 0) return first;
+    parts.push_back({&near, first});
     end += (near.count / 64 + 1) * 64;  // and one more behind the last
+    return first;
   }
   const Part& partOf(std::size_t number) const {
     std::size_t part = parts.size() - 1;

@@ -153,18 +153,18 @@ unsigned bitsFor(std::uint64_t values) {
 bool VoxelSorter::link(const std::vector<const NearReturns*>& parts, const Tolerance& tolerance,
                        DisjointSets& subclusters) {
   fragments_.begin(false);
-  for (const NearReturns* part : parts) fragments_.add(*part, nullptr);
+  for (const NearReturns* part : parts) fragments_.add(*part);
   if (fragments_.parts.empty() || !tolerance.joinsAnything()) return true;
   if (!sortFragments(tolerance)) return false;
   linkSlabs(tolerance, subclusters);
   return true;
 }
 
-bool VoxelSorter::number(const std::vector<Numbered>& parts, const Tolerance& tolerance,
+bool VoxelSorter::number(std::vector<SingleReturns>& parts, const Tolerance& tolerance,
                          std::vector<std::uint32_t>& sizes) {
   sizes.clear();
   fragments_.begin(true);
-  for (const Numbered& part : parts) fragments_.add(*part.near, part.set);
+  for (SingleReturns& part : parts) part.first = fragments_.add(*part.near);
   if (fragments_.parts.empty()) return true;
   if (!sortFragments(tolerance)) return false;
   const std::size_t most = slabs_.back().end;
@@ -195,33 +195,27 @@ void VoxelSorter::linkSlabs(const Tolerance& tolerance, DisjointSets& subcluster
   subclusters.share(false);
 }
 
-/// Numbers the sets of voxels by their first ones: replaces the sizes of the voxels in scratch_ by their numbers.
+/// Numbers the sets of voxels by their first ones.
 void VoxelSorter::numberSets(std::vector<std::uint32_t>& sizes) {
-  std::uint64_t* const scratch = scratch_.data();
-  const auto number_of = [scratch](std::uint32_t parent) { return static_cast<std::uint32_t>(scratch[parent]); };
+  Sets* const all = sets();
+  const auto number_of = [all](std::uint32_t parent) { return all[parent].of_voxel; };
   for (const Slab& slab : slabs_)
     for (std::size_t voxel = slab.begin; voxel < slab.begin + slab.voxels; ++voxel)
-      scratch[voxel] = numberElement(static_cast<std::uint32_t>(voxel), static_cast<std::uint32_t>(scratch[voxel]),
-                                     voxels_, sizes, number_of);
+      all[voxel].of_voxel =
+          numberElement(static_cast<std::uint32_t>(voxel), all[voxel].of_voxel, voxels_, sizes, number_of);
 }
 
 /// Hands the numbers of sets to the returns.
 void VoxelSorter::numberReturns(const Slab& slab) {
-  const auto numberAll = [&, number_bits = number_bits_, items = items_.data()](auto&& numberAt) {
-    const std::uint64_t number_mask = (std::uint64_t{1} << number_bits) - 1;
-    const std::uint64_t* number_of_voxel = scratch_.data() + slab.begin;
-    for (std::size_t i = slab.begin; i < slab.end; ++i) {
-      numberAt(static_cast<std::size_t>(items[i] & number_mask)) = static_cast<std::uint32_t>(*number_of_voxel);
-      number_of_voxel += begins_voxel_[i + 1];
-    }
-  };
-  if (fragments_.parts.size() == 1)
-    numberAll([sets = fragments_.parts[0].set](std::size_t number) -> std::uint32_t& { return sets[number]; });
-  else
-    numberAll([this](std::size_t number) -> std::uint32_t& {
-      const FragmentList::Part& part = fragments_.partOf(number);
-      return part.set[number - part.first];
-    });
+  Sets* const all = sets();
+  const std::uint64_t number_mask = (std::uint64_t{1} << number_bits_) - 1;
+  const std::uint64_t* const items = items_.data();
+  const std::uint8_t* const begins_voxel = begins_voxel_.data();
+  std::size_t voxel = slab.begin;
+  for (std::size_t i = slab.begin; i < slab.end; ++i) {
+    all[items[i] & number_mask].of_return = all[voxel].of_voxel;
+    voxel += begins_voxel[i + 1];
+  }
 }
 
 /// Chooses the axes and the bits of the keys.
@@ -355,12 +349,11 @@ std::size_t VoxelSorter::endOfPlane(std::size_t begin, std::size_t end) const {
                                   items);
 }
 
-/// Enters a plane's voxels, which are elements, and those of its returns [begin, end). Their sizes go into scratch_,
-/// which is free once the fragments are sorted.
+/// Enters a plane's voxels, which are elements, and those of its returns [begin, end).
 void VoxelSorter::addVoxels(std::size_t slab, const VoxelPlane& plane, std::size_t voxels, std::size_t begin,
                             std::size_t end) {
-  std::uint64_t* const sizes = scratch_.data() + slabs_[slab].begin + slabs_[slab].voxels;
-  std::copy_n(plane.return_count.data(), voxels, sizes);
+  Sets* const all = sets() + slabs_[slab].begin + slabs_[slab].voxels;
+  for (std::size_t voxel = 0; voxel < voxels; ++voxel) all[voxel].of_voxel = plane.return_count[voxel];
   slabs_[slab].voxels += voxels;
   std::copy_n(plane.begins_voxel.data(), end - begin, &begins_voxel_[begin]);
 }

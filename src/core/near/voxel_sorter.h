@@ -38,15 +38,17 @@ class VoxelSorter {
   bool link(const std::vector<const NearReturns*>& parts, const Tolerance& tolerance, DisjointSets& subclusters);
 
   /// Returns that are each a run of its own; their elements are not in use.
-  struct Numbered {
+  struct SingleReturns {
     const NearReturns* near;
-    std::uint32_t* set;  ///< receives the number of each return's set
+    std::size_t first;  ///< receives the number of the first one; the others' follow
   };
   /// Numbers the sets of neighbours of such returns, in the order of their voxels.
   /// \param tolerance joins something
   /// \param sizes receives the number of returns of each set
   /// \return as link ()
-  bool number(const std::vector<Numbered>& parts, const Tolerance& tolerance, std::vector<std::uint32_t>& sizes);
+  bool number(std::vector<SingleReturns>& parts, const Tolerance& tolerance, std::vector<std::uint32_t>& sizes);
+  /// The number of a return's set, after number (). \param number of the return
+  std::uint32_t setOf(std::size_t number) const { return sets()[number].of_return; }
 
  private:
   /// Fragments of consecutive planes, the work of one thread.
@@ -54,6 +56,16 @@ class VoxelSorter {
     std::size_t begin, end;  ///< among the sorted fragments
     std::size_t voxels = 0;  ///< of single returns: number of them; voxel i is element begin + i
   };
+
+  /// The sets of single returns and their voxels, by element and by number: in scratch_, which is free once the
+  /// fragments are sorted.
+  struct Sets {
+    std::uint32_t of_voxel;  ///< before all are linked: number of its returns
+    std::uint32_t of_return;
+  };
+  static_assert(sizeof(Sets) == sizeof(std::uint64_t));
+  Sets* sets() { return reinterpret_cast<Sets*>(scratch_.data()); }
+  const Sets* sets() const { return reinterpret_cast<const Sets*>(scratch_.data()); }
 
   bool sortFragments(const Tolerance& tolerance);
   bool numberVoxels(const Tolerance& tolerance);
@@ -73,7 +85,7 @@ class VoxelSorter {
   unsigned plane_shift_ = 0;
   FragmentList fragments_;
   GrowingArray<std::uint64_t> items_;    ///< a fragment's key and number
-  GrowingArray<std::uint64_t> scratch_;  ///< the same while sorting; then, by element, a voxel's size or set
+  GrowingArray<std::uint64_t> scratch_;  ///< the same while sorting; then sets ()
   std::vector<Box> part_boxes_;
   std::vector<std::size_t> part_sizes_;  ///< in fragments
   std::vector<std::uint32_t> histogram_;
