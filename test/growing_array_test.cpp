@@ -90,6 +90,30 @@ TEST(GrowingArray, RefusesMoreThanThereIs) {
   expectFilled(array, 5);
 }
 
+TEST(GrowingArray, ExchangesMemoryWithOtherElements) {
+  struct Pair {
+    std::uint64_t first, second;
+  };
+  for (const std::size_t size : {std::size_t{0}, std::size_t{9}, std::size_t{1'000'000}}) {
+    lisco::GrowingArray<Pair> pairs;
+    lisco::GrowingArray<std::uint32_t> words;
+    pairs.grow(size);
+    words.grow(7);
+    const void* const memory = pairs.data();
+    const std::size_t pair_count = pairs.size();
+    words.exchangeMemory(pairs);
+    EXPECT_EQ(words.data(), memory);
+    EXPECT_EQ(words.size(), 4 * pair_count);
+    EXPECT_EQ(pairs.size(), 1U);
+    for (std::size_t i = 0; i < words.size(); ++i) words[i] = 0;  // all is there: AddressSanitizer
+    for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = {0, 0};
+    pairs.exchangeMemory(words);
+    EXPECT_EQ(pairs.data(), memory);
+    EXPECT_EQ(pairs.size(), pair_count);
+    EXPECT_EQ(words.size(), 4U);
+  }
+}
+
 TEST(ImageCells, HaveFourPlanesInEachRow) {
   lisco::ImageCells cells;
   cells.setRowSize(10);
