@@ -201,8 +201,8 @@ void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hi
 /// \return false, with part of it read, if there are no far returns, or linking those of the first columns takes longer
 ///         than sorting them
 bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSource& cells) {
-  if (parameters_.sensor.steps_per_turn == 0) return false;  // nothing to prepare
-  partitions_.front().takeLargerMemory(unordered_.memory());
+  if (parameters_.sensor.steps_per_turn == 0) return false;   // nothing to prepare
+  partitions_.front().takeLargerMemory(unordered_.memory());  // not in use before the trial ends
   FarTrial trial;
   inParallel(partition_count_, [&](std::size_t i) {
     try {
@@ -245,7 +245,7 @@ void ColumnClusterer::Rotation::readNear(std::size_t lasers, const CellSource& c
 
 /// The same without runs.
 void ColumnClusterer::Rotation::readUnordered(std::size_t lasers, const CellSource& cells) {
-  partitions_.front().leaveLargerMemory(unordered_.memory());  // which a trial of far returns has used
+  partitions_.front().leaveLargerMemory(unordered_.memory());  // which the trial has used
   unordered_.begin(partition_count_);
   inParallel(partition_count_, [&](std::size_t i) {
     const auto [begin, end] = parts_[i];
@@ -261,7 +261,7 @@ void ColumnClusterer::Rotation::readUnordered(std::size_t lasers, const CellSour
 void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial) {
   Partition& partition = partitions_[i];
   const auto [begin, end] = parts_[i];
-  if (i > 0) reserveRuns(partition);  // the first part's trial may refuse it
+  if (i > 0) reserveRuns(partition);  // of the first part after its trial, which may refuse it
   for (std::size_t first = begin; first < end; first += RingBlock::kColumns) {
     if (trial.isRefused()) return;
     const std::size_t count = std::min(end - first, RingBlock::kColumns);

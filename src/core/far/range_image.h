@@ -59,8 +59,8 @@ struct RangeImage {
   /// \param columns number of columns expected; more than a turn needs no more memory
   void prepare(const Tolerance& new_tolerance, const SensorHints& hints, std::size_t columns);
 
-  /// Takes the larger one of its memory for bins and an array's, or leaves it to the array. Returns and elements are
-  /// lost; prepare () comes next.
+  /// Exchanges the memory of the bins with that of an array, if the array's is larger, or if it is smaller. All values
+  /// are lost; prepare () comes next.
   template <typename Element>
   void takeLargerMemory(GrowingArray<Element>& array) noexcept {
     if (cells.bytes() < array.size() * sizeof(Element)) cells.exchangeMemory(array);

@@ -14,7 +14,7 @@ namespace lisco {
 /// A near return and the element of its run. Side by side in memory: sorting takes returns from anywhere.
 struct NearReturn {
   float x, y, z;          ///< metres
-  std::uint32_t element;  ///< of UnorderedReturns, which have no runs: the source index
+  std::uint32_t element;  ///< in UnorderedReturns, which has no runs: the source index
 };
 
 /// Near returns in the order in which they are read, collected until VoxelSorter links them.

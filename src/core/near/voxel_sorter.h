@@ -37,7 +37,7 @@ class VoxelSorter {
   ///         of too many voxels
   bool link(const std::vector<const NearReturns*>& parts, const Tolerance& tolerance, DisjointSets& subclusters);
 
-  /// Returns that are each a run of its own; their elements are not in use.
+  /// Returns that are each a run of its own; their elements do not matter.
   struct SingleReturns {
     const NearReturns* near;
     std::size_t first;  ///< receives the number of the first one; the others' follow
