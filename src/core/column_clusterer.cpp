@@ -15,6 +15,7 @@
 #include "core/parallel.h"
 #include "core/partition.h"
 #include "core/runs.h"
+#include "core/simd.h"
 #include "core/unordered_returns.h"
 
 namespace lisco {
@@ -442,7 +443,9 @@ std::uint32_t ColumnClusterer::Rotation::subclusterAt(std::size_t laser, std::si
 
 // --- The public face ------------------------------------------------------------------------------------------------
 
-ColumnClusterer::ColumnClusterer() : rotation_(std::make_unique<Rotation>()) {}
+ColumnClusterer::ColumnClusterer() : rotation_(std::make_unique<Rotation>()) {
+  chooseSimdLevel();
+}
 ColumnClusterer::~ColumnClusterer() = default;
 ColumnClusterer::ColumnClusterer(const ColumnClusterer& other)
     : rotation_(std::make_unique<Rotation>(*other.rotation_)) {}

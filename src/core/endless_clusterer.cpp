@@ -12,6 +12,7 @@
 #include "core/endless_sets.h"
 #include "core/neighbour.h"
 #include "core/partition.h"
+#include "core/simd.h"
 #include "core/stream_position.h"
 #include "core/stream_reach.h"
 
@@ -336,7 +337,9 @@ void EndlessClusterer::Stream::deliver(Element root) {
 
 // --- The public face ------------------------------------------------------------------------------------------------
 
-EndlessClusterer::EndlessClusterer() : stream_(std::make_unique<Stream>()) {}
+EndlessClusterer::EndlessClusterer() : stream_(std::make_unique<Stream>()) {
+  chooseSimdLevel();
+}
 EndlessClusterer::~EndlessClusterer() = default;
 EndlessClusterer::EndlessClusterer(const EndlessClusterer& other) : stream_(std::make_unique<Stream>(*other.stream_)) {}
 EndlessClusterer& EndlessClusterer::operator=(const EndlessClusterer& other) {

@@ -16,6 +16,7 @@
 #include "core/ground/plane_estimator.h"
 #include "core/ground/row_order.h"
 #include "core/pi.h"
+#include "core/simd.h"
 
 namespace lisco {
 
@@ -227,7 +228,9 @@ GroundParameters estimateGroundPlane(std::size_t columns, std::size_t lasers, Gr
   return parameters;
 }
 
-GroundFilter::GroundFilter() : state_(std::make_unique<State>()) {}
+GroundFilter::GroundFilter() : state_(std::make_unique<State>()) {
+  chooseSimdLevel();
+}
 GroundFilter::~GroundFilter() = default;
 GroundFilter::GroundFilter(const GroundFilter& other) : state_(std::make_unique<State>(*other.state_)) {}
 GroundFilter& GroundFilter::operator=(const GroundFilter& other) {

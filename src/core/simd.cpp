@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
+#include "core/simd.h"
+
 #include "lisco/simd.h"
 
 #include <cstdint>
@@ -43,6 +45,10 @@ void use(std::int64_t target) {
 }
 
 }  // namespace
+
+void chooseSimdLevel() {
+  HWY_DYNAMIC_DISPATCH(target)();
+}
 
 std::string simdLevel() {
   return hwy::TargetName(HWY_DYNAMIC_DISPATCH(target)());

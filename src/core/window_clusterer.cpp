@@ -10,6 +10,7 @@
 #include "core/disjoint_sets.h"
 #include "core/partition.h"
 #include "core/runs.h"
+#include "core/simd.h"
 
 namespace lisco {
 
@@ -221,7 +222,9 @@ void WindowClusterer::Window::visitRuns(const RunVisitor& visit) {
 
 // --- The public face ------------------------------------------------------------------------------------------------
 
-WindowClusterer::WindowClusterer() : window_(std::make_unique<Window>()) {}
+WindowClusterer::WindowClusterer() : window_(std::make_unique<Window>()) {
+  chooseSimdLevel();
+}
 WindowClusterer::~WindowClusterer() = default;
 WindowClusterer::WindowClusterer(const WindowClusterer& other) : window_(std::make_unique<Window>(*other.window_)) {}
 WindowClusterer& WindowClusterer::operator=(const WindowClusterer& other) {
