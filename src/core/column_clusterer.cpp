@@ -111,8 +111,6 @@ constexpr std::size_t kWholeTurn = ~std::size_t{0};
 constexpr std::size_t kWorthReadingAtOnce = 16;
 /// Cells from which on several threads take less time than one (threads).
 constexpr std::size_t kWorthThreads = 8192;
-/// Of reading a cell, in the segment linker's units, for balancing (threads).
-constexpr std::size_t kWorkOfCell = 2;
 
 }  // namespace
 
@@ -240,7 +238,7 @@ void ColumnClusterer::Rotation::readNear(std::size_t lasers, const CellSource& c
     reserveNear(partition, end - begin);
     partition.readLasers(cells, begin, end, lasers, subclusters_);
     if (partition_count_ > 1)
-      balancer_.record(begin, end - begin, (end - begin) * lasers * kWorkOfCell + partition.workDone());
+      balancer_.record(begin, end - begin, (end - begin) * lasers + partition.workDone());
   });
 }
 
@@ -269,7 +267,7 @@ void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, cons
     const std::size_t before = partition.workDone();
     partition.readColumns(cells, first, count, lasers, static_cast<std::uint32_t>(first), subclusters_);
     if (partition_count_ > 1)
-      balancer_.record(first, count, count * lasers * kWorkOfCell + partition.workDone() - before);
+      balancer_.record(first, count, count * lasers + partition.workDone() - before);
     if (i == 0 && first + count == std::min(kTriedColumns, end)) {
       const bool is_worthwhile = was_far_worthwhile_ = partition.isFarWorthwhile();
       trial.decide(is_worthwhile);

@@ -107,7 +107,7 @@ class Partition {
   /// See RangeImage::isFull.
   void stopPlacing() { image_.stopPlacing(); }
 
-  /// Work that reading and linking has taken since prepare (), in the segment linker's units.
+  /// Work done since prepare () beyond that of reading cells, where a cell is 1.
   std::size_t workDone() const;
 
   /// Links the near returns of this pane, all or new, with those of another one.
