@@ -377,16 +377,20 @@ void ColumnClusterer::Rotation::stopCollecting() {
 /// Numbers the subclusters by their first runs.
 void ColumnClusterer::Rotation::numberSubclusters() {
   if (is_unordered_) return;  // numbered when they were linked
-  sizes_.clear();
+  SetNumbering numbering(subclusters_, sizes_);
+  for (std::size_t i = 0; i < partition_count_; ++i)
+    numbering.addRoots(partitions_[i].first_element, runsOf(i).runs.size());
   for (std::size_t i = 0; i < partition_count_; ++i) {
+    std::vector<Run>& runs = partitions_[i].runs.runs;
+    const std::uint32_t first = partitions_[i].first_element;
     const auto subclusterOf = [&](std::uint32_t parent) {
-      std::size_t owner = i;
+      if (parent >= first) return runs[parent - first].subcluster;
+      std::size_t owner = i - 1;
       while (parent < partitions_[owner].first_element) --owner;
       return runsOf(owner).runs[parent - partitions_[owner].first_element].subcluster;
     };
-    std::uint32_t element = partitions_[i].first_element;
-    for (Run& run : partitions_[i].runs.runs)
-      run.subcluster = numberElement(element++, run.count, subclusters_, sizes_, subclusterOf);
+    std::uint32_t element = first;
+    for (Run& run : runs) run.subcluster = numbering.numberOf(element++, run.count, subclusterOf);
   }
 }
 

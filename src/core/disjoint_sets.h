@@ -32,6 +32,14 @@ class DisjointSets {
   /// The element itself if it is a root, else a lower one of its set.
   std::uint32_t parentOf(std::uint32_t element) const { return __atomic_load_n(&parents_[element], __ATOMIC_RELAXED); }
 
+  /// Number of roots among elements first..first+count-1.
+  std::size_t rootCount(std::uint32_t first, std::size_t count) const {
+    const std::uint32_t* const parents = parents_.data();
+    std::uint32_t roots = 0;
+    for (std::uint32_t element = first; element < first + count; ++element) roots += parents[element] == element;
+    return roots;
+  }
+
   /// getH: the root of the set that holds the element.
   std::uint32_t find(std::uint32_t element) {
     std::uint32_t parent = parentOf(element);
@@ -89,22 +97,40 @@ class DisjointSets {
   std::vector<Merge>* log_ = nullptr;
 };
 
-/// Returns the number of an element's set, and adds to the size of that. Sets are numbered in the order of their roots.
-/// Elements come ascending: a parent, lower than its children, before these.
-/// \param sizes of the sets numbered so far
-/// \param number_of callable as std::uint32_t (std::uint32_t parent): the number returned for it
-template <typename NumberOf>
-std::uint32_t numberElement(std::uint32_t element, std::uint32_t size, const DisjointSets& sets,
-                            std::vector<std::uint32_t>& sizes, NumberOf&& number_of) {
-  const std::uint32_t parent = sets.parentOf(element);
-  if (parent == element) {
-    reserveInSteps(sizes, sizes.size() + 1);
-    sizes.push_back(size);
-    return static_cast<std::uint32_t>(sizes.size() - 1);
+/// Numbers sets in the order of their roots, and adds up their sizes.
+class SetNumbering {
+ public:
+  /// \param sizes receives those of the sets
+  SetNumbering(const DisjointSets& sets, std::vector<std::uint32_t>& sizes) : sets_(sets), sizes_(sizes) {
+    sizes.clear();
   }
-  const std::uint32_t number = number_of(parent);
-  sizes[number] += size;
-  return number;
-}
+
+  /// Makes room for the sets whose roots are among some elements, before any element is numbered.
+  void addRoots(std::uint32_t first, std::size_t count) {
+    const std::size_t size = sizes_.size() + sets_.rootCount(first, count);
+    reserveInSteps(sizes_, size);
+    sizes_.resize(size);
+  }
+
+  /// The number of an element's set. Elements come ascending: a parent, lower than its children, before these.
+  /// \param size of the element
+  /// \param number_of callable as std::uint32_t (std::uint32_t parent): the number returned for it; of a root, any
+  template <typename NumberOf>
+  std::uint32_t numberOf(std::uint32_t element, std::uint32_t size, NumberOf&& number_of) {
+    const std::uint32_t parent = sets_.parentOf(element);
+    const std::uint32_t of_parent = number_of(parent);
+    // Without a branch, as roots come irregularly.
+    const std::uint32_t root_mask = std::uint32_t{0} - std::uint32_t{parent == element};
+    const std::uint32_t number = (next_ & root_mask) | (of_parent & ~root_mask);
+    next_ -= root_mask;
+    sizes_[number] += size;
+    return number;
+  }
+
+ private:
+  const DisjointSets& sets_;
+  std::vector<std::uint32_t>& sizes_;
+  std::uint32_t next_ = 0;
+};
 
 }  // namespace lisco

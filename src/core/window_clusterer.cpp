@@ -130,11 +130,12 @@ void WindowClusterer::Window::finishPane() {
 /// Numbers the subclusters of a pane.
 void WindowClusterer::Window::numberWithin(Pane& pane) {
   const std::vector<Run>& runs = pane.runs.runs;
-  pane.sizes.clear();
-  pane.subcluster.clear();
+  pane.subcluster.resize(runs.size());
+  SetNumbering numbering(pane.subclusters, pane.sizes);
+  numbering.addRoots(0, runs.size());
   for (std::uint32_t run = 0; run < runs.size(); ++run)
-    pane.subcluster.push_back(numberElement(run, runs[run].count, pane.subclusters, pane.sizes,
-                                            [&](std::uint32_t parent) { return pane.subcluster[parent]; }));
+    pane.subcluster[run] =
+        numbering.numberOf(run, runs[run].count, [&](std::uint32_t parent) { return pane.subcluster[parent]; });
 }
 
 /// Makes each subcluster of the window's panes an element of its forest.
@@ -198,13 +199,14 @@ void WindowClusterer::Window::keepUsefulEdges(Pane& older) {
 
 /// Numbers the subclusters of the window.
 void WindowClusterer::Window::numberSubclusters() {
-  sizes_.clear();
+  SetNumbering numbering(window_, sizes_);
+  for (std::uint64_t number = oldest_; number != newest_ + 1; ++number)
+    numbering.addRoots(pane(number).first_in_window, pane(number).sizes.size());
   for (std::uint64_t number = oldest_; number != newest_ + 1; ++number) {
     Pane& own = pane(number);
     for (std::uint32_t i = 0; i < own.sizes.size(); ++i)
-      subcluster_of_element_[own.first_in_window + i] =
-          numberElement(own.first_in_window + i, own.sizes[i], window_, sizes_,
-                        [&](std::uint32_t parent) { return subcluster_of_element_[parent]; });
+      subcluster_of_element_[own.first_in_window + i] = numbering.numberOf(
+          own.first_in_window + i, own.sizes[i], [&](std::uint32_t parent) { return subcluster_of_element_[parent]; });
   }
 }
 

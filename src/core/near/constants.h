@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace lisco {
 
@@ -33,6 +34,8 @@ inline constexpr double kMaxSortedTolerance = 1e18;
 inline constexpr double kMaxVoxelNumber = 2147480000.0;
 /// Of the radix sort: a histogram of 8 KiB fits into the first-level cache.
 inline constexpr unsigned kDigitBits = 11;
+/// Work of a fragment beyond that of its returns, in returns: for dividing it among threads (threads).
+inline constexpr std::uint32_t kWorkOfFragment = 2;
 /// Single returns of a brick that are compared with each other instead of by voxels: one vector, at most.
 inline constexpr std::size_t kFewReturns = 16;
 /// Fragments between a prefetch and its use, and readable behind the last: measured on shuffled clouds, flat from 16 to

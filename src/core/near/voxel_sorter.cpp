@@ -198,11 +198,12 @@ void VoxelSorter::linkSlabs(const Tolerance& tolerance, DisjointSets& subcluster
 /// Numbers the sets of voxels by their first ones.
 void VoxelSorter::numberSets(std::vector<std::uint32_t>& sizes) {
   Sets* const all = sets();
-  const auto number_of = [all](std::uint32_t parent) { return all[parent].of_voxel; };
+  SetNumbering numbering(voxels_, sizes);
+  for (const Slab& slab : slabs_) numbering.addRoots(static_cast<std::uint32_t>(slab.begin), slab.voxels);
   for (const Slab& slab : slabs_)
     for (std::size_t voxel = slab.begin; voxel < slab.begin + slab.voxels; ++voxel)
-      all[voxel].of_voxel =
-          numberElement(static_cast<std::uint32_t>(voxel), all[voxel].of_voxel, voxels_, sizes, number_of);
+      all[voxel].of_voxel = numbering.numberOf(static_cast<std::uint32_t>(voxel), all[voxel].of_voxel,
+                                               [all](std::uint32_t parent) { return all[parent].of_voxel; });
 }
 
 /// Hands the numbers of sets to the returns.
@@ -276,32 +277,47 @@ void VoxelSorter::divide() {
   constexpr std::size_t kGroups = std::size_t{1} << kGroupBits;  // of planes
   const unsigned plane_bits = numbering_.bits + number_bits_ - plane_shift_;
   const unsigned shift = plane_shift_ + (plane_bits > kGroupBits ? plane_bits - kGroupBits : 0);
-  histogram_.assign(parts * kGroups, 0);
+  histogram_.assign(parts * kGroups, {0, 0});
+  const std::uint64_t number_mask = (std::uint64_t{1} << number_bits_) - 1;
   inParallel(parts, [&](std::size_t part) {
-    const std::uint64_t* const items = &items_[fragments_.parts[part].first];
-    for (std::size_t i = 0; i < part_sizes_[part]; ++i) ++histogram_[part * kGroups + (items[i] >> shift)];
+    const FragmentList::Part& own = fragments_.parts[part];
+    const std::uint64_t* const items = &items_[own.first];
+    std::size_t end = own.first + own.near->count;
+    for (std::size_t i = part_sizes_[part]; i-- > 0;) {
+      Planes& planes = histogram_[part * kGroups + (items[i] >> shift)];
+      const std::size_t number = items[i] & number_mask;
+      ++planes.fragments;
+      planes.work += static_cast<std::uint32_t>(kWorkOfFragment + end - number);
+      end = number;
+    }
   });
   // Where each part's fragments of each group of planes go.
   std::size_t all = 0;
-  for (const std::size_t size : part_sizes_) all += size;
+  for (const Planes& planes : histogram_) all += planes.work;
   slabs_.clear();
   std::uint32_t sum = 0;
   std::size_t begin = 0;
+  std::size_t work = 0;
   for (std::size_t group = 0; group < kGroups; ++group) {
+    const std::uint32_t end = sum;
+    const std::size_t before = work;
     for (std::size_t part = 0; part < parts; ++part) {
-      const std::uint32_t count = histogram_[part * kGroups + group];
-      histogram_[part * kGroups + group] = sum;
-      sum += count;
+      Planes& planes = histogram_[part * kGroups + group];
+      work += planes.work;
+      sum += std::exchange(planes.fragments, sum);
     }
-    if (sum > begin && (sum >= all * (slabs_.size() + 1) / parts)) {
-      slabs_.push_back({begin, sum, 0});
-      begin = sum;
+    // A slab ends at the planes nearest to its share.
+    const std::size_t share = all * (slabs_.size() + 1) / parts;
+    if (end > begin && work > share && work - share > share - std::min(share, before)) {
+      slabs_.push_back({begin, end, 0});
+      begin = end;
     }
   }
+  slabs_.push_back({begin, sum, 0});
   inParallel(parts, [&](std::size_t part) {
     const std::uint64_t* const items = &items_[fragments_.parts[part].first];
     for (std::size_t i = 0; i < part_sizes_[part]; ++i)
-      scratch_[histogram_[part * kGroups + (items[i] >> shift)]++] = items[i];
+      scratch_[histogram_[part * kGroups + (items[i] >> shift)].fragments++] = items[i];
   });
   std::swap(items_, scratch_);
 }

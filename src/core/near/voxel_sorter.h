@@ -88,7 +88,11 @@ class VoxelSorter {
   GrowingArray<std::uint64_t> scratch_;  ///< the same while sorting; then sets ()
   std::vector<Box> part_boxes_;
   std::vector<std::size_t> part_sizes_;  ///< in fragments
-  std::vector<std::uint32_t> histogram_;
+  struct Planes {
+    std::uint32_t fragments;  ///< number of them; then where the next one goes
+    std::uint32_t work;       ///< of linking them, about in returns
+  };
+  std::vector<Planes> histogram_;  ///< of groups of planes, of each part
   std::vector<Slab> slabs_;
   std::vector<VoxelPlane> planes_;  ///< two for each slab
   // Of single returns, whose voxels are elements:
