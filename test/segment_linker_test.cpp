@@ -103,10 +103,31 @@ class Probe {
     for (FarPart& part : parts_) part.linker.linkRest(part.image, subclusters_);
     lisco::ImageCircle images;
     images.assign(parts_.size(), [&](std::size_t i) -> const lisco::RangeImage& { return parts_[i].image; });
-    images.forEachPair(
-        [&](std::size_t a, std::size_t b) { parts_[a].linker.linkTo(parts_[a].image, parts_[b].image, subclusters_); });
+    struct Overlap {
+      std::size_t a, b;
+      double ahead;
+    };
+    std::vector<Overlap> overlaps;
+    const auto addOverlaps = [&](std::size_t a, std::size_t b) {
+      lisco::SegmentLinker::forEachOverlap(parts_[a].image, parts_[b].image, [&](double ahead) {
+        overlaps.push_back({a, b, ahead});
+      });
+    };
+    images.forEachPair(addOverlaps);
+    for (std::size_t i = 0; i < parts_.size(); ++i) addOverlaps(i, i);
+    for (FarPart& part : parts_) parts_[0].image.shareRows(part.image);
     for (FarPart& part : parts_) {
-      part.linker.linkTo(part.image, part.image, subclusters_);
+      part.image.shareRows(parts_[0].image);
+      part.image.updateElevations();
+    }
+    constexpr std::size_t kParts = 2;
+    for (std::size_t i = 0; i < kParts * overlaps.size(); ++i) {
+      const auto& [a, b, ahead] = overlaps[i / kParts];
+      const std::size_t linker = i % parts_.size();
+      parts_[linker].linker.linkOverlap(parts_[a].image, parts_[b].image, ahead, i % kParts, kParts, linker == a,
+                                        subclusters_);
+    }
+    for (FarPart& part : parts_) {
       for (const lisco::RangeImage::Unplaced& unplaced : part.image.unplaced)
         images.forEachAround(unplaced, [&](std::size_t i) {
           lisco::SegmentLinker::linkUnplaced(parts_[i].image, unplaced, subclusters_);

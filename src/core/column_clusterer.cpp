@@ -52,6 +52,7 @@ class ColumnClusterer::Rotation {
   void receiveInSequence(std::size_t columns, std::size_t lasers, const CellSource& cells);
   void linkPartitions();
   void linkImages(std::size_t first);
+  void shareRows();
   void linkCollected();
   void stopCollecting();
   void numberSubclusters();
@@ -79,6 +80,11 @@ class ColumnClusterer::Rotation {
   bool is_unordered_ = false;  ///< all returns are in unordered_, near and collected or sorted; partitions are empty
   UnorderedReturns unordered_;
   ImageCircle images_;
+  struct Overlap {
+    std::size_t later, earlier;  ///< partitions
+    double ahead;                ///< see SegmentLinker::forEachOverlap
+  };
+  std::vector<Overlap> overlaps_;  ///< of range images
   VoxelSorter sorter_;
   std::vector<const NearReturns*> near_returns_;
   LoadBalancer balancer_;
@@ -318,28 +324,58 @@ void ColumnClusterer::Rotation::linkPartitions() {
   are_linked_ = true;
   subclusters_.share(partition_count_ - first > 1);  // near returns have joined sets of different partitions
   inParallel(partition_count_ - first, [&](std::size_t i) { partitions_[first + i].linkWithin(subclusters_); });
-  subclusters_.share(false);
   linkImages(first);
+  subclusters_.share(false);
   lastPartition().markLinked();  // the others have no voxels: see stopCollecting ()
 }
 
-/// Links far returns of different partitions and across the seam, as far as partitions from `first` on take part: the
-/// images in each other's reach, which are a few for each; each unplaced return with the images around it.
+/// Links far returns of different partitions and across the seam, as far as partitions from `first` on take part, by as
+/// many threads: the images in each other's reach, which are a few for each; each unplaced return with the images
+/// around it.
 void ColumnClusterer::Rotation::linkImages(std::size_t first) {
   images_.assign(partition_count_, [&](std::size_t i) -> const RangeImage& { return partitions_[i].image(); });
-  images_.forEachPair([&](std::size_t later, std::size_t earlier) {
-    if (later >= first) partitions_[later].linkTo(partitions_[earlier], subclusters_);
+  overlaps_.clear();
+  const auto addOverlaps = [&](std::size_t later, std::size_t earlier) {
+    if (later < first) return;
+    partitions_[later].forEachOverlap(partitions_[earlier], [&](double ahead) {
+      overlaps_.push_back({later, earlier, ahead});
+    });
+  };
+  images_.forEachPair(addOverlaps);
+  for (std::size_t i = first; i < partition_count_; ++i) addOverlaps(i, i);
+  shareRows();
+  const std::size_t threads = partition_count_ - first;
+  const std::size_t parts = threads > 1 ? 2 : 1;  // of each overlap: their work differs
+  inParallel(threads, [&](std::size_t thread) {
+    for (std::size_t i = thread; i < overlaps_.size() * parts; i += threads) {
+      const Overlap& overlap = overlaps_[i / parts];
+      partitions_[first + thread].linkOverlap(partitions_[overlap.later], partitions_[overlap.earlier], overlap.ahead,
+                                              i % parts, parts, subclusters_);
+    }
+    for (std::size_t i = thread; i < partition_count_; i += threads)
+      for (const RangeImage::Unplaced& unplaced : partitions_[i].image().unplaced)
+        images_.forEachAround(unplaced, [&](std::size_t other) {
+          if (std::max(i, other) >= first) partitions_[other].linkUnplaced(unplaced, subclusters_);
+        });
   });
   bool is_any_full = false;
-  for (std::size_t i = 0; i < partition_count_; ++i) {
-    if (i >= first) partitions_[i].linkSeam(subclusters_);
-    for (const RangeImage::Unplaced& unplaced : partitions_[i].image().unplaced)
-      images_.forEachAround(unplaced, [&](std::size_t other) {
-        if (std::max(i, other) >= first) partitions_[other].linkUnplaced(unplaced, subclusters_);
-      });
-    is_any_full = is_any_full || partitions_[i].image().isFull();
-  }
+  for (std::size_t i = 0; i < partition_count_; ++i) is_any_full = is_any_full || partitions_[i].image().isFull();
   for (std::size_t i = 0; is_any_full && i < partition_count_; ++i) partitions_[i].stopPlacing();
+}
+
+/// Gives all range images with returns the same rows, with elevations that hold for all.
+void ColumnClusterer::Rotation::shareRows() {
+  Partition* shared = nullptr;
+  for (std::size_t i = 0; i < partition_count_; ++i) {
+    if (partitions_[i].image().placed == 0) continue;
+    if (shared == nullptr) shared = &partitions_[i];
+    shared->shareRows(partitions_[i]);
+  }
+  for (std::size_t i = 0; i < partition_count_; ++i) {
+    if (partitions_[i].image().placed == 0) continue;
+    partitions_[i].shareRows(*shared);
+    partitions_[i].updateElevations();
+  }
 }
 
 /// Links collected near returns, of all partitions at once; in voxels, if they cannot be sorted.

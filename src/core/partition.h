@@ -79,14 +79,23 @@ class Partition {
 
   /// Links all returns read since the last call among themselves and with those before, near and far.
   void linkWithin(DisjointSets& subclusters);
-  /// Links far returns with those of an earlier partition of the same rotation, after linkWithin () of both.
-  void linkTo(Partition& earlier, DisjointSets& subclusters) { segments_.linkTo(image_, earlier.image_, subclusters); }
-  /// Links an unplaced return of the same rotation with the far returns of the partition, after linkWithin () of both.
-  void linkUnplaced(const RangeImage::Unplaced& unplaced, DisjointSets& subclusters) {
+  /// See SegmentLinker::forEachOverlap.
+  template <typename Visit>
+  void forEachOverlap(const Partition& earlier, Visit&& visit) const {
+    SegmentLinker::forEachOverlap(image_, earlier.image_, visit);
+  }
+  /// See RangeImage.
+  void shareRows(const Partition& other) { image_.shareRows(other.image_); }
+  void updateElevations() { image_.updateElevations(); }
+  /// Links the far returns of two partitions that overlap, in several parts, with this one's memory.
+  void linkOverlap(const Partition& later, const Partition& earlier, double ahead, std::size_t part, std::size_t parts,
+                   DisjointSets& subclusters) {
+    segments_.linkOverlap(later.image_, earlier.image_, ahead, part, parts, &later == this, subclusters);
+  }
+  /// Links an unplaced return of the same rotation with the far returns of the partition.
+  void linkUnplaced(const RangeImage::Unplaced& unplaced, DisjointSets& subclusters) const {
     SegmentLinker::linkUnplaced(image_, unplaced, subclusters);
   }
-  /// Links the end of the partition with its beginning, a turn before.
-  void linkSeam(DisjointSets& subclusters) { segments_.linkTo(image_, image_, subclusters); }
   /// Marks all near returns in voxels as linked with each other and with other partitions.
   void markLinked() { VoxelLinker::markLinked(voxels_); }
 

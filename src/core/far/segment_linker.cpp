@@ -81,8 +81,8 @@ void linkPartOfSector(const RangeImage& image, SegmentLinkerState& state, std::s
 }
 
 void linkAcross(const RangeImage& image, SegmentLinkerState& state, const RangeImage& other, double later,
-                DisjointSets& subclusters) {
-  SegmentSearch(image, state, subclusters).linkAcross(other, later);
+                std::size_t part, std::size_t parts, DisjointSets& subclusters) {
+  SegmentSearch(image, state, subclusters).linkAcross(other, later, part, parts);
 }
 
 /// Compares one return with all bins that may hold its neighbours.
@@ -214,31 +214,16 @@ void SegmentLinker::linkRest(RangeImage& image, DisjointSets& subclusters) {
   image.late.clear();
 }
 
-void SegmentLinker::linkTo(RangeImage& image, RangeImage& other, DisjointSets& subclusters) {
-  if (image.placed == 0 || other.placed == 0) return;
-  const bool is_seam = &other == &image;
-  const auto turn = static_cast<double>(image.steps);
-  const double ahead =
-      image.direction * (other.start_azimuth - image.start_azimuth) / static_cast<double>(image.radians_per_bin);
-  const double least = is_seam ? 1.0 : -static_cast<double>(other.end) - kMaxReach;
-  const double most = static_cast<double>(image.end) + kMaxReach;
-  const auto first = static_cast<int>(std::ceil((least - ahead) / turn));
-  const auto last = static_cast<int>(std::floor((most - ahead) / turn));
-  if (first > last) return;
-  if (!is_seam) {
-    image.shareRows(other);
-    other.shareRows(image);
-    other.updateElevations();
-  }
+void SegmentLinker::linkOverlap(const RangeImage& image, const RangeImage& other, double ahead, std::size_t part,
+                                std::size_t parts, bool is_own, DisjointSets& subclusters) {
+  if (!is_own) forgetSectors();
   fit(image);
-  image.updateElevations();
-  for (int turns = first; turns <= last; ++turns)
-    HWY_DYNAMIC_DISPATCH(linkAcross)(image, *this, other, ahead + turn * turns, subclusters);
+  HWY_DYNAMIC_DISPATCH(linkAcross)(image, *this, other, ahead, part, parts, subclusters);
   forgetSectors();
 }
 
-void SegmentLinker::linkUnplaced(RangeImage& image, const RangeImage::Unplaced& unplaced, DisjointSets& subclusters) {
-  image.updateElevations();
+void SegmentLinker::linkUnplaced(const RangeImage& image, const RangeImage::Unplaced& unplaced,
+                                 DisjointSets& subclusters) {
   HWY_DYNAMIC_DISPATCH(searchOne)(image, unplaced, subclusters);
 }
 

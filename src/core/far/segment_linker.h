@@ -3,11 +3,13 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "core/disjoint_sets.h"
+#include "core/far/constants.h"
 #include "core/far/range_image.h"
 #include "core/growing_array.h"
 
@@ -73,11 +75,19 @@ class SegmentLinker : private SegmentLinkerState {
 
   /// Links all that has not been linked within the image. More returns may come later.
   void linkRest(RangeImage& image, DisjointSets& subclusters);
-  /// Links the returns of the image with those of another one of the same rotation; or, of itself, those at its end
-  /// with those a turn before. After linkRest () of both.
-  void linkTo(RangeImage& image, RangeImage& other, DisjointSets& subclusters);
+
+  /// Calls visit(ahead) for each way around in which the bins of an image come within reach of those of another one of
+  /// the same rotation: bin 0 of the other is bin `ahead` of the image. The other may be the image itself, a turn
+  /// before. After linkRest () of both.
+  template <typename Visit>
+  static void forEachOverlap(const RangeImage& image, const RangeImage& other, Visit&& visit);
+  /// Links the returns of two images that overlap so, in several parts. Threads may link different parts at once, each
+  /// by its own linker. Both have the same rows (RangeImage::shareRows), with elevations up to date.
+  /// \param is_own whether the image is the one that the linker serves otherwise
+  void linkOverlap(const RangeImage& image, const RangeImage& other, double ahead, std::size_t part, std::size_t parts,
+                   bool is_own, DisjointSets& subclusters);
   /// Links a return that is unplaced, in this image or another one of the same rotation, with the returns of the image.
-  static void linkUnplaced(RangeImage& image, const RangeImage::Unplaced& unplaced, DisjointSets& subclusters);
+  static void linkUnplaced(const RangeImage& image, const RangeImage::Unplaced& unplaced, DisjointSets& subclusters);
 
   /// Work done since prepare (), about in comparisons of registers.
   std::size_t workDone() const { return work; }
@@ -87,5 +97,19 @@ class SegmentLinker : private SegmentLinkerState {
 
   std::size_t linked_parts_ = 0;  ///< of the sector at image.linked
 };
+
+template <typename Visit>
+void SegmentLinker::forEachOverlap(const RangeImage& image, const RangeImage& other, Visit&& visit) {
+  if (image.placed == 0 || other.placed == 0) return;
+  const bool is_seam = &other == &image;
+  const auto turn = static_cast<double>(image.steps);
+  const double ahead =
+      image.direction * (other.start_azimuth - image.start_azimuth) / static_cast<double>(image.radians_per_bin);
+  const double least = is_seam ? 1.0 : -static_cast<double>(other.end) - kMaxReach;
+  const double most = static_cast<double>(image.end) + kMaxReach;
+  const auto first = static_cast<int>(std::ceil((least - ahead) / turn));
+  const auto last = static_cast<int>(std::floor((most - ahead) / turn));
+  for (int turns = first; turns <= last; ++turns) visit(ahead + turn * turns);
+}
 
 }  // namespace lisco
