@@ -171,11 +171,12 @@ bool isRight(const Case& one, const Rotation& rotation, const std::string& whose
 template <typename Clusterer, typename IndexOf>
 Clusters collect(Clusterer& clusterer, const Problem& problem, IndexOf&& index_of) {
   Clusters clusters;
-  std::vector<pcl::detail::LiscoClusterPlace> places;
+  pcl::detail::LiscoClusterPlaces places;
   pcl::detail::LiscoClusterWriter writer(clusterer, problem.cloud->header, problem.min_size, problem.max_size, places,
                                          clusters);
   clusterer.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-    writer.append(subcluster, count, [&](std::size_t i) { return index_of(cells[i]); });
+    writer.append(lisco::RunVisitor::From::kFirst, subcluster, count,
+                  [&](std::size_t i) { return index_of(cells[i]); });
   });
   pcl::detail::sortLiscoClusters(clusters);
   return clusters;

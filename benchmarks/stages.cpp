@@ -98,12 +98,13 @@ class StagedExtraction {
     pcl::detail::LiscoClusterWriter writer(clusterer_, problem.cloud->header, problem.min_size, problem.max_size,
                                            places_, clusters);
     clusterer_.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-      writer.append(subcluster, count, [cells](std::size_t i) { return static_cast<pcl::index_t>(cells[i]); });
+      writer.append(lisco::RunVisitor::From::kFirst, subcluster, count,
+                    [cells](std::size_t i) { return static_cast<pcl::index_t>(cells[i]); });
     });
   }
 
   lisco::ColumnClusterer clusterer_;
-  std::vector<pcl::detail::LiscoClusterPlace> places_;
+  pcl::detail::LiscoClusterPlaces places_;
   Clock::time_point latest_;
   std::array<double, kStages> times_{};
 };

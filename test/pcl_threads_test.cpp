@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 
 #include "pcl_client.h"
 #include "pcl_clouds.h"
@@ -83,6 +84,25 @@ TEST(PclThreads, ChangeNothingInSmallClouds) {
     expectSameByAnyThreads(repeated, cloud, nullptr, request, expected);
     if (HasFailure()) return;
   }
+}
+
+TEST(PclThreads, AppendToClustersOfOtherClouds) {
+  Random random(3);
+  const Cloud::Ptr cloud = cloudOf(largeScan(random));
+  const Cloud::Ptr other = cloudOf(largeScan(random));
+  pcl::IndicesPtr shuffled = shuffledIndices(random, other->size());
+  std::array<Clusters, 2> clusters;
+  for (std::size_t i = 0; i < 2; ++i)
+    for (const auto& [input, indices] :
+         {std::pair{cloud, pcl::IndicesPtr()}, {other, pcl::IndicesPtr()}, {other, shuffled}}) {
+      pcl::LiscoClusterExtraction<PointXYZ> extraction;
+      extraction.setNumberOfThreads(i == 0 ? 1 : 3);
+      extraction.setInputCloud(input);
+      if (indices) extraction.setIndices(indices);
+      extraction.setClusterTolerance(0.3);
+      extraction.extract(clusters[i]);
+    }
+  EXPECT_TRUE(expectSame(clusters[0], clusters[1]));
 }
 
 TEST(PclThreads, ChangeNoLabels) {

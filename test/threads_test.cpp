@@ -50,6 +50,21 @@ std::vector<std::uint32_t> visited(lisco::ColumnClusterer& clusterer) {
   return all;
 }
 
+/// The same from both ends, put together.
+std::vector<std::uint32_t> visitedFromBothEnds(lisco::ColumnClusterer& clusterer) {
+  std::vector<std::uint32_t> from_first;
+  std::vector<std::uint32_t> from_last;
+  clusterer.forEachRunFromBothEnds(
+      [&](lisco::RunVisitor::From from, const std::uint32_t* source_indices, std::size_t count, std::uint32_t) {
+        if (from == lisco::RunVisitor::From::kFirst)
+          from_first.insert(from_first.end(), source_indices, source_indices + count);
+        else
+          for (std::size_t i = count; i-- > 0;) from_last.push_back(source_indices[i]);
+      });
+  from_first.insert(from_first.end(), from_last.rbegin(), from_last.rend());
+  return from_first;
+}
+
 // One object with changing numbers of threads, some of them more than the lasers.
 TEST(Threads, GiveTheSubclustersOfOneThread) {
   lisco::ColumnClusterer alone;
@@ -66,6 +81,8 @@ TEST(Threads, GiveTheSubclustersOfOneThread) {
     const std::vector<std::uint32_t> order = visited(together);
     ASSERT_EQ(order, visited(alone));
     ASSERT_TRUE(std::is_sorted(order.begin(), order.end())) << "not laser by laser";
+    ASSERT_EQ(order, visitedFromBothEnds(together));
+    ASSERT_EQ(order, visitedFromBothEnds(alone));
     together.update();
     ASSERT_EQ(difference(right, clustersOf(together)), "") << "updated once more";
   }

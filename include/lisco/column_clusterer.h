@@ -66,7 +66,8 @@ class LISCO_EXPORT ColumnClusterer {
 
   std::size_t subclusterCount() const;  ///< after update()
   /// Number of returns in a subcluster, 0..subclusterCount()-1; after update().
-  std::uint32_t sizeOf(std::uint32_t subcluster) const;
+  std::uint32_t sizeOf(std::uint32_t subcluster) const { return sizes()[subcluster]; }
+  const std::uint32_t* sizes() const;  ///< of all subclusters; after update(), until the next call of another function
 
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};  ///< no subcluster
   /// The subcluster of what a laser measured in a column, kNone if that was no return; after update().
@@ -77,14 +78,26 @@ class LISCO_EXPORT ColumnClusterer {
   /// of consecutive columns: laser by laser, and the returns of each in the order of their columns. After update().
   template <typename Visit>
   void forEachRun(Visit&& visit) {
-    visitRuns(RunVisitor(visit));
+    const auto visit_run = [&visit](RunVisitor::From, const std::uint32_t* source_indices, std::size_t count,
+                                    std::uint32_t subcluster) { visit(source_indices, count, subcluster); };
+    visitRuns(RunVisitor(visit_run), false);
   }
+
+  /// The same by two threads at once, which meet in the middle: calls visit(from, source_indices, count, subcluster),
+  /// one with RunVisitor::From::kFirst from the first group on, the other with kLast from the last group backwards.
+  template <typename Visit>
+  void forEachRunFromBothEnds(Visit&& visit) {
+    visitRuns(RunVisitor(visit), true);
+  }
+
+  /// Threads that the columns of the last rotation are the work of, 1 if they were few.
+  std::size_t threadCount() const;
 
   std::size_t returnCount() const;  ///< read so far; of all columns added, after update()
 
  private:
   void receive(std::size_t columns, std::size_t lasers, const CellSource& cells);
-  void visitRuns(const RunVisitor& visit);
+  void visitRuns(const RunVisitor& visit, bool from_both_ends);
 
   class LISCO_HIDDEN Rotation;
   std::unique_ptr<Rotation> rotation_;

@@ -92,39 +92,56 @@ struct Run {
   std::uint32_t subcluster;  ///< 0..subclusterCount ()-1
 };
 
-/// Receives runs laser by laser: one function call per laser and block of columns. Refers to the callable that it is
-/// made of.
+/// Receives runs laser by laser, from the first on or from the last backwards: one function call per laser and block of
+/// columns. Refers to the callable that it is made of.
 class RunVisitor {
  public:
-  /// \param visit callable as void (const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster)
+  enum class From { kFirst, kLast };  ///< where a visit begins
+
+  /// \param visit callable as void (From from, const std::uint32_t* source_indices, std::size_t count,
+  ///        std::uint32_t subcluster)
   template <typename Visit>
   explicit RunVisitor(Visit& visit)
       : context_(std::addressof(visit)),
-        visit_([](const void* context, const Run* runs, std::size_t count, const std::uint32_t* source_indices) {
+        visit_([](const void* context, From from, const Run* runs, std::size_t count,
+                  const std::uint32_t* source_indices) {
           Visit& visit_run = *static_cast<Visit*>(const_cast<void*>(context));
-          for (const Run* run = runs; run != runs + count; ++run)
-            visit_run(source_indices + run->first_cell, std::size_t{run->count}, run->subcluster);
+          forEach(from, count, [&](std::size_t i) {
+            const Run& run = runs[i];
+            visit_run(from, source_indices + run.first_cell, std::size_t{run.count}, run.subcluster);
+          });
         }),
-        visit_single_([](const void* context, const std::uint32_t* subclusters, std::size_t count,
+        visit_single_([](const void* context, From from, const std::uint32_t* subclusters, std::size_t count,
                          const std::uint32_t* source_indices) {
           Visit& visit_run = *static_cast<Visit*>(const_cast<void*>(context));
-          for (std::size_t i = 0; i < count; ++i) visit_run(source_indices + i, std::size_t{1}, subclusters[i]);
+          forEach(from, count,
+                  [&](std::size_t i) { visit_run(from, source_indices + i, std::size_t{1}, subclusters[i]); });
         }) {}
 
   /// Visits `count` runs, whose cells index `source_indices`.
-  void operator()(const Run* runs, std::size_t count, const std::uint32_t* source_indices) const {
-    visit_(context_, runs, count, source_indices);
+  void operator()(From from, const Run* runs, std::size_t count, const std::uint32_t* source_indices) const {
+    visit_(context_, from, runs, count, source_indices);
   }
 
   /// Visits `count` runs of one return each, given by their subclusters.
-  void visitSingle(const std::uint32_t* subclusters, std::size_t count, const std::uint32_t* source_indices) const {
-    visit_single_(context_, subclusters, count, source_indices);
+  void visitSingle(From from, const std::uint32_t* subclusters, std::size_t count,
+                   const std::uint32_t* source_indices) const {
+    visit_single_(context_, from, subclusters, count, source_indices);
   }
 
  private:
+  template <typename VisitAt>
+  static void forEach(From from, std::size_t count, VisitAt&& visit_at) {
+    if (from == From::kFirst)
+      for (std::size_t i = 0; i < count; ++i) visit_at(i);
+    else
+      for (std::size_t i = count; i-- > 0;) visit_at(i);
+  }
+
   const void* context_;
-  void (*visit_)(const void* context, const Run* runs, std::size_t count, const std::uint32_t* source_indices);
-  void (*visit_single_)(const void* context, const std::uint32_t* subclusters, std::size_t count,
+  void (*visit_)(const void* context, From from, const Run* runs, std::size_t count,
+                 const std::uint32_t* source_indices);
+  void (*visit_single_)(const void* context, From from, const std::uint32_t* subclusters, std::size_t count,
                         const std::uint32_t* source_indices);
 };
 

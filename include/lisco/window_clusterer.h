@@ -57,12 +57,15 @@ class LISCO_EXPORT WindowClusterer {
   std::size_t returnCount() const;      ///< of the last window
   std::size_t subclusterCount() const;  ///< of the last window
   /// Number of returns in a subcluster of the last window, 0..subclusterCount()-1.
-  std::uint32_t sizeOf(std::uint32_t subcluster) const;
+  std::uint32_t sizeOf(std::uint32_t subcluster) const { return sizes()[subcluster]; }
+  const std::uint32_t* sizes() const;  ///< of all subclusters of the last window, until the next one ends
 
   /// Visits all returns of the last window as ColumnClusterer::forEachRun does, until the next window ends.
   template <typename Visit>
   void forEachRun(Visit&& visit) {
-    visitRuns(RunVisitor(visit));
+    const auto visit_run = [&visit](RunVisitor::From, const std::uint32_t* source_indices, std::size_t count,
+                                    std::uint32_t subcluster) { visit(source_indices, count, subcluster); };
+    visitRuns(RunVisitor(visit_run));
   }
 
  private:

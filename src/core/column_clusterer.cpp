@@ -33,10 +33,11 @@ class ColumnClusterer::Rotation {
 
   bool isUsable() const { return usable_; }
   std::size_t subclusterCount() const { return sizes_.size(); }
-  std::uint32_t sizeOf(std::uint32_t subcluster) const { return sizes_[subcluster]; }
+  const std::uint32_t* sizes() const { return sizes_.data(); }
   std::size_t returnCount() const;
   std::uint32_t subclusterAt(std::size_t laser, std::size_t column);
-  void visitRuns(const RunVisitor& visit);
+  std::size_t threadCount() const { return parts_.empty() ? 1 : parts_.size(); }
+  void visitRuns(const RunVisitor& visit, bool from_both_ends);
 
  private:
   void divide(std::size_t columns, std::size_t lasers, const CellSource& cells);
@@ -128,6 +129,7 @@ void ColumnClusterer::Rotation::begin(const Parameters& parameters) {
   parameters_.threads = std::min(parameters.threads == 0 ? allThreads() : parameters.threads, Parameters::kMaxThreads);
   tolerance_ = Tolerance(parameters.tolerance);
   partition_count_ = 0;
+  parts_.clear();
   are_linked_ = is_sorted_ = is_unordered_ = false;
   near_ = Near::kInVoxels;
   sizes_.clear();
@@ -243,8 +245,7 @@ void ColumnClusterer::Rotation::readNear(std::size_t lasers, const CellSource& c
     reserveRuns(partition);
     reserveNear(partition, end - begin);
     partition.readLasers(cells, begin, end, lasers, subclusters_);
-    if (partition_count_ > 1)
-      balancer_.record(begin, end - begin, (end - begin) * lasers + partition.workDone());
+    if (partition_count_ > 1) balancer_.record(begin, end - begin, (end - begin) * lasers + partition.workDone());
   });
 }
 
@@ -272,8 +273,7 @@ void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, cons
     const std::size_t count = std::min(end - first, RingBlock::kColumns);
     const std::size_t before = partition.workDone();
     partition.readColumns(cells, first, count, lasers, static_cast<std::uint32_t>(first), subclusters_);
-    if (partition_count_ > 1)
-      balancer_.record(first, count, count * lasers + partition.workDone() - before);
+    if (partition_count_ > 1) balancer_.record(first, count, count * lasers + partition.workDone() - before);
     if (i == 0 && first + count == std::min(kTriedColumns, end)) {
       const bool is_worthwhile = was_far_worthwhile_ = partition.isFarWorthwhile();
       trial.decide(is_worthwhile);
@@ -454,16 +454,17 @@ void ColumnClusterer::Rotation::sortRuns() {
   is_sorted_ = true;
 }
 
-void ColumnClusterer::Rotation::visitRuns(const RunVisitor& visit) {
+void ColumnClusterer::Rotation::visitRuns(const RunVisitor& visit, bool from_both_ends) {
   if (is_unordered_) {
-    unordered_.visit(sorter_, visit);
+    unordered_.visit(sorter_, visit, from_both_ends);
     return;
   }
   sortRuns();
-  order_.forEachBlock([this](std::size_t i) -> const Runs& { return runsOf(i); },
-                      [&](std::size_t, const Runs& runs, const Runs::Block& block) {
-                        visit(runs.runs.data() + block.first_run, block.count, runs.source_index.data());
-                      });
+  const auto visitBlock = [&](RunVisitor::From from, std::size_t, const Runs& runs, const Runs::Block& block) {
+    visit(from, runs.runs.data() + block.first_run, block.count, runs.source_index.data());
+  };
+  order_.forEachBlock(
+      from_both_ends, [this](std::size_t i) -> const Runs& { return runsOf(i); }, visitBlock);
 }
 
 std::uint32_t ColumnClusterer::Rotation::subclusterAt(std::size_t laser, std::size_t column) {
@@ -509,8 +510,8 @@ void ColumnClusterer::update() {
 std::size_t ColumnClusterer::subclusterCount() const {
   return rotation_->subclusterCount();
 }
-std::uint32_t ColumnClusterer::sizeOf(std::uint32_t subcluster) const {
-  return rotation_->sizeOf(subcluster);
+const std::uint32_t* ColumnClusterer::sizes() const {
+  return rotation_->sizes();
 }
 std::size_t ColumnClusterer::returnCount() const {
   return rotation_->returnCount();
@@ -520,8 +521,12 @@ std::uint32_t ColumnClusterer::subclusterAt(std::size_t laser, std::size_t colum
   return rotation_->isUsable() ? rotation_->subclusterAt(laser, column) : kNone;
 }
 
-void ColumnClusterer::visitRuns(const RunVisitor& visit) {
-  if (rotation_->isUsable()) rotation_->visitRuns(visit);
+std::size_t ColumnClusterer::threadCount() const {
+  return rotation_->threadCount();
+}
+
+void ColumnClusterer::visitRuns(const RunVisitor& visit, bool from_both_ends) {
+  if (rotation_->isUsable()) rotation_->visitRuns(visit, from_both_ends);
 }
 
 }  // namespace lisco

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "core/disjoint_sets.h"
+#include "core/parallel.h"
 #include "core/ring_block.h"
 #include "lisco/return.h"
 
@@ -70,13 +72,26 @@ class LaserOrder {
                                                                     static_cast<std::uint32_t>(block)};
   }
 
-  /// Calls visit(partition, runs, block) for each ring block in this order, after sort ().
+  /// Calls visit(from, partition, runs, block) for each ring block in this order, after sort (); from both ends, by a
+  /// thread from each until they meet.
   template <typename RunsOf, typename Visit>
-  void forEachBlock(RunsOf&& runs_of, Visit&& visit) const {
-    for (const Entry& entry : entries_) {
+  void forEachBlock(bool from_both_ends, RunsOf&& runs_of, Visit&& visit) const {
+    const auto visit_entry = [&](RunVisitor::From from, const Entry& entry) {
       const auto& runs = runs_of(entry.partition);
-      visit(std::size_t{entry.partition}, runs, runs.blocks[entry.block]);
+      visit(from, std::size_t{entry.partition}, runs, runs.blocks[entry.block]);
+    };
+    if (!from_both_ends) {
+      for (const Entry& entry : entries_) visit_entry(RunVisitor::From::kFirst, entry);
+      return;
     }
+    std::atomic<std::size_t> taken = 0;
+    inParallel(2, [&](std::size_t end) {
+      for (std::size_t i = 0; taken.fetch_add(1, std::memory_order_relaxed) < entries_.size(); ++i)
+        if (end == 0)
+          visit_entry(RunVisitor::From::kFirst, entries_[i]);
+        else
+          visit_entry(RunVisitor::From::kLast, entries_[entries_.size() - 1 - i]);
+    });
   }
 
   /// The block that covers a column of a laser, after sort (). \return false if there is none

@@ -140,22 +140,23 @@ void UnorderedReturns::sortBlocks() {
   is_sorted_ = true;
 }
 
-void UnorderedReturns::visit(const VoxelSorter& sorter, const RunVisitor& visit) {
+void UnorderedReturns::visit(const VoxelSorter& sorter, const RunVisitor& visit, bool from_both_ends) {
   if (numbered_.size() != part_count_) return;
   sortBlocks();
-  order_.forEachBlock([this](std::size_t i) -> const Part& { return parts_[i]; },
-                      [&](std::size_t number, const Part& part, const Block& block) {
-                        const NearReturn* const returns = part.near.returns.data() + block.first_return;
-                        const std::size_t first = numbered_[number].first + block.first_return;
-                        const std::uint32_t count = countBits(block.returns);
-                        std::uint32_t sets[RingBlock::kColumns];
-                        std::uint32_t source_index[RingBlock::kColumns];
-                        for (std::size_t i = 0; i < count; ++i) {
-                          sets[i] = sorter.setOf(first + i);
-                          source_index[i] = returns[i].element;
-                        }
-                        visit.visitSingle(sets, count, source_index);
-                      });
+  const auto partAt = [this](std::size_t i) -> const Part& { return parts_[i]; };
+  const auto visitBlock = [&](RunVisitor::From from, std::size_t number, const Part& part, const Block& block) {
+    const NearReturn* const returns = part.near.returns.data() + block.first_return;
+    const std::size_t first = numbered_[number].first + block.first_return;
+    const std::uint32_t count = countBits(block.returns);
+    std::uint32_t sets[RingBlock::kColumns];
+    std::uint32_t source_index[RingBlock::kColumns];
+    for (std::size_t i = 0; i < count; ++i) {
+      sets[i] = sorter.setOf(first + i);
+      source_index[i] = returns[i].element;
+    }
+    visit.visitSingle(from, sets, count, source_index);
+  };
+  order_.forEachBlock(from_both_ends, partAt, visitBlock);
 }
 
 std::uint32_t UnorderedReturns::setAt(const VoxelSorter& sorter, std::size_t laser, std::size_t column) {

@@ -42,7 +42,7 @@ class UnorderedReturns {
 
   std::size_t count() const;
   /// Visits all returns laser by laser. \param sorter of link (), which holds the numbers of the sets
-  void visit(const VoxelSorter& sorter, const RunVisitor& visit);
+  void visit(const VoxelSorter& sorter, const RunVisitor& visit, bool from_both_ends);
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   /// The number of a return's set, kNone if there is no return in the cell. \param sorter as above
   std::uint32_t setAt(const VoxelSorter& sorter, std::size_t laser, std::size_t column);

@@ -24,7 +24,7 @@ class WindowClusterer::Window {
   std::size_t columnCount() const { return columns_; }
   std::size_t returnCount() const { return returns_; }
   std::size_t subclusterCount() const { return sizes_.size(); }
-  std::uint32_t sizeOf(std::uint32_t subcluster) const { return sizes_[subcluster]; }
+  const std::uint32_t* sizes() const { return sizes_.data(); }
   void visitRuns(const RunVisitor& visit);
 
  private:
@@ -214,11 +214,11 @@ void WindowClusterer::Window::visitRuns(const RunVisitor& visit) {
   if (columns_ == 0) return;
   const auto runsOf = [this](std::size_t i) -> const Runs& { return pane(oldest_ + i).runs; };
   order_.sort(newest_ - oldest_, runsOf);
-  order_.forEachBlock(runsOf, [&](std::size_t i, const Runs&, const Runs::Block& block) {
+  order_.forEachBlock(false, runsOf, [&](RunVisitor::From from, std::size_t i, const Runs&, const Runs::Block& block) {
     Pane& own = pane(oldest_ + i);
     for (std::uint32_t run = block.first_run; run < block.first_run + block.count; ++run)
       own.runs.runs[run].subcluster = subcluster_of_element_[own.first_in_window + own.subcluster[run]];
-    visit(own.runs.runs.data() + block.first_run, block.count, own.runs.source_index.data());
+    visit(from, own.runs.runs.data() + block.first_run, block.count, own.runs.source_index.data());
   });
 }
 
@@ -253,8 +253,8 @@ std::size_t WindowClusterer::returnCount() const {
 std::size_t WindowClusterer::subclusterCount() const {
   return window_->subclusterCount();
 }
-std::uint32_t WindowClusterer::sizeOf(std::uint32_t subcluster) const {
-  return window_->sizeOf(subcluster);
+const std::uint32_t* WindowClusterer::sizes() const {
+  return window_->sizes();
 }
 
 void WindowClusterer::visitRuns(const RunVisitor& visit) {

@@ -20,7 +20,7 @@ class LiscoCloudClusterer::State {
   std::vector<char> is_selected;                   ///< per point of the cloud; where many are selected
   Indices few_points;                              ///< ascending; where few are selected
   std::vector<std::uint32_t> subcluster_of_point;  ///< only where the order of the indices is needed
-  std::vector<LiscoClusterPlace> places;           ///< memory of LiscoClusterWriter
+  LiscoClusterPlaces places;
 };
 
 LiscoCloudClusterer::LiscoCloudClusterer() : state_(std::make_unique<State>()) {}
@@ -108,7 +108,8 @@ void LiscoCloudClusterer::collect(const Indices* indices, const PCLHeader& heade
   LiscoClusterWriter writer(clusterer, header, min_size, max_size, state_->places, clusters);
 
   // Clusters are in the order of their first points in the indices; within each, indices ascend.
-  if (indices && !std::is_sorted(indices->begin(), indices->end())) {
+  const bool is_sorted = !indices || std::is_sorted(indices->begin(), indices->end());
+  if (!is_sorted) {
     std::uint32_t points = 0;
     for (const auto& index : *indices) points = std::max(points, static_cast<std::uint32_t>(index) + 1);
     constexpr std::uint32_t kNone = lisco::ColumnClusterer::kNone;
@@ -121,9 +122,19 @@ void LiscoCloudClusterer::collect(const Indices* indices, const PCLHeader& heade
       if (subcluster != kNone) writer.place(subcluster);
     }
   }
-  clusterer.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-    writer.append(subcluster, count, [cells](std::size_t i) { return static_cast<index_t>(cells[i]); });
-  });
+  using From = lisco::RunVisitor::From;
+  const auto append = [&](From from, const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
+    writer.append(from, subcluster, count, [cells](std::size_t i) { return static_cast<index_t>(cells[i]); });
+  };
+  if (clusterer.threadCount() > 1) {
+    writer.placeAll();
+    clusterer.forEachRunFromBothEnds(append);
+    if (is_sorted) writer.orderByFirstPoints();
+  } else {
+    clusterer.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
+      append(From::kFirst, cells, count, subcluster);
+    });
+  }
 }
 
 bool LiscoCloudClusterer::fitsIndexType(std::size_t points) {

@@ -8,11 +8,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <pcl/PointIndices.h>
 #include <pcl/segmentation/extract_clusters.h>  // comparePointClusters
 #include <pcl/segmentation/lisco_pcl_version.h>
+
+#include "lisco/return.h"
 
 namespace pcl::detail {
 
@@ -23,51 +26,77 @@ inline void sortLiscoClusters(std::vector<PointIndices>& clusters) {
   std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);
 }
 
-/** \brief Where the next point of a subcluster goes. */
-struct LiscoClusterPlace {
-  index_t* next;  ///< nullptr: its cluster has no place yet; if its size is not accepted, where all such points go
+/** \brief Memory of LiscoClusterWriter, which a caller may keep for the next one. */
+struct LiscoClusterPlaces {
+  std::vector<index_t*> next;  ///< of each subcluster: where its next point goes; nullptr: its cluster has no place yet
+  std::vector<index_t*> last;  ///< the same from the last point backwards: behind where the next one goes
+  std::vector<std::size_t> order;
+  std::vector<PointIndices> ordered;
 };
 
 /** \brief Appends subclusters of accepted sizes to a vector as PCL's clusters, in the order of their first place (). */
 template <typename Clusterer>
 class LiscoClusterWriter {
  public:
-  /** \param[in] clusterer lisco::ColumnClusterer or lisco::WindowClusterer, after update ()
-   * \param places memory of the writer, which a caller may keep for the next one
-   */
+  using From = lisco::RunVisitor::From;
+
+  /** \param[in] clusterer lisco::ColumnClusterer or lisco::WindowClusterer, after update () */
   LiscoClusterWriter(const Clusterer& clusterer, const PCLHeader& header, uindex_t min_size, uindex_t max_size,
-                     std::vector<LiscoClusterPlace>& places, std::vector<PointIndices>& clusters)
-      : clusterer_(clusterer), header_(header), places_(places), clusters_(clusters) {
-    places_.resize(clusterer.subclusterCount());
-    std::uint32_t subcluster = 0;
-    for (LiscoClusterPlace& place : places_) {
-      const std::uint32_t size = clusterer.sizeOf(subcluster++);
-      const bool is_accepted = size >= min_size && size <= max_size;
-      place = {is_accepted ? nullptr : ignored_};
-    }
+                     LiscoClusterPlaces& places, std::vector<PointIndices>& clusters)
+      : sizes_(clusterer.sizes()), header_(header), places_(places), clusters_(clusters), before_(clusters.size()) {
+    const std::size_t count = clusterer.subclusterCount();
+    places_.next.resize(count);
+    for (std::size_t i = 0; i < count; ++i)
+      places_.next[i] = sizes_[i] >= min_size && sizes_[i] <= max_size ? nullptr : ignored_;
   }
   LiscoClusterWriter(const LiscoClusterWriter&) = delete;
   LiscoClusterWriter& operator=(const LiscoClusterWriter&) = delete;
 
   /** \brief Gives the cluster of a subcluster the next place, unless it has one or its size is not accepted. */
   void place(std::uint32_t subcluster) {
-    if (places_[subcluster].next == nullptr) places_[subcluster].next = begin(clusterer_.sizeOf(subcluster));
+    if (places_.next[subcluster] == nullptr) places_.next[subcluster] = begin(sizes_[subcluster]);
+  }
+
+  /** \brief Gives all clusters that have none a place, so that a second thread may append () from the last points
+   * backwards.
+   */
+  void placeAll() {
+    places_.last.resize(places_.next.size());
+    for (std::uint32_t i = 0; i < places_.next.size(); ++i) {
+      place(i);
+      places_.last[i] = places_.next[i] == ignored_ ? ignored_from_last_ + kMaxIgnored : places_.next[i] + sizes_[i];
+    }
   }
 
   /** \brief Appends points to the cluster of a subcluster, if its size is accepted. In all, as many points are appended
    * as its size says.
+   * \param[in] from the last: prepends to what has been appended from there; after placeAll ()
    * \param[in] count at least 1
    * \param[in] point_at callable as index_t (std::size_t i), below \a count; may be called several times
    */
   template <typename PointAt>
-  void append(std::uint32_t subcluster, std::size_t count, PointAt&& point_at) {
-    place(subcluster);
-    index_t* const to = places_[subcluster].next;
-    const bool is_accepted = to != ignored_;
+  void append(From from, std::uint32_t subcluster, std::size_t count, PointAt&& point_at) {
+    const bool is_first = from == From::kFirst;
+    if (is_first) place(subcluster);
+    index_t*& next = is_first ? places_.next[subcluster] : places_.last[subcluster];
+    const bool is_accepted = next != (is_first ? ignored_ : ignored_from_last_ + kMaxIgnored);
     if (count > kMaxIgnored && !is_accepted) return;
     // Those of sizes not accepted are written as well: which sizes follow each other is not foreseen.
-    copy(to, count, point_at);
-    places_[subcluster].next = to + (count & (std::size_t{0} - std::size_t{is_accepted}));  // without a branch
+    copy(is_first ? next : next - count, count, point_at);
+    const std::size_t advance = count & (std::size_t{0} - std::size_t{is_accepted});  // without a branch
+    next = is_first ? next + advance : next - advance;
+  }
+
+  /** \brief Orders the clusters by their first points, which all have been appended, instead of their places. */
+  void orderByFirstPoints() {
+    places_.order.clear();
+    for (std::size_t i = before_; i < clusters_.size(); ++i) places_.order.push_back(i);
+    std::sort(places_.order.begin(), places_.order.end(), [this](std::size_t a, std::size_t b) {
+      return (clusters_[a].indices.front() < clusters_[b].indices.front());
+    });
+    places_.ordered.clear();
+    for (const std::size_t i : places_.order) places_.ordered.push_back(std::move(clusters_[i]));
+    std::move(places_.ordered.begin(), places_.ordered.end(), clusters_.begin() + static_cast<std::ptrdiff_t>(before_));
   }
 
  private:
@@ -96,11 +125,13 @@ class LiscoClusterWriter {
     return (clusters_.back().indices.data());
   }
 
-  const Clusterer& clusterer_;
+  const std::uint32_t* const sizes_;  ///< of subclusters
   const PCLHeader& header_;
-  std::vector<LiscoClusterPlace>& places_;  ///< of each subcluster
+  LiscoClusterPlaces& places_;
   index_t ignored_[kMaxIgnored];            ///< where points of subclusters of other sizes go
+  index_t ignored_from_last_[kMaxIgnored];  ///< the same, from the last backwards
   std::vector<PointIndices>& clusters_;
+  const std::size_t before_;  ///< clusters of others in the vector
 };
 
 }  // namespace pcl::detail

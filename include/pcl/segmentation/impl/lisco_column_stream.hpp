@@ -208,7 +208,7 @@ class LiscoReceivedColumns {
     clusterer.forEachRun([&](const std::uint32_t* names, std::size_t count, std::uint32_t subcluster) {
       const auto cell = store.cellOf(names[0]);  // the others follow it in its row
       const auto first = static_cast<index_t>(cell.row * width + (cell.column - first_column));
-      writer.append(subcluster, count,
+      writer.append(lisco::RunVisitor::From::kFirst, subcluster, count,
                     [first](std::size_t i) { return static_cast<index_t>(first + static_cast<index_t>(i)); });
     });
     sortLiscoClusters(clusters);
@@ -221,7 +221,7 @@ class LiscoReceivedColumns {
 
  private:
   std::size_t max_rows_ = 0;
-  std::vector<LiscoClusterPlace> places_;  ///< memory of LiscoClusterWriter
+  LiscoClusterPlaces places_;
   std::vector<lisco::Return> named_column_;
 };
 
