@@ -344,7 +344,13 @@ void ColumnClusterer::Rotation::linkImages(std::size_t first) {
   images_.forEachPair(addOverlaps);
   for (std::size_t i = first; i < partition_count_; ++i) addOverlaps(i, i);
   shareRows();
-  const std::size_t threads = partition_count_ - first;
+  bool is_any_full = false;
+  bool is_any_unplaced = false;
+  for (std::size_t i = 0; i < partition_count_; ++i) {
+    is_any_full = is_any_full || partitions_[i].image().isFull();
+    is_any_unplaced = is_any_unplaced || !partitions_[i].image().unplaced.empty();
+  }
+  const std::size_t threads = overlaps_.empty() && !is_any_unplaced ? 0 : partition_count_ - first;
   const std::size_t parts = threads > 1 ? 2 : 1;  // of each overlap: their work differs
   inParallel(threads, [&](std::size_t thread) {
     for (std::size_t i = thread; i < overlaps_.size() * parts; i += threads) {
@@ -358,8 +364,6 @@ void ColumnClusterer::Rotation::linkImages(std::size_t first) {
           if (std::max(i, other) >= first) partitions_[other].linkUnplaced(unplaced, subclusters_);
         });
   });
-  bool is_any_full = false;
-  for (std::size_t i = 0; i < partition_count_; ++i) is_any_full = is_any_full || partitions_[i].image().isFull();
   for (std::size_t i = 0; is_any_full && i < partition_count_; ++i) partitions_[i].stopPlacing();
 }
 
