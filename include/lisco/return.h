@@ -96,7 +96,8 @@ struct Run {
 /// columns. Refers to the callable that it is made of.
 class RunVisitor {
  public:
-  enum class From { kFirst, kLast };  ///< where a visit begins
+  /// Where a visit begins.
+  enum class From { kFirst, kLast };
 
   /// \param visit callable as void (From from, const std::uint32_t* source_indices, std::size_t count,
   ///        std::uint32_t subcluster)
