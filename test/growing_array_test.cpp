@@ -3,6 +3,7 @@
 #include "core/growing_array.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -45,12 +46,12 @@ TEST(GrowingArray, GrowsInSteps) {
   Array array;
   std::vector<std::uint32_t> vector;
   int growths = 0;
-  constexpr std::size_t kHalfOfAHugePage = (std::size_t{1} << 20) / sizeof(std::uint32_t);
+  constexpr std::size_t kQuarterOfAHugePage = (std::size_t{1} << 19) / sizeof(std::uint32_t);
   for (std::size_t size = 1; size <= 2'000'000; ++size) {
     const std::size_t before = array.size();
     array.growInSteps(size);
     ASSERT_GE(array.size(), size);
-    ASSERT_LE(array.size(), size + size / 8 + 256 + (size > 400'000 ? kHalfOfAHugePage : 0));
+    ASSERT_LE(array.size(), size + size / 8 + 256 + (size > 400'000 ? kQuarterOfAHugePage : 0));
     if (array.size() == before) continue;
     ++growths;
     fill(array, before);
@@ -60,6 +61,15 @@ TEST(GrowingArray, GrowsInSteps) {
     ASSERT_LE(vector.capacity(), size + size / 8 + 256);
   }
   EXPECT_LT(growths, 80);
+}
+
+TEST(GrowingArray, TakesNoMoreThanItHolds) {
+  for (const std::size_t size : {100'000U, 600'000U, 1'300'000U}) {
+    Array array;
+    array.grow(size);
+    constexpr std::size_t kPage = 4096;
+    EXPECT_LE(malloc_usable_size(array.data()), array.size() * sizeof(std::uint32_t) + kPage);
+  }
 }
 
 TEST(GrowingArray, Copies) {

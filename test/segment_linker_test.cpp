@@ -682,6 +682,26 @@ TEST(SegmentLinker, PutsReturnsOfTakenBinsIntoAnotherLayer) {
   }
 }
 
+// A second row for one laser makes room for those of all; a third one for a few more.
+TEST(RangeImage, TakesMemoryForSecondRowsAtOnce) {
+  constexpr std::size_t kLasers = 64;
+  lisco::RangeImage image;
+  image.prepare(lisco::Tolerance(0.05F), kHints, 1024);
+  image.addLasers(kLasers);
+  const std::size_t one_layer = image.cells.bytes();
+  image.addLayer();
+  image.openRow(image.rows[image.firstRowOf(7) + 1]);
+  const std::size_t two_layers = image.cells.bytes();
+  EXPECT_GE(two_layers, 2 * one_layer);
+  EXPECT_LE(two_layers, 5 * one_layer / 2);
+  for (std::size_t laser = 0; laser < kLasers; ++laser)
+    if (laser != 7) image.openRow(image.rows[image.firstRowOf(laser) + 1]);
+  EXPECT_EQ(image.cells.bytes(), two_layers);
+  image.addLayer();
+  image.openRow(image.rows[image.firstRowOf(7) + 2]);
+  EXPECT_LE(image.cells.bytes(), 5 * two_layers / 4);
+}
+
 // One image is full of unplaced returns; returns placed in another image are linked with them.
 TEST(SegmentLinker, JoinsUnplacedReturnsOfAnotherImage) {
   Probe probe(kTolerance, kHints);

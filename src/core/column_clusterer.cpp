@@ -229,11 +229,11 @@ bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSou
   return trial.await();
 }
 
-/// Makes room for the near returns of some columns, as far as a trial tells how many to expect.
+/// Makes room for the near returns of some columns: half of what a trial tells to expect, as scenes differ around the
+/// sensor.
 void ColumnClusterer::Rotation::reserveNear(Partition& partition, std::size_t columns) {
   if (tried_near_.columns == 0) return;
-  const std::size_t near = tried_near_.returns + tried_near_.returns / 64;
-  partition.reserveNear(near * columns / tried_near_.columns + 2 * RingBlock::kColumns);
+  partition.reserveNear(tried_near_.returns * columns / tried_near_.columns / 2 + 2 * RingBlock::kColumns);
 }
 
 /// Each thread reads its part of the columns, without far returns.

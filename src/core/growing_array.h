@@ -31,8 +31,8 @@ void reserveInSteps(std::vector<T>& elements, std::size_t count) {
 
 /// A growing array whose elements have no value until they are written: growing touches no new memory. In a fresh
 /// process, first writes to pages are most of what a first scan costs more than later ones. From 2 MiB on, the array
-/// lies in huge pages, where the system gives them. A rest of more than half a huge page takes a whole one; a smaller
-/// rest lies in ordinary pages.
+/// lies in huge pages, where the system gives them. A rest of more than three quarters of a huge page takes a whole one;
+/// a smaller rest lies in ordinary pages.
 template <typename T>
 class GrowingArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>, "elements are bytes");
@@ -86,11 +86,8 @@ class GrowingArray {
       data = std::realloc(static_cast<void*>(data_), bytes);
     } else {
       const std::size_t rest = bytes % kHugePage;
-      const std::size_t rounded = rest > kHugePage / 2 ? bytes - rest + kHugePage : bytes;
-      if (posix_memalign(&data, kHugePage, rounded) != 0) throw std::bad_alloc();
-#ifdef MADV_HUGEPAGE
-      madvise(data, rounded, MADV_HUGEPAGE);  // without huge pages, all is the same but slower
-#endif
+      const std::size_t rounded = rest > kHugePage / 4 * 3 ? bytes - rest + kHugePage : bytes;
+      data = allocateHugePages(rounded);
       if (size_ > 0) std::memcpy(data, static_cast<const void*>(data_), size_ * sizeof(T));
       std::free(data_);
       size = rounded / sizeof(T);
@@ -104,6 +101,16 @@ class GrowingArray {
   template <typename Other>
   friend class GrowingArray;
   static constexpr std::size_t kHugePage = std::size_t{1} << 21;  ///< bytes
+
+  static void* allocateHugePages(std::size_t bytes) {
+    void* data = nullptr;
+    if (posix_memalign(&data, kHugePage, bytes) != 0) throw std::bad_alloc();
+#ifdef MADV_HUGEPAGE
+    madvise(data, bytes, MADV_HUGEPAGE);  // without huge pages, all is the same but slower
+#endif
+    void* const fitted = std::realloc(data, bytes);  // returns what alignment took behind the array
+    return fitted == nullptr ? data : fitted;
+  }
 
   T* data_ = nullptr;
   std::size_t size_ = 0;

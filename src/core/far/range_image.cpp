@@ -59,9 +59,9 @@ void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hint
 
 void RangeImage::setBins(std::size_t columns) {
   bins = (std::min(columns, steps) + kSector - 1) / kSector * kSector + 4 * kMargin;
-  stride = kMargin + bins + 2 * kMargin;
+  stride = kMargin + bins + kMargin;
   cells.setRowSize(stride);
-  const std::size_t directions = stride + kMargin;
+  const std::size_t directions = stride + 2 * kMargin;
   const double step = 2 * kPi / static_cast<double>(steps);
   cosine.reserve(directions);
   sine.reserve(directions);
@@ -77,6 +77,7 @@ void RangeImage::expectColumns(std::size_t columns) {
   const std::size_t former = stride;
   setBins(columns);
   if (stride <= former) return;
+  reserveOpenRows();
   cells.widenRows(open_rows, former, kMargin + end);
   for (Row& row : rows) row.first_cell = row.first_cell / former * stride;
 }
@@ -90,10 +91,16 @@ void RangeImage::addLasers(std::size_t count) {
   for (std::size_t laser = before; laser < count; ++laser) openRow(rows[firstRowOf(laser)]);
 }
 
+void RangeImage::reserveOpenRows() {
+  // Most lasers need a second row where some do; few need more.
+  const bool are_all_expected = layers == 2 && open_rows > laserCount();
+  cells.reserveRows(are_all_expected ? rows.size() : open_rows);
+}
+
 void RangeImage::openRow(Row& row) {
-  cells.reserveRows(open_rows + 1);
   row.first_cell = cells.firstOf(open_rows);
   ++open_rows;
+  reserveOpenRows();
   std::fill_n(cells.x + row.first_cell, stride, kNan);
 }
 

@@ -118,6 +118,8 @@ struct RangeImage {
   void setBins(std::size_t columns);
   /// Adds a layer: every laser gets one more row, without memory yet. Rows are numbered anew.
   void addLayer();
+  /// Makes room for the open rows, and for those that will be.
+  void reserveOpenRows();
   /// Gives a row its memory, all bins free.
   void openRow(Row& row);
 

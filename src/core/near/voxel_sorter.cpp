@@ -258,7 +258,6 @@ bool VoxelSorter::numberVoxels(const Tolerance& tolerance) {
 void VoxelSorter::cutFragments() {
   const std::size_t size = fragments_.end;
   items_.grow(size + kPrefetch);
-  scratch_.grow(size + kPrefetch);
   if (!fragments_.are_single && fragments_.starts.size() < size / 64) fragments_.starts.resize(size / 64);
   part_sizes_.resize(fragments_.parts.size());
   inParallel(fragments_.parts.size(), [&](std::size_t i) {
@@ -266,6 +265,9 @@ void VoxelSorter::cutFragments() {
     std::uint64_t* const starts = fragments_.are_single ? nullptr : &fragments_.starts[part.first / 64];
     part_sizes_[i] = HWY_DYNAMIC_DISPATCH(cutPart)(numbering_, number_bits_, part, starts, &items_[part.first]);
   });
+  // Several parts exchange both arrays; the sets of single returns need an entry for each.
+  const bool is_compact = part_sizes_.size() == 1 && !fragments_.are_single;
+  scratch_.growInSteps((is_compact ? part_sizes_[0] : size) + kPrefetch);
 }
 
 /// Moves the fragments of each slab of planes together: slabs of about equal work, one for each part.
