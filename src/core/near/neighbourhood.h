@@ -11,24 +11,27 @@ namespace lisco {
 inline constexpr std::size_t kNearBricks = 27;
 inline constexpr std::size_t kOwnBrick = kNearBricks / 2;
 
-/// The voxels around one. Bit x + 4 y + 16 z of a word is a voxel of a brick.
+/// What is around one of 4 x 4 x 4 places. Bit x + 4 y + 16 z of a word is a place.
+/// \tparam kReach by which numbers along an axis differ, at most
+template <int kReach>
 struct Neighbourhood {
-  /// of[voxel][i]: the voxels of near brick i whose numbers differ by 2 at most from those of a voxel of the own brick.
+  /// of[place][i]: the places around a place of the own word that are in near word i, numbered as near bricks are.
   std::uint64_t of[64][kNearBricks] = {};
 
   constexpr Neighbourhood() {
-    for (int voxel = 0; voxel < 64; ++voxel)
-      for (int dz = -2; dz <= 2; ++dz)
-        for (int dy = -2; dy <= 2; ++dy)
-          for (int dx = -2; dx <= 2; ++dx) {
-            const int x = (voxel & 3) + dx;
-            const int y = (voxel >> 2 & 3) + dy;
-            const int z = (voxel >> 4) + dz;
-            const int brick = (z + 4) / 4 * 9 + (y + 4) / 4 * 3 + (x + 4) / 4;
-            of[voxel][brick] |= std::uint64_t{1} << ((x & 3) | (y & 3) << 2 | (z & 3) << 4);
+    for (int place = 0; place < 64; ++place)
+      for (int dz = -kReach; dz <= kReach; ++dz)
+        for (int dy = -kReach; dy <= kReach; ++dy)
+          for (int dx = -kReach; dx <= kReach; ++dx) {
+            const int x = (place & 3) + dx;
+            const int y = (place >> 2 & 3) + dy;
+            const int z = (place >> 4) + dz;
+            const int word = (z + 4) / 4 * 9 + (y + 4) / 4 * 3 + (x + 4) / 4;
+            of[place][word] |= std::uint64_t{1} << ((x & 3) | (y & 3) << 2 | (z & 3) << 4);
           }
   }
 };
-inline constexpr Neighbourhood kNeighbourhood;
+inline constexpr Neighbourhood<2> kNeighbourhood;       ///< of voxels that may hold neighbours
+inline constexpr Neighbourhood<1> kBrickNeighbourhood;  ///< of bricks with such voxels
 
 }  // namespace lisco

@@ -14,23 +14,24 @@ namespace {
 
 constexpr std::size_t kMinSlots = 256;  // of the hash table: 2 KiB
 
-std::uint32_t hashOf(const std::array<std::uint32_t, 3>& key) {
-  // Teschner et al. 2003, with a final mix so that flat scenes use the whole table.
-  std::uint32_t hash = key[0] * 73856093U ^ key[1] * 19349663U ^ key[2] * 83492791U;
-  hash ^= hash >> 15;
-  return hash;
-}
-
-/// Up to four bricks above each other follow each other: those around one are in few places of the hash table.
-std::uint32_t brickHashOf(const std::array<std::uint32_t, 3>& key) {
-  return hashOf({key[0], key[1], key[2] / 4}) + key[2] % 4;
-}
-
-bool sameKey(const std::array<std::uint32_t, 3>& a, const std::array<std::uint32_t, 3>& b) {
-  return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2])) == 0;
-}
-
 }  // namespace
+
+std::size_t VoxelGrid::SparseList::add(std::uint32_t place, std::uint32_t value, std::vector<std::uint32_t>& lists) {
+  const std::uint32_t count = countBits(used);
+  if (count == capacity) {
+    const auto moved = static_cast<std::uint32_t>(lists.size());
+    capacity = std::max<std::uint32_t>(4, 2 * capacity);
+    lists.resize(lists.size() + capacity);
+    std::copy_n(lists.begin() + begin, count, lists.begin() + moved);
+    begin = moved;
+  }
+  const std::size_t index = indexOf(place);
+  used |= std::uint64_t{1} << place;
+  std::copy_backward(lists.begin() + static_cast<std::ptrdiff_t>(index), lists.begin() + begin + count,
+                     lists.begin() + begin + count + 1);
+  lists[index] = value;
+  return index;
+}
 
 void VoxelGrid::prepare(const Tolerance& new_tolerance) {
   tolerance = new_tolerance;
@@ -40,6 +41,8 @@ void VoxelGrid::prepare(const Tolerance& new_tolerance) {
   fragments.clear();
   cliques.clear();
   bricks.clear();
+  groups_.clear();
+  group_bricks_.clear();
   first_cliques.clear();
   new_bricks.clear();
   linked_bricks = 0;
@@ -101,7 +104,7 @@ void VoxelGrid::addFragment(const Key& voxel, const Box& box, std::uint32_t frag
                             DisjointSets& subclusters) {
   // Most fragments lie in a voxel that was used recently.
   RecentClique& recent = recent_cliques_[hashOf(voxel) % kRecentCliques];
-  if (recent.clique != kNone && sameKey(recent.voxel, voxel)) {
+  if (recent.clique != kNone && areEqual(recent.voxel, voxel)) {
     Clique& clique = cliques[recent.clique];
     if (clique.state == State::kNew && Box::squaredSpan(clique.box, box) < tolerance.squared()) {
       addTo(clique, box, fragment, element, subclusters);
@@ -138,60 +141,47 @@ void VoxelGrid::addTo(Clique& clique, const Box& box, std::uint32_t fragment, st
   if (clique.root != element) clique.root = subclusters.merge(clique.root, element);
 }
 
-std::uint32_t VoxelGrid::findBrick(const Key& key) const {
-  const std::size_t mask = slots_.size() - 1;
-  const std::uint32_t hash = brickHashOf(key);
-  for (std::size_t i = hash & mask;; i = (i + 1) & mask) {
-    const Slot& slot = slots_[i];
-    if (slot.brick == kNone || (slot.hash == hash && sameKey(bricks[slot.brick].key, key))) return slot.brick;
-  }
+std::uint32_t VoxelGrid::makeBrick(const Key& key) {
+  Group& group = makeGroup({key[0] >> 2, key[1] >> 2, key[2] >> 2});
+  const std::uint32_t place = (key[0] & 3U) | (key[1] & 3U) << 2 | (key[2] & 3U) << 4;
+  if (group.bricks.has(place)) return group_bricks_[group.bricks.indexOf(place)];
+  const auto number = static_cast<std::uint32_t>(bricks.size());
+  bricks.push_back({key, kNone, {}, false, false});
+  group.bricks.add(place, number, group_bricks_);
+  filter.add(key);
+  return number;
 }
 
-std::uint32_t VoxelGrid::makeBrick(const Key& key) {
-  const std::uint32_t found = findBrick(key);
-  if (found != kNone) return found;
-  const auto number = static_cast<std::uint32_t>(bricks.size());
-  bricks.push_back({key, 0, 0, kNone, 0, false, false});
-  filter.add(key);
-  if (2 * bricks.size() > slots_.size())
+VoxelGrid::Group& VoxelGrid::makeGroup(const Key& key) {
+  if (const Group* const found = findGroup(key)) return groups_[static_cast<std::size_t>(found - groups_.data())];
+  const auto number = static_cast<std::uint32_t>(groups_.size());
+  groups_.push_back({key, {}});
+  if (2 * groups_.size() > slots_.size())
     rehash(2 * slots_.size());
   else
     takeSlot(number);
-  return number;
+  return groups_[number];
 }
 
 void VoxelGrid::rehash(std::size_t count) {
   slots_.assign(count, Slot());
-  for (std::size_t brick = 0; brick < bricks.size(); ++brick) takeSlot(static_cast<std::uint32_t>(brick));
+  for (std::size_t group = 0; group < groups_.size(); ++group) takeSlot(static_cast<std::uint32_t>(group));
 }
 
-/// Puts a brick that is not in the table where it is looked for.
-void VoxelGrid::takeSlot(std::uint32_t brick) {
+/// Puts a group that is not in the table where it is looked for.
+void VoxelGrid::takeSlot(std::uint32_t group) {
   const std::size_t mask = slots_.size() - 1;
-  const std::uint32_t hash = brickHashOf(bricks[brick].key);
+  const std::uint32_t hash = hashOf(groups_[group].key);
   std::size_t slot = hash & mask;
-  while (slots_[slot].brick != kNone) slot = (slot + 1) & mask;
-  slots_[slot] = {hash, brick};
+  while (slots_[slot].group != kNone) slot = (slot + 1) & mask;
+  slots_[slot] = {hash, group};
 }
 
-/// The first clique of a voxel, kNone if it is new. The list of a brick has one entry for each voxel in use, in the
-/// order of their bits; it moves to the end when it outgrows its capacity.
+/// The first clique of a voxel, kNone if it is new.
 std::uint32_t& VoxelGrid::firstClique(Brick& brick, std::uint32_t voxel) {
-  const std::uint64_t bit = std::uint64_t{1} << voxel;
-  const auto rank = countBits(brick.occupied & (bit - 1));
-  if ((brick.occupied & bit) != 0) return first_cliques[brick.cliques + rank];
-  const auto used = countBits(brick.occupied);
-  if (used == brick.capacity) {
-    const auto moved = static_cast<std::uint32_t>(first_cliques.size());
-    brick.capacity = std::max<std::uint32_t>(4, 2 * brick.capacity);
-    first_cliques.resize(first_cliques.size() + brick.capacity);
-    std::copy_n(first_cliques.begin() + brick.cliques, used, first_cliques.begin() + moved);
-    brick.cliques = moved;
-  }
-  brick.occupied |= bit;
-  const auto list = first_cliques.begin() + brick.cliques;
-  std::copy_backward(list + rank, list + used, list + used + 1);
-  return *(list + rank) = kNone;
+  const std::size_t index =
+      brick.voxels.has(voxel) ? brick.voxels.indexOf(voxel) : brick.voxels.add(voxel, kNone, first_cliques);
+  return first_cliques[index];
 }
 
 bool VoxelGrid::BloomFilter::mayHaveNear(const Key& brick) const {

@@ -28,15 +28,11 @@ constexpr std::size_t kCliquesOfPart = 4;
 /// \param wanted callable as bool (const Brick&)
 template <typename Wanted>
 std::size_t findNear(const VoxelGrid& grid, const VoxelGrid::Key& key, NearBrick* near, Wanted&& wanted) {
-  constexpr std::uint32_t kMask = VoxelGrid::kBrickMask;
   std::size_t count = 0;
-  for (std::uint32_t pile = 0; pile < 9; ++pile)
-    for (std::uint32_t level = 0; level < 3; ++level) {
-      const std::uint32_t number = grid.findBrick(
-          {(key[0] + pile % 3 - 1) & kMask, (key[1] + pile / 3 - 1) & kMask, (key[2] + level - 1) & kMask});
-      if (number != kNone && wanted(grid.bricks[number]))
-        near[count++] = {9 * level + pile, grid.bricks[number].occupied, grid.bricks[number].cliques};
-    }
+  grid.forEachBrickAround(key, [&](std::size_t mask, std::uint32_t number) {
+    const Brick& brick = grid.bricks[number];
+    if (wanted(brick)) near[count++] = {mask, brick.voxels.used, brick.voxels.begin};
+  });
   return count;
 }
 
@@ -137,9 +133,9 @@ std::size_t linkSome(VoxelGrid& grid, Brick& brick, std::size_t most, DisjointSe
 /// Links all cliques of a brick with those that come after them, there and in the bricks given.
 void linkAll(VoxelGrid& grid, const Brick& brick, const NearBrick* near, std::size_t count, DisjointSets& subclusters) {
   std::uint32_t rank = 0;
-  for (std::uint64_t left = brick.occupied; left != 0; left &= left - 1, ++rank) {
+  for (std::uint64_t left = brick.voxels.used; left != 0; left &= left - 1, ++rank) {
     const auto voxel = static_cast<std::size_t>(__builtin_ctzll(left));
-    for (std::uint32_t clique = grid.first_cliques[brick.cliques + rank]; clique != kNone;
+    for (std::uint32_t clique = grid.first_cliques[brick.voxels.begin + rank]; clique != kNone;
          clique = grid.cliques[clique].next_in_voxel) {
       for (std::uint32_t other = grid.cliques[clique].next_in_voxel; other != kNone;
            other = grid.cliques[other].next_in_voxel)
@@ -232,7 +228,7 @@ void VoxelLinker::linkInOrder(VoxelGrid& grid, DisjointSets& subclusters) {
     std::size_t count = 0;
     const auto add = [&](std::size_t mask, const OrderedBrick& other) {
       const Brick& brick = grid.bricks[other.brick];
-      near[count++] = {mask, brick.occupied, brick.cliques};
+      near[count++] = {mask, brick.voxels.used, brick.voxels.begin};
     };
     add(kOwnBrick, own);
     if (i + 1 < ordered_.size() && ordered_[i + 1].number == own.number + 1) add(kOwnBrick + 1, ordered_[i + 1]);
