@@ -46,9 +46,7 @@ class LISCO_EXPORT ColumnClusterer {
   /// \param cells cells[l] is what laser l measured; those that are no returns are skipped
   /// \param lasers number of cells, may differ from column to column; in any order, for speed the same in each column
   /// \throws std::logic_error before begin(); std::invalid_argument if there are more cells than Parameters::lasers
-  void addColumn(const Return* cells, std::size_t lasers) {
-    addColumns(1, lasers, [cells](std::size_t laser, std::size_t) { return cells[laser]; });
-  }
+  void addColumn(const Return* cells, std::size_t lasers);
 
   /// Adds several columns at once, read laser by laser as an organized cloud lies in memory. The result is that of
   /// addColumn.

@@ -24,16 +24,15 @@ void BlockScheduler::begin(std::size_t block_columns) {
   near_budget_.begin();
 }
 
-void BlockScheduler::add(const CellSource& cells, std::size_t first, std::size_t count, std::size_t lasers,
-                         Partition& partition, DisjointSets& subclusters) {
-  staged_.add(cells, first, count, lasers);
+/// Does the work that is due with some columns that were taken.
+void BlockScheduler::workAfter(std::size_t columns, Partition& partition, DisjointSets& subclusters) {
   if (columnsLeft() == 0) {
     finishPending(partition, subclusters);
     std::swap(staged_, pending_);
     columns_since_block_ = 0;
   }
-  far_budget_.addColumns(count);
-  if (partition.nearBricksLeft() > 0) near_budget_.addColumns(count);
+  far_budget_.addColumns(columns);
+  if (partition.nearBricksLeft() > 0) near_budget_.addColumns(columns);
   while (partition.farPartsLeft() > 0 && far_budget_.isBehind())
     far_budget_.spend(partition.linkFarPart(subclusters), 1);
   for (std::size_t left = partition.nearBricksLeft(); left > 0 && near_budget_.isBehind();) {
@@ -41,7 +40,7 @@ void BlockScheduler::add(const CellSource& cells, std::size_t first, std::size_t
     near_budget_.spend(work, left - partition.nearBricksLeft());
     left = partition.nearBricksLeft();
   }
-  readPending(count, partition, subclusters);
+  readPending(columns, partition, subclusters);
 }
 
 /// Reads the share of the pending block that falls to a number of columns.

@@ -60,7 +60,15 @@ class BlockScheduler {
 
   /// Takes at most columnsLeft () columns, and does the work that is due.
   void add(const CellSource& cells, std::size_t first, std::size_t count, std::size_t lasers, Partition& partition,
-           DisjointSets& subclusters);
+           DisjointSets& subclusters) {
+    staged_.add(cells, first, count, lasers);
+    workAfter(count, partition, subclusters);
+  }
+  /// The same for one column.
+  void add(const Return* column, std::size_t lasers, Partition& partition, DisjointSets& subclusters) {
+    staged_.add(column, lasers);
+    workAfter(1, partition, subclusters);
+  }
 
   /// Reads the block that is pending.
   void finishPending(Partition& partition, DisjointSets& subclusters) {
@@ -75,6 +83,7 @@ class BlockScheduler {
   std::uint32_t columnsRead() const { return columns_read_; }
 
  private:
+  void workAfter(std::size_t columns, Partition& partition, DisjointSets& subclusters);
   void readPending(std::size_t columns, Partition& partition, DisjointSets& subclusters);
   std::size_t columnsToSpreadOver() const;
 

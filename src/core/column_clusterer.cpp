@@ -27,11 +27,15 @@ class ColumnClusterer::Rotation {
   /// subclusters = {}
   void begin(const Parameters& parameters);
   /// Event "reception of step s", for several steps.
-  void receive(std::size_t columns, std::size_t lasers, const CellSource& cells);
+  /// \param column the cells of the only one side by side, or nullptr
+  void receive(std::size_t columns, std::size_t lasers, const CellSource& cells, const Return* column = nullptr);
   /// Event "all steps processed".
   void update();
 
   bool isUsable() const { return usable_; }
+  void checkUsable() const {
+    if (!usable_) throw std::logic_error("lisco::ColumnClusterer: a column before begin (), or after an exception");
+  }
   std::size_t subclusterCount() const { return sizes_.size(); }
   const std::uint32_t* sizes() const { return sizes_.data(); }
   std::size_t returnCount() const;
@@ -50,7 +54,7 @@ class ColumnClusterer::Rotation {
   void readNear(std::size_t lasers, const CellSource& cells);
   void readUnordered(std::size_t lasers, const CellSource& cells);
   void prepareForColumns();
-  void receiveInSequence(std::size_t columns, std::size_t lasers, const CellSource& cells);
+  void receiveInSequence(std::size_t columns, std::size_t lasers, const CellSource& cells, const Return* column);
   void linkPartitions();
   void linkImages(std::size_t first);
   void shareRows();
@@ -142,7 +146,8 @@ void ColumnClusterer::Rotation::begin(const Parameters& parameters) {
   usable_ = true;
 }
 
-void ColumnClusterer::Rotation::receive(std::size_t columns, std::size_t lasers, const CellSource& cells) {
+void ColumnClusterer::Rotation::receive(std::size_t columns, std::size_t lasers, const CellSource& cells,
+                                        const Return* column) {
   if (parameters_.lasers != 0 && lasers > parameters_.lasers)
     throw std::invalid_argument("lisco::ColumnClusterer: a column of more cells than lasers were declared");
   if (columns == 0) return;
@@ -153,7 +158,7 @@ void ColumnClusterer::Rotation::receive(std::size_t columns, std::size_t lasers,
     receiveAtOnce(columns, lasers, cells);
   } else {
     prepareForColumns();
-    receiveInSequence(columns, lasers, cells);
+    receiveInSequence(columns, lasers, cells, column);
   }
   usable_ = true;
 }
@@ -300,7 +305,8 @@ void ColumnClusterer::Rotation::prepareForColumns() {
 }
 
 /// Whole blocks of columns are read at once; single columns are gathered into blocks, whose work is spread.
-void ColumnClusterer::Rotation::receiveInSequence(std::size_t columns, std::size_t lasers, const CellSource& cells) {
+void ColumnClusterer::Rotation::receiveInSequence(std::size_t columns, std::size_t lasers, const CellSource& cells,
+                                                  const Return* column) {
   Partition& partition = lastPartition();
   for (std::size_t first = 0; first < columns;) {
     const std::size_t count = std::min(columns - first, scheduler_.columnsLeft());
@@ -309,6 +315,8 @@ void ColumnClusterer::Rotation::receiveInSequence(std::size_t columns, std::size
       scheduler_.finishPending(partition, subclusters_);
       partition.readColumns(cells, first, count, lasers, scheduler_.columnsRead(), subclusters_);
       scheduler_.skipColumns(count);
+    } else if (column != nullptr) {
+      scheduler_.add(column, lasers, partition, subclusters_);
     } else {
       scheduler_.add(cells, first, count, lasers, partition, subclusters_);
     }
@@ -501,9 +509,14 @@ void ColumnClusterer::begin(const Parameters& parameters) {
   rotation_->begin(parameters);
 }
 
+void ColumnClusterer::addColumn(const Return* cells, std::size_t lasers) {
+  const auto cell_at = [cells](std::size_t laser, std::size_t) { return cells[laser]; };
+  rotation_->checkUsable();
+  rotation_->receive(1, lasers, CellSource(cell_at), cells);
+}
+
 void ColumnClusterer::receive(std::size_t columns, std::size_t lasers, const CellSource& cells) {
-  if (!rotation_->isUsable())
-    throw std::logic_error("lisco::ColumnClusterer: a column before begin (), or after an exception");
+  rotation_->checkUsable();
   rotation_->receive(columns, lasers, cells);
 }
 

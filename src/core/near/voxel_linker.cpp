@@ -109,7 +109,7 @@ std::size_t linkSome(VoxelGrid& grid, Brick& brick, std::size_t most, DisjointSe
     if (!other.is_linked) return false;
     return root == kNone || other.root == kNone || subclusters.find(root) != subclusters.find(other.root);
   });
-  std::size_t work = kNearBricks;
+  std::size_t work = 10;
   brick.is_new = false;
   grid.forEachClique(brick, [&](std::size_t voxel, std::uint32_t clique) {
     if (grid.cliques[clique].state != State::kNew) return;
