@@ -676,14 +676,14 @@ TEST(SegmentLinker, PutsReturnsOfTakenBinsIntoAnotherLayer) {
           unplaced += probe.put(laser, bin, 0.2 + 0.049 * i, 0.5 * static_cast<double>(laser)) ? 1 : 0;
     EXPECT_LE(unplaced, 200);
     EXPECT_EQ(probe.part().image.layers, static_cast<std::size_t>(in_a_bin));
-    EXPECT_EQ(probe.part().image.open_rows, 3 * static_cast<std::size_t>(in_a_bin));
+    EXPECT_EQ(probe.part().image.rows_in_memory, 3 * static_cast<std::size_t>(in_a_bin));
     probe.linkAll();
     EXPECT_EQ(difference(trueClusters(probe.points(), 0.05F), probe.clusters()), "");
   }
 }
 
-// A second row for one laser makes room for those of all; a third one for a few more.
-TEST(RangeImage, TakesMemoryForSecondRowsAtOnce) {
+// A first or second row for one laser makes room for those of all; a third one for a few more.
+TEST(RangeImage, TakesMemoryForRowsOfALayerAtOnce) {
   constexpr std::size_t kLasers = 64;
   lisco::RangeImage image;
   image.prepare(lisco::Tolerance(0.05F), kHints, 1024);
@@ -699,6 +699,7 @@ TEST(RangeImage, TakesMemoryForSecondRowsAtOnce) {
   EXPECT_EQ(image.cells.bytes(), two_layers);
   image.addLayer();
   image.openRow(image.rows[image.firstRowOf(7) + 2]);
+  EXPECT_GT(image.cells.bytes(), two_layers);
   EXPECT_LE(image.cells.bytes(), 5 * two_layers / 4);
 }
 

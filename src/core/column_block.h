@@ -25,8 +25,7 @@ class ColumnBlock {
     Return* const columns = addColumns(count, lasers);
     for (std::size_t laser = 0; laser < lasers_; ++laser) {
       if (laser < lasers) ring_.read(0, cells, laser, first, count);
-      for (std::size_t i = 0; i < count; ++i)
-        columns[i * stride_ + laser] = laser < lasers ? cellOfRing(i) : kNoReturn;
+      for (std::size_t i = 0; i < count; ++i) columns[i * stride_ + laser] = laser < lasers ? cellOfRing(i) : kNoReturn;
     }
   }
 

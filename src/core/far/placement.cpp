@@ -44,9 +44,9 @@ class Placement {
     turnToStart();
     // The bin of the block's first cell if the laser's returns go on as before.
     const RangeImage::Row& row = firstRow();
-    first_bin_ = row.isEmpty() ? static_cast<std::int64_t>(RangeImage::kMargin) + first_column_ -
-                                     std::int64_t{image_.first_column}
-                               : row.next_bin + first_column_ - std::int64_t{row.next_column};
+    first_bin_ = row.next_bin == RangeImage::kNoBin ? static_cast<std::int64_t>(RangeImage::kMargin) + first_column_ -
+                                                          std::int64_t{image_.first_column}
+                                                    : row.next_bin + first_column_ - std::int64_t{row.next_column};
     ColumnBits left = info_.far;
     while (left != 0) {
       const ColumnBits together = left & before(firstOffBin(left));
@@ -136,18 +136,15 @@ class Placement {
 
   /// \return the returns that are stored; the bins of the others are taken in all rows
   ColumnBits store(ColumnBits which) {
-    ColumnBits left = which & ~storeInRow(image_.firstRowOf(laser_), which);
-    for (std::size_t layer = 1; left != 0; ++layer) {
+    ColumnBits left = which;
+    for (std::size_t layer = 0; left != 0; ++layer) {
       if (layer == image_.layers) {
         if (!image_.isLayerWorthwhile()) break;
         image_.addLayer();
       }
       const std::size_t number = image_.firstRowOf(laser_) + layer;
       RangeImage::Row& row = image_.rows[number];
-      if (row.isEmpty()) {
-        image_.openRow(row);
-        row.next_bin = 0;
-      }
+      if (!row.is_open) image_.openRow(row);
       left &= ~storeInRow(number, left);
     }
     return which & ~left;

@@ -16,6 +16,7 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr RangeImage::Row kNewRow{RangeImage::kNoCell, false, kInfinity, -kInfinity, RangeImage::kNoBin, 0};
 
 }  // namespace
 
@@ -53,7 +54,7 @@ void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hint
   const std::size_t lasers_before = laserCount();
   rows.clear();
   layers = 1;
-  open_rows = 0;
+  rows_in_memory = 0;
   addLasers(lasers_before);
 }
 
@@ -77,30 +78,35 @@ void RangeImage::expectColumns(std::size_t columns) {
   const std::size_t former = stride;
   setBins(columns);
   if (stride <= former) return;
-  reserveOpenRows();
-  cells.widenRows(open_rows, former, kMargin + end);
-  for (Row& row : rows) row.first_cell = row.first_cell / former * stride;
+  cells.reserveRows(rowsExpected());
+  cells.widenRows(rows_in_memory, former, kMargin + end);
+  for (Row& row : rows)
+    if (row.first_cell != kNoCell) row.first_cell = row.first_cell / former * stride;
 }
 
 void RangeImage::addLasers(std::size_t count) {
   const std::size_t before = laserCount();
   if (count <= before) return;
-  rows.resize(count * layers, {0, kInfinity, -kInfinity, kNoBin, 0});
+  rows.resize(count * layers, kNewRow);
   elevations_changed = true;
-  cells.reserveRows(open_rows + count - before);
-  for (std::size_t laser = before; laser < count; ++laser) openRow(rows[firstRowOf(laser)]);
+  // Side by side in the order of the lasers, though some see far returns later.
+  for (std::size_t laser = before; laser < count; ++laser) addMemory(rows[firstRowOf(laser)]);
 }
 
-void RangeImage::reserveOpenRows() {
+std::size_t RangeImage::rowsExpected() const {
   // Most lasers need a second row where some do; few need more.
-  const bool are_all_expected = layers == 2 && open_rows > laserCount();
-  cells.reserveRows(are_all_expected ? rows.size() : open_rows);
+  return layers <= 2 ? rows.size() : rows_in_memory;
+}
+
+void RangeImage::addMemory(Row& row) {
+  row.first_cell = cells.firstOf(rows_in_memory);
+  ++rows_in_memory;
+  cells.reserveRows(rowsExpected());
 }
 
 void RangeImage::openRow(Row& row) {
-  row.first_cell = cells.firstOf(open_rows);
-  ++open_rows;
-  reserveOpenRows();
+  if (row.first_cell == kNoCell) addMemory(row);
+  row.is_open = true;
   std::fill_n(cells.x + row.first_cell, stride, kNan);
 }
 
@@ -115,7 +121,7 @@ void RangeImage::addLayer() {
     const auto from = rows.begin() + static_cast<std::ptrdiff_t>(laser * layers);
     const auto to = rows.begin() + static_cast<std::ptrdiff_t>(laser * (layers + 1));
     std::copy_backward(from, from + static_cast<std::ptrdiff_t>(layers), to + static_cast<std::ptrdiff_t>(layers));
-    to[static_cast<std::ptrdiff_t>(layers)] = {0, to->lowest, to->highest, kNoBin, 0};
+    to[static_cast<std::ptrdiff_t>(layers)] = {kNoCell, false, to->lowest, to->highest, kNoBin, 0};
   }
   ++layers;
   elevations_changed = true;
@@ -205,9 +211,9 @@ std::size_t RangeImage::passed() const {
   std::int64_t front = std::numeric_limits<std::int64_t>::max();
   std::uint32_t column = 0;
   for (std::size_t row = 0; row < rows.size(); row += layers)
-    if (!rows[row].isEmpty()) column = std::max(column, rows[row].next_column);
+    if (rows[row].next_bin != kNoBin) column = std::max(column, rows[row].next_column);
   for (std::size_t row = 0; row < rows.size(); row += layers)
-    if (!rows[row].isEmpty()) front = std::min(front, rows[row].next_bin + (column - rows[row].next_column));
+    if (rows[row].next_bin != kNoBin) front = std::min(front, rows[row].next_bin + (column - rows[row].next_column));
   front = std::clamp<std::int64_t>(front, 0, static_cast<std::int64_t>(bins));
   return static_cast<std::size_t>(front) / kSector * kSector;
 }

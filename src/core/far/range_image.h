@@ -32,15 +32,15 @@ struct RangeImage {
   static constexpr std::size_t kMargin = 64;  ///< bins before the first return's, for staggered lasers
   static constexpr std::size_t kMaxLayers = 4;
   static constexpr std::size_t kNoRow = ~std::size_t{0};
+  static constexpr std::size_t kNoCell = ~std::size_t{0};
   static constexpr std::int64_t kNoBin = std::numeric_limits<std::int64_t>::min();
 
   struct Row {
-    std::size_t first_cell;  ///< of bin -kMargin, if it is in use
+    std::size_t first_cell;  ///< of bin -kMargin; kNoCell: it has no memory yet
+    bool is_open;            ///< false: its bins have no values yet, and hold no returns
     float lowest, highest;   ///< slopes measured on its laser so far: (z - tilt_x x - tilt_y y) / rho
-    std::int64_t next_bin;   ///< after the laser's last return, in its first row; kNoBin: the row has no returns yet
+    std::int64_t next_bin;   ///< after the laser's last return, in its first row; kNoBin: there was none
     std::uint32_t next_column;
-
-    bool isEmpty() const { return next_bin == kNoBin; }
   };
   struct Unplaced {
     float x, y, z;
@@ -118,9 +118,11 @@ struct RangeImage {
   void setBins(std::size_t columns);
   /// Adds a layer: every laser gets one more row, without memory yet. Rows are numbered anew.
   void addLayer();
-  /// Makes room for the open rows, and for those that will be.
-  void reserveOpenRows();
-  /// Gives a row its memory, all bins free.
+  /// Rows with memory, and those that will have it.
+  std::size_t rowsExpected() const;
+  /// Gives a row memory, without values yet.
+  void addMemory(Row& row);
+  /// Frees all bins of a row, before its first return.
   void openRow(Row& row);
 
   /// Index of a bin of a row among the cells.
@@ -162,7 +164,7 @@ struct RangeImage {
 
   std::vector<Row> rows;  ///< by laser and layer
   std::size_t layers = 1;
-  std::size_t open_rows = 0;                       ///< rows with memory
+  std::size_t rows_in_memory = 0;
   bool upside_down = false;                        ///< the rows come from bottom to top
   std::vector<float> lowest, highest;              ///< radians, of each row; turned over if upside down
   std::vector<float> lowest_above, highest_below;  ///< of all rows up to, and from, each one

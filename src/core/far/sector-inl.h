@@ -32,7 +32,7 @@ void cutSector(const RangeImage& image, std::int64_t number, float later, const 
   std::uint32_t count = rows.begin == 0 ? 0 : sector.begin[rows.begin];
   for (std::size_t row = rows.begin; row < rows.end; ++row) {
     sector.begin[row] = count;
-    if (image.rows[row].isEmpty()) continue;
+    if (!image.rows[row].is_open) continue;
     const std::size_t cell = image.at(row, first_bin);
     ColumnBits returns = 0;  // bit i: bin i of the sector
     for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {

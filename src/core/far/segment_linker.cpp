@@ -24,7 +24,7 @@ void linkSameBins(const RangeImage& image, std::size_t begin, std::size_t end, c
   const FloatVector r2 = hn::Set(kFloats, image.tolerance.squared());
   for (std::size_t row = rows.begin; row < rows.end; ++row) {
     const std::size_t next = image.rowInSameBins(row);
-    if (next == RangeImage::kNoRow || image.rows[row].isEmpty() || image.rows[next].isEmpty()) continue;
+    if (next == RangeImage::kNoRow || !image.rows[row].is_open || !image.rows[next].is_open) continue;
     const std::size_t upper = image.at(row, 0);
     const std::size_t lower = image.at(next, 0);
     // Pairs of the same two runs need one merge.
@@ -108,8 +108,7 @@ void searchOne(const RangeImage& image, const RangeImage::Unplaced& point, Disjo
     const std::int64_t to = std::min(last, center + before);
     if (from > to) continue;
     for (std::size_t row = 0; row < image.rows.size(); ++row) {
-      if (image.rows[row].isEmpty() || image.lowest[row] > elevation + around ||
-          image.highest[row] < elevation - around)
+      if (!image.rows[row].is_open || image.lowest[row] > elevation + around || image.highest[row] < elevation - around)
         continue;
       // Bins behind the last one are free.
       for (std::size_t cell = image.at(row, from); cell <= image.at(row, to); cell += kLanes) {

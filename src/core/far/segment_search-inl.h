@@ -161,7 +161,7 @@ class SegmentSearch {
     for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
       const Bins own(image_.cells, image_.at(row, bin) + k);
       for (std::uint32_t other = mask.first_row; other <= mask.last_row; ++other) {
-        if (image_.rows[other].isEmpty()) continue;
+        if (!image_.rows[other].is_open) continue;
         const std::size_t same = image_.at(other, bin) + k;
         const bool both_ways = other < row && !state_.masks[other].by_bins;
         const int first = both_ways ? -mask.before : other > row && other != compared ? 0 : 1;

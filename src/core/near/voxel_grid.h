@@ -128,8 +128,8 @@ struct VoxelGrid {
   std::vector<Clique> cliques;
   std::vector<Brick> bricks;
   std::vector<std::uint32_t> first_cliques;  ///< of the voxels of each brick
-  std::vector<std::uint32_t> new_bricks;  ///< in the order in which they became new, some perhaps again
-  std::size_t linked_bricks = 0;          ///< how many of these, the first ones, are linked
+  std::vector<std::uint32_t> new_bricks;     ///< in the order in which they became new, some perhaps again
+  std::size_t linked_bricks = 0;             ///< how many of these, the first ones, are linked
   BloomFilter filter;
   bool all_in_float_range = true;  ///< all voxels were numbered in float: their numbers do not wrap
 
@@ -168,7 +168,7 @@ struct VoxelGrid {
   std::size_t points_ = 0;
   std::vector<Slot> slots_;
   std::vector<Group> groups_;
-  std::vector<std::uint32_t> group_bricks_;  ///< numbers of the bricks of each group
+  std::vector<std::uint32_t> group_bricks_;                    ///< numbers of the bricks of each group
   std::array<RecentClique, kRecentCliques> recent_cliques_{};  ///< by the hash of the voxel
 };
 
@@ -193,9 +193,9 @@ void VoxelGrid::forEachBrickAround(const Key& key, Visit&& visit) const {
   for (std::uint32_t gz = firstOf(at[2]); gz <= lastOf(at[2]); ++gz)
     for (std::uint32_t gy = firstOf(at[1]); gy <= lastOf(at[1]); ++gy)
       for (std::uint32_t gx = firstOf(at[0]); gx <= lastOf(at[0]); ++gx) {
-        const Group* const group = findGroup({((key[0] >> 2) + gx - 1) & kGroupMask,
-                                              ((key[1] >> 2) + gy - 1) & kGroupMask,
-                                              ((key[2] >> 2) + gz - 1) & kGroupMask});
+        const Group* const group =
+            findGroup({((key[0] >> 2) + gx - 1) & kGroupMask, ((key[1] >> 2) + gy - 1) & kGroupMask,
+                       ((key[2] >> 2) + gz - 1) & kGroupMask});
         if (group == nullptr) continue;
         for (std::uint64_t left = group->bricks.used & kBrickNeighbourhood.of[place][gz * 9 + gy * 3 + gx]; left != 0;
              left &= left - 1) {
