@@ -8,7 +8,7 @@ namespace {
 
 /// Columns over which the work that is left is spread: more make it more even and leave more for the end
 /// (benchmarks/suite.sh latency).
-constexpr std::size_t kSpreadOver = 192;
+constexpr std::size_t kSpreadOver = 128;
 /// The same shortly before the end.
 constexpr std::size_t kMinSpreadOver = 48;
 
