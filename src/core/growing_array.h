@@ -31,8 +31,8 @@ void reserveInSteps(std::vector<T>& elements, std::size_t count) {
 
 /// A growing array whose elements have no value until they are written: growing touches no new memory. In a fresh
 /// process, first writes to pages are most of what a first scan costs more than later ones. From 2 MiB on, the array
-/// lies in huge pages, where the system gives them. A rest of more than three quarters of a huge page takes a whole one;
-/// a smaller rest lies in ordinary pages.
+/// lies in huge pages, where the system gives them. A rest of more than three quarters of a huge page takes a whole
+/// one; a smaller rest lies in ordinary pages.
 template <typename T>
 class GrowingArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>, "elements are bytes");

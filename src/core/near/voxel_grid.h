@@ -21,9 +21,9 @@ namespace lisco {
 ///
 /// A voxel is so small (eps / sqrt (3)) that its returns belong together: a thousand near returns are a handful of
 /// voxels. 4 x 4 x 4 voxels are a *brick*: one bit of a word for each voxel in use, so that the voxels around one come
-/// from a few words. So do the bricks around one: 4 x 4 x 4 of them are a *group*, found by a hash table. The returns of
-/// a run in a voxel are a *fragment*; fragments of a voxel that are all neighbours are a *clique*, nearly always all of
-/// the voxel.
+/// from a few words. So do the bricks around one: 4 x 4 x 4 of them are a *group*, found by a hash table. The returns
+/// of a run in a voxel are a *fragment*; fragments of a voxel that are all neighbours are a *clique*, nearly always all
+/// of the voxel.
 struct VoxelGrid {
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   static constexpr std::uint32_t kBrickMask = (std::uint32_t{1} << 30) - 1;
