@@ -29,9 +29,9 @@ struct Comb {
 /// 2^levels horizontal rows of returns, just too far apart, that grow side by side. Then, in a step per level, one
 /// return between each pair of neighbouring groups joins them: first pairs of rows, then pairs of pairs.
 Comb makeComb(unsigned levels) {
-  constexpr double kRange = 1000;     // metres
-  constexpr double kStep = 0.5;       // tolerances, from column to column
-  constexpr double kLaser = 0.75;     // tolerances, from laser to laser: rows are two lasers apart
+  constexpr double kRange = 1000;    // metres
+  constexpr double kStep = 0.5;      // tolerances, from column to column
+  constexpr double kLaser = 0.75;    // tolerances, from laser to laser: rows are two lasers apart
   constexpr std::size_t kSteps = 4;  // before the first that joins
   Comb comb;
   const std::size_t rows = std::size_t{1} << levels;

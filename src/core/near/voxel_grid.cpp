@@ -153,7 +153,8 @@ std::uint32_t VoxelGrid::makeBrick(const Key& key) {
 }
 
 VoxelGrid::Group& VoxelGrid::makeGroup(const Key& key) {
-  if (const Group* const found = findGroup(key)) return groups_[static_cast<std::size_t>(found - groups_.data())];
+  const std::uint32_t found = findGroup(key);
+  if (found != kNone) return groups_[found];
   const auto number = static_cast<std::uint32_t>(groups_.size());
   groups_.push_back({key, {}});
   if (2 * groups_.size() > slots_.size())

@@ -152,7 +152,7 @@ struct VoxelGrid {
     const std::uint32_t hash = key[0] * 73856093U ^ key[1] * 19349663U ^ key[2] * 83492791U;
     return hash ^ hash >> 15;
   }
-  const Group* findGroup(const Key& key) const;
+  std::uint32_t findGroup(const Key& key) const;
   Group& makeGroup(const Key& key);
   std::uint32_t makeBrick(const Key& key);
   void rehash(std::size_t count);
@@ -172,14 +172,13 @@ struct VoxelGrid {
   std::array<RecentClique, kRecentCliques> recent_cliques_{};  ///< by the hash of the voxel
 };
 
-/// The group of a key, nullptr if there is none.
-inline const VoxelGrid::Group* VoxelGrid::findGroup(const Key& key) const {
+/// The number of a group, kNone if there is none.
+inline std::uint32_t VoxelGrid::findGroup(const Key& key) const {
   const std::size_t mask = slots_.size() - 1;
   const std::uint32_t hash = hashOf(key);
   for (std::size_t i = hash & mask;; i = (i + 1) & mask) {
     const Slot& slot = slots_[i];
-    if (slot.group == kNone) return nullptr;
-    if (slot.hash == hash && areEqual(groups_[slot.group].key, key)) return &groups_[slot.group];
+    if (slot.group == kNone || (slot.hash == hash && areEqual(groups_[slot.group].key, key))) return slot.group;
   }
 }
 
@@ -193,18 +192,19 @@ void VoxelGrid::forEachBrickAround(const Key& key, Visit&& visit) const {
   for (std::uint32_t gz = firstOf(at[2]); gz <= lastOf(at[2]); ++gz)
     for (std::uint32_t gy = firstOf(at[1]); gy <= lastOf(at[1]); ++gy)
       for (std::uint32_t gx = firstOf(at[0]); gx <= lastOf(at[0]); ++gx) {
-        const Group* const group =
+        const std::uint32_t number =
             findGroup({((key[0] >> 2) + gx - 1) & kGroupMask, ((key[1] >> 2) + gy - 1) & kGroupMask,
                        ((key[2] >> 2) + gz - 1) & kGroupMask});
-        if (group == nullptr) continue;
-        for (std::uint64_t left = group->bricks.used & kBrickNeighbourhood.of[place][gz * 9 + gy * 3 + gx]; left != 0;
+        if (number == kNone) continue;
+        const SparseList& in_group = groups_[number].bricks;
+        for (std::uint64_t left = in_group.used & kBrickNeighbourhood.of[place][gz * 9 + gy * 3 + gx]; left != 0;
              left &= left - 1) {
           const auto other = static_cast<std::uint32_t>(__builtin_ctzll(left));
           // By how much numbers along an axis exceed those of the first of the 27.
           const std::uint32_t dx = 4 * gx + (other & 3U) - at[0] - 3;
           const std::uint32_t dy = 4 * gy + (other >> 2 & 3U) - at[1] - 3;
           const std::uint32_t dz = 4 * gz + (other >> 4) - at[2] - 3;
-          visit(std::size_t{dz * 9 + dy * 3 + dx}, group_bricks_[group->bricks.indexOf(other)]);
+          visit(std::size_t{dz * 9 + dy * 3 + dx}, group_bricks_[in_group.indexOf(other)]);
         }
       }
 }

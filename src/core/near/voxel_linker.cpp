@@ -23,6 +23,8 @@ constexpr unsigned kOrderBits = 21;
 /// New cliques that are linked at a time: fewer spread the work of columns more evenly, more need fewer look-ups
 /// (benchmarks/suite.sh latency).
 constexpr std::size_t kCliquesOfPart = 4;
+/// Of the bricks around one, in comparisons of cliques.
+constexpr std::size_t kWorkOfFinding = 10;
 
 /// Finds the bricks around one that are in use and wanted.
 /// \param wanted callable as bool (const Brick&)
@@ -109,7 +111,7 @@ std::size_t linkSome(VoxelGrid& grid, Brick& brick, std::size_t most, DisjointSe
     if (!other.is_linked) return false;
     return root == kNone || other.root == kNone || subclusters.find(root) != subclusters.find(other.root);
   });
-  std::size_t work = 10;
+  std::size_t work = kWorkOfFinding;
   brick.is_new = false;
   grid.forEachClique(brick, [&](std::size_t voxel, std::uint32_t clique) {
     if (grid.cliques[clique].state != State::kNew) return;

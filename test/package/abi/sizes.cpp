@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdio>
 
-#include <pcl/filters/lisco_ground_filter.h>
 #include <pcl/features/lisco_cluster_features.h>
+#include <pcl/filters/lisco_ground_filter.h>
 #include <pcl/io/lisco_point_cloud2.h>
 #include <pcl/point_types.h>
 #include <pcl/segmentation/lisco_cluster_extraction.h>
