@@ -30,8 +30,8 @@ inline void sortLiscoClusters(std::vector<PointIndices>& clusters) {
 struct LiscoClusterPlaces {
   std::vector<index_t*> next;  ///< of each subcluster: where its next point goes; nullptr: its cluster has no place yet
   std::vector<index_t*> last;  ///< the same from the last point backwards: behind where the next one goes
-  std::vector<std::size_t> order;
-  std::vector<PointIndices> ordered;
+  std::vector<std::size_t> order;     ///< of the clusters, by their first points
+  std::vector<PointIndices> ordered;  ///< the clusters in that order, while they are moved
 };
 
 /** \brief Appends subclusters of accepted sizes to a vector as PCL's clusters, in the order of their first place (). */
