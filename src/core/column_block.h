@@ -15,17 +15,16 @@ namespace lisco {
 class ColumnBlock {
  public:
   /// Appends a column; the block holds RingBlock::kColumns.
-  void add(const Return* cells, std::size_t lasers) {
-    Return* const column = addColumns(1, lasers);
-    std::copy_n(cells, lasers, column);
-    std::fill(column + lasers, column + lasers_, kNoReturn);
-  }
+  void add(const Return* cells, std::size_t lasers) { std::copy_n(cells, lasers, addColumns(1, lasers)); }
   /// Appends several columns.
   void add(const CellSource& cells, std::size_t first, std::size_t count, std::size_t lasers) {
     Return* const columns = addColumns(count, lasers);
-    for (std::size_t laser = 0; laser < lasers_; ++laser) {
-      if (laser < lasers) ring_.read(0, cells, laser, first, count);
-      for (std::size_t i = 0; i < count; ++i) columns[i * stride_ + laser] = laser < lasers ? cellOfRing(i) : kNoReturn;
+    for (std::size_t laser = 0; laser < lasers; ++laser) {
+      ring_.read(0, cells, laser, first, count);
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t at = RingBlock::kMargin + i;
+        columns[i * stride_ + laser] = {ring_.x[at], ring_.y[at], ring_.z[at], ring_.source_index[i]};
+      }
     }
   }
 
@@ -54,12 +53,14 @@ class ColumnBlock {
     return ((lasers + kLine - 1) / kLine | 1U) * kLine;
   }
 
-  /// \return the first of some new columns, without values
+  /// \return the first of some new columns: the cells of their lasers, without values, and behind them no returns
   Return* addColumns(std::size_t count, std::size_t lasers) {
     if (lasers > stride_) widen(strideFor(lasers));
     for (; lasers_ < lasers; ++lasers_)
       for (std::size_t column = 0; column < columns_; ++column) cells_[column * stride_ + lasers_] = kNoReturn;
     Return* const first = cells_.data() + columns_ * stride_;
+    for (std::size_t i = 0; i < count; ++i)
+      std::fill(first + i * stride_ + lasers, first + i * stride_ + lasers_, kNoReturn);
     columns_ += count;
     return first;
   }
@@ -71,11 +72,6 @@ class ColumnBlock {
                   wider.begin() + static_cast<std::ptrdiff_t>(column * stride));
     cells_.swap(wider);
     stride_ = stride;
-  }
-
-  Return cellOfRing(std::size_t i) const {
-    return {ring_.x[RingBlock::kMargin + i], ring_.y[RingBlock::kMargin + i], ring_.z[RingBlock::kMargin + i],
-            ring_.source_index[i]};
   }
 
   std::vector<Return> cells_;  ///< column by column

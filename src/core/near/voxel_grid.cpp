@@ -111,14 +111,13 @@ void VoxelGrid::addFragment(const Key& voxel, const Box& box, std::uint32_t frag
       return;
     }
   }
-  const Key key{voxel[0] >> 2, voxel[1] >> 2, voxel[2] >> 2};
-  const std::uint32_t brick_number = makeBrick(key);
+  const std::uint32_t brick_number = makeBrick(containerOf(voxel));
   Brick& brick = bricks[brick_number];
   if (!brick.is_new) {
     brick.is_new = true;
     new_bricks.push_back(brick_number);
   }
-  std::uint32_t& first = firstClique(brick, (voxel[0] & 3U) | (voxel[1] & 3U) << 2 | (voxel[2] & 3U) << 4);
+  std::uint32_t& first = firstClique(brick, placeOf(voxel));
   for (std::uint32_t i = first; i != kNone; i = cliques[i].next_in_voxel) {
     Clique& clique = cliques[i];
     if (!(Box::squaredSpan(clique.box, box) < tolerance.squared())) continue;
@@ -142,8 +141,8 @@ void VoxelGrid::addTo(Clique& clique, const Box& box, std::uint32_t fragment, st
 }
 
 std::uint32_t VoxelGrid::makeBrick(const Key& key) {
-  Group& group = makeGroup({key[0] >> 2, key[1] >> 2, key[2] >> 2});
-  const std::uint32_t place = (key[0] & 3U) | (key[1] & 3U) << 2 | (key[2] & 3U) << 4;
+  Group& group = makeGroup(containerOf(key));
+  const std::uint32_t place = placeOf(key);
   if (group.bricks.has(place)) return group_bricks_[group.bricks.indexOf(place)];
   const auto number = static_cast<std::uint32_t>(bricks.size());
   bricks.push_back({key, kNone, {}, false, false});

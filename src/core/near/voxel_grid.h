@@ -54,9 +54,7 @@ struct VoxelGrid {
     std::uint32_t capacity = 0;  ///< of the list
 
     bool has(std::uint32_t place) const { return (used >> place & 1U) != 0; }
-    std::size_t indexOf(std::uint32_t place) const {
-      return begin + countBits(used & ((std::uint64_t{1} << place) - 1));
-    }
+    std::size_t indexOf(std::uint32_t place) const { return begin + countBits(used & ~bitsFrom(place)); }
     /// Adds a place that is not in use. The list moves to the end of the array when it outgrows its capacity.
     /// \return its index
     std::size_t add(std::uint32_t place, std::uint32_t value, std::vector<std::uint32_t>& lists);
@@ -75,8 +73,7 @@ struct VoxelGrid {
   /// A brick among the 27 around one.
   struct NearBrick {
     std::size_t mask;  ///< which of the 27
-    std::uint64_t occupied;
-    std::uint32_t cliques;
+    SparseList voxels;
   };
 
   /// Which bricks there are, seen from above: a bit for two by two of them, shared by others of the same hash.
@@ -146,6 +143,10 @@ struct VoxelGrid {
     std::uint32_t group = kNone;
   };
 
+  /// Of the brick of a voxel, or of the group of a brick.
+  static Key containerOf(const Key& key) { return {key[0] >> 2, key[1] >> 2, key[2] >> 2}; }
+  /// There, as in Neighbourhood.
+  static std::uint32_t placeOf(const Key& key) { return (key[0] & 3U) | (key[1] & 3U) << 2 | (key[2] & 3U) << 4; }
   static bool areEqual(const Key& a, const Key& b) { return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2])) == 0; }
   static std::uint32_t hashOf(const Key& key) {
     // Teschner et al. 2003, with a final mix so that flat scenes use the whole table.
@@ -185,7 +186,8 @@ inline std::uint32_t VoxelGrid::findGroup(const Key& key) const {
 template <typename Visit>
 void VoxelGrid::forEachBrickAround(const Key& key, Visit&& visit) const {
   const Key at{key[0] & 3U, key[1] & 3U, key[2] & 3U};
-  const std::uint32_t place = at[0] | at[1] << 2 | at[2] << 4;
+  const std::uint32_t place = placeOf(key);
+  const Key own = containerOf(key);
   // Along each axis, the bricks around lie in the group before the own one (0), in it (1), and in the next one (2).
   const auto firstOf = [](std::uint32_t number) { return number == 0 ? 0U : 1U; };
   const auto lastOf = [](std::uint32_t number) { return number == 3 ? 2U : 1U; };
@@ -193,8 +195,7 @@ void VoxelGrid::forEachBrickAround(const Key& key, Visit&& visit) const {
     for (std::uint32_t gy = firstOf(at[1]); gy <= lastOf(at[1]); ++gy)
       for (std::uint32_t gx = firstOf(at[0]); gx <= lastOf(at[0]); ++gx) {
         const std::uint32_t number =
-            findGroup({((key[0] >> 2) + gx - 1) & kGroupMask, ((key[1] >> 2) + gy - 1) & kGroupMask,
-                       ((key[2] >> 2) + gz - 1) & kGroupMask});
+            findGroup({(own[0] + gx - 1) & kGroupMask, (own[1] + gy - 1) & kGroupMask, (own[2] + gz - 1) & kGroupMask});
         if (number == kNone) continue;
         const SparseList& in_group = groups_[number].bricks;
         for (std::uint64_t left = in_group.used & kBrickNeighbourhood.of[place][gz * 9 + gy * 3 + gx]; left != 0;

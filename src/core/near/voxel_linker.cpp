@@ -33,7 +33,7 @@ std::size_t findNear(const VoxelGrid& grid, const VoxelGrid::Key& key, NearBrick
   std::size_t count = 0;
   grid.forEachBrickAround(key, [&](std::size_t mask, std::uint32_t number) {
     const Brick& brick = grid.bricks[number];
-    if (wanted(brick)) near[count++] = {mask, brick.voxels.used, brick.voxels.begin};
+    if (wanted(brick)) near[count++] = {mask, brick.voxels};
   });
   return count;
 }
@@ -44,12 +44,11 @@ template <typename Visit>
 void forEachAround(const VoxelGrid& grid, std::size_t voxel, const NearBrick* near, std::size_t count,
                    std::uint64_t in_own_brick, Visit&& visit) {
   for (std::size_t i = 0; i < count; ++i) {
-    std::uint64_t around = near[i].occupied & kNeighbourhood.of[voxel][near[i].mask];
+    std::uint64_t around = near[i].voxels.used & kNeighbourhood.of[voxel][near[i].mask];
     if (near[i].mask == kOwnBrick) around &= in_own_brick;
     for (; around != 0; around &= around - 1) {
-      const std::uint64_t before = (around & -around) - 1;
-      const auto rank = countBits(near[i].occupied & before);
-      for (std::uint32_t other = grid.first_cliques[near[i].cliques + rank]; other != kNone;
+      const auto place = static_cast<std::uint32_t>(__builtin_ctzll(around));
+      for (std::uint32_t other = grid.first_cliques[near[i].voxels.indexOf(place)]; other != kNone;
            other = grid.cliques[other].next_in_voxel)
         visit(other);
     }
@@ -230,7 +229,7 @@ void VoxelLinker::linkInOrder(VoxelGrid& grid, DisjointSets& subclusters) {
     std::size_t count = 0;
     const auto add = [&](std::size_t mask, const OrderedBrick& other) {
       const Brick& brick = grid.bricks[other.brick];
-      near[count++] = {mask, brick.voxels.used, brick.voxels.begin};
+      near[count++] = {mask, brick.voxels};
     };
     add(kOwnBrick, own);
     if (i + 1 < ordered_.size() && ordered_[i + 1].number == own.number + 1) add(kOwnBrick + 1, ordered_[i + 1]);
