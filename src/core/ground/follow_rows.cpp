@@ -25,14 +25,15 @@ constexpr float kKnown = 1.5F;        // most slack of what may contradict
 constexpr float kWellKnown = 0.15F;   // most slack of what decides
 constexpr float kNearlyKnown = 0.5F;  // most slack of what decides where the ground seems to go on
 constexpr float kAtMap = 0.09F, kMaxSlack = 0.03F, kLevelAtMap = 0.05F;
-constexpr float kSure = 0.05F;         // slack and height, even where a surface rises
-constexpr float kFoot = 0.03F;         // height, even at the foot of a wall
-constexpr float kAboveMap = 0.15F;     // contradicts
-constexpr float kKnownHeight = 0.06F;  // even among returns of which most are higher
+constexpr float kSure = 0.05F;                                  // slack and height, even where a surface rises
+constexpr float kFoot = 0.03F;                                  // height, even at the foot of a wall
+constexpr float kAboveMap = 0.08F;                              // contradicts
+constexpr float kSmoothAboveMap = 0.13F, kSmoothRange = 40.0F;  // contradicts a smooth surface up to this distance
+constexpr float kKnownHeight = 0.06F;                           // even among returns of which most are higher
 
 // The ground of the same column.
 constexpr float kAtColumn = 0.16F, kAtColumnGrowth = 0.03F, kAtColumnMost = 0.15F;
-constexpr float kLevel = 0.15F, kLevelGrowth = 0.1F, kLevelMost = 0.8F, kSameSlope = 0.15F;
+constexpr float kLevel = 0.15F, kLevelGrowth = 0.11F, kLevelMost = 0.8F, kSameSlope = 0.2F;
 constexpr float kFirst = 0.1F, kFirstGrowth = 0.04F, kFirstLevelGrowth = 0.12F, kFirstMost = 10.0F;
 constexpr float kFirstHighest = 0.2F, kFirstHighestGrowth = 0.3F;
 constexpr float kBend = 0.13F, kBendGrowth = 0.1F, kLineBend = 0.2F, kLineKnown = 0.3F;
@@ -123,9 +124,15 @@ HWY_INLINE Mask areTooHigh(const Column& column) {
   return hn::AndNot(hn::Lt(column.above, set(-kNearBelow)), hn::Gt(column.height, hn::Add(column.limit, set(kStepUp))));
 }
 
+/// How far the ground may be above the map's, in a surface that is smooth or may be.
+HWY_INLINE Floats mostAboveMap(const Mapped& map, Floats rho, Mask smooth) {
+  const Mask near = hn::And(smooth, hn::Lt(rho, set(kSmoothRange)));
+  return hn::Add(select(near, set(kSmoothAboveMap), set(kAboveMap)), map.slack);
+}
+
 /// Likewise: the map has the ground clearly lower.
-HWY_INLINE Mask areAboveMap(const Mapped& map) {
-  return hn::And(hn::Le(map.slack, set(kLineKnown)), hn::Ge(map.above, hn::Add(set(kAboveMap), map.slack)));
+HWY_INLINE Mask areAboveMap(const Column& column, const Mapped& map) {
+  return hn::And(hn::Le(map.slack, set(kLineKnown)), hn::Ge(map.above, mostAboveMap(map, column.rho, column.valid)));
 }
 
 /// Returns on the ground, whatever the rows above show: both the map and the column have it there.
@@ -226,7 +233,9 @@ HWY_INLINE Mask foundByMap(const Mapped& map, const Above& above, Mask flat, Mas
 /// Ground that continues the column's.
 HWY_INLINE Mask foundByColumn(const Column& column, const Mapped& map, const Above& above, Mask flat, Mask obstacle,
                               Floats steepest) {
-  const Mask first = column.first, fits_map = hn::Lt(map.above, hn::Add(set(kAboveMap), map.slack));
+  const Mask first = column.first;
+  const Mask smooth = hn::AndNot(above.surface, hn::And(hn::And(flat, above.seen), goesOn(above, column.slope)));
+  const Mask fits_map = hn::Lt(map.above, mostAboveMap(map, column.rho, smooth));
   const auto distance = column.distance, near = hn::Min(distance, set(kFirstMost)), off = hn::Abs(column.above);
   // At its height.
   const auto at_column =
@@ -325,7 +334,8 @@ HWY_INLINE Found followRow(const FollowedRow& row, Floats steepest) {
       const Column& column = columns[i];
       const Mapped map = maps[i] = lookDown(*row.sector, column.rho, column.height, column.valid);
       const auto too_high = areTooHigh(column);
-      are_objects = are_objects && hn::AllFalse(kLanes, hn::AndNot(hn::Or(too_high, areAboveMap(map)), column.valid));
+      are_objects =
+          are_objects && hn::AllFalse(kLanes, hn::AndNot(hn::Or(too_high, areAboveMap(column, map)), column.valid));
       are_ground = are_ground &&
                    hn::AllFalse(kLanes, hn::AndNot(hn::AndNot(too_high, areWhereExpected(column, map)), column.valid));
     }
