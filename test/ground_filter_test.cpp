@@ -289,6 +289,33 @@ TEST(GroundFilter, FiltersAScanByItsOwnEstimates) {
   EXPECT_EQ(kept.sensor_height, 1.7F);
 }
 
+TEST(GroundFilter, GoesOnAfterAVisitorsException) {
+  const Scan scan = planeWithWall(16, 200, 30.0);
+  std::size_t visits = 0;
+  std::vector<std::uint8_t> decided(scan.cells.size());
+  const auto visit = [&](std::size_t column, const std::uint8_t* ground, std::size_t lasers) {
+    for (std::size_t laser = 0; laser < lasers; ++laser) decided[laser * scan.columns + column] = ground[laser];
+    if (++visits % 3 == 0) throw std::runtime_error("a visitor's");
+  };
+  lisco::GroundFilter filter;
+  filter.begin({}, scan.lasers);
+  std::vector<lisco::Return> cells(scan.lasers);
+  for (std::size_t column = 0; column < scan.columns; ++column) {
+    for (std::size_t laser = 0; laser < scan.lasers; ++laser) cells[laser] = scan.cells[laser * scan.columns + column];
+    try {
+      filter.addColumn(cells.data(), cells.size(), visit);
+    } catch (const std::runtime_error&) {
+    }
+  }
+  while (visits < scan.columns) {
+    try {
+      filter.finish(visit);
+    } catch (const std::runtime_error&) {
+    }
+  }
+  EXPECT_EQ(decided, filterByColumns(scan));
+}
+
 TEST(GroundFilter, RejectsBadCallsAndParameters) {
   const auto ignore = [](std::size_t, const std::uint8_t*, std::size_t) {};
   const std::vector<lisco::Return> cells(5, lisco::kNoReturn);

@@ -45,11 +45,11 @@ class GroundFilter::State {
   void addAll(std::size_t columns, const CellSource& cells, std::uint8_t* ground);
 
  private:
-  static constexpr std::size_t kVisitsTwice = Block::kColumns / 2;
-
-  void decideWaiting();
+  void measureWaiting();
+  void decideMeasured();
   void visitNext(const Visitor& visit);
-  void decide(std::size_t first, std::size_t count, std::uint8_t* ground, std::size_t stride);
+  void measure(std::size_t first);
+  void decide(std::size_t count, std::uint8_t* ground, std::size_t stride);
   void tellMap();
   void estimatePlane(std::size_t first);
 
@@ -58,11 +58,14 @@ class GroundFilter::State {
   std::size_t lasers_ = 0;
   bool begun_ = false;
   Columns received_;
-  std::size_t waiting_ = 0;                                  // columns received and not decided
-  std::array<std::size_t, Block::kColumns> cell_counts_{};   // of these columns
-  std::size_t ready_ = 0, ready_end_ = 0;                    // columns of the latest block decided and not visited
-  std::array<std::size_t, Block::kColumns> ready_counts_{};  // cells of the columns of the latest block
-  std::size_t visited_ = 0;                                  // columns, from begin () on
+  std::size_t waiting_ = 0;                                 // columns received and not measured
+  std::array<std::size_t, Block::kColumns> cell_counts_{};  // of these columns
+  // The latest block measured:
+  std::array<std::size_t, Block::kColumns> block_counts_{};  // cells of its columns
+  std::size_t block_end_ = 0;                                // number of its columns
+  std::size_t ready_ = 0;                                    // the first of them that is not visited
+  bool is_decided_ = true;
+  std::size_t visited_ = 0;  // columns, from begin () on
   std::vector<std::uint8_t> ready_ground_, column_ground_;
   Block block_;
   std::uint64_t block_number_ = 0;
@@ -88,7 +91,8 @@ void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t 
   order_.begin(lasers);
   map_.begin();
   follower_.begin(lasers, max_slope_);
-  waiting_ = ready_ = ready_end_ = visited_ = 0;
+  waiting_ = ready_ = block_end_ = visited_ = 0;
+  is_decided_ = true;
   block_number_ = 0;
   is_told_ = true;
   plane_estimator_.begin(parameters, max_slope_, lasers);
@@ -98,6 +102,7 @@ void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t 
 void GroundFilter::State::add(const Return* cells, std::size_t lasers, const Visitor& visit) {
   if (!begun_) throw std::logic_error("lisco::GroundFilter: addColumn before begin");
   if (lasers > lasers_) throw std::invalid_argument("lisco::GroundFilter: more cells than lasers");
+  if (waiting_ == Block::kColumns) measureWaiting();  // an exception of `visit` has prevented it
   for (std::size_t laser = 0; laser < lasers_; ++laser) {
     const Return cell = laser < lasers ? cells[laser] : kNoReturn;
     const std::size_t i = laser * Block::kColumns + waiting_;
@@ -106,37 +111,43 @@ void GroundFilter::State::add(const Return* cells, std::size_t lasers, const Vis
     received_.z[i] = cell.z;
   }
   cell_counts_[waiting_++] = lasers;
-  if (waiting_ == Block::kColumns) {
-    decideWaiting();
-    return;
-  }
-  tellMap();
-  for (std::size_t visits = waiting_ == kVisitsTwice ? 2 : 1; visits > 0 && ready_ < ready_end_; --visits)
-    visitNext(visit);
+  if (is_decided_)
+    tellMap();
+  else
+    decideMeasured();
+  if (ready_ < block_end_) visitNext(visit);
+  if (waiting_ == Block::kColumns) measureWaiting();
 }
 
 void GroundFilter::State::finish(const Visitor& visit) {
   if (!begun_) return;
-  while (ready_ < ready_end_) visitNext(visit);
+  if (!is_decided_) decideMeasured();
+  while (ready_ < block_end_) visitNext(visit);
   if (waiting_ == 0) return;
   for (std::size_t column = waiting_; column < Block::kColumns; ++column) received_.clear(column, lasers_);
-  decideWaiting();
-  while (ready_ < ready_end_) visitNext(visit);
+  measureWaiting();
+  decideMeasured();
+  while (ready_ < block_end_) visitNext(visit);
 }
 
-/// The columns decided together are visited as further ones come, so that the work is spread evenly: the last column of
-/// a block decides, the others visit one column each, and one of them two.
-void GroundFilter::State::decideWaiting() {
-  ready_counts_ = cell_counts_;
-  ready_ = 0;
-  ready_end_ = waiting_;
-  waiting_ = 0;
+/// A block's work is spread over columns, each of which visits one, too: the last of the block measures, the next one
+/// decides, and the one after that tells the map.
+void GroundFilter::State::measureWaiting() {
+  block_counts_ = cell_counts_;
+  block_end_ = waiting_;
+  ready_ = waiting_ = 0;
+  is_decided_ = false;
+  measure(0);
+}
+
+void GroundFilter::State::decideMeasured() {
+  is_decided_ = true;
   std::fill(ready_ground_.begin(), ready_ground_.end(), std::uint8_t{0});
-  decide(0, ready_end_, ready_ground_.data(), Block::kColumns);
+  decide(block_end_, ready_ground_.data(), Block::kColumns);
 }
 
 void GroundFilter::State::visitNext(const Visitor& visit) {
-  const std::size_t column = ready_++, cells = ready_counts_[column];
+  const std::size_t column = ready_++, cells = block_counts_[column];
   for (std::size_t laser = 0; laser < cells; ++laser)
     column_ground_[laser] = ready_ground_[laser * Block::kColumns + column];
   visit(visited_++, column_ground_.data(), cells);
@@ -155,24 +166,31 @@ void GroundFilter::State::addAll(std::size_t columns, const CellSource& cells, s
       cells.read(laser, first, count, {&received_.x[i], &received_.y[i], &received_.z[i], source_indices.data()});
     }
     for (std::size_t column = count; column % Block::kColumns != 0; ++column) received_.clear(column, lasers_);
-    for (std::size_t column = 0; column < count; column += Block::kColumns)
-      decide(column, std::min(Block::kColumns, count - column), ground + first + column, columns);
+    for (std::size_t column = 0; column < count; column += Block::kColumns) {
+      measure(column);
+      decide(std::min(Block::kColumns, count - column), ground + first + column, columns);
+    }
   }
   begun_ = false;
 }
 
-/// Decides on `count` of the columns received.
-/// \param ground receives 1 for each cell on the ground, 0 for some of the others, in rows of `stride`
-void GroundFilter::State::decide(std::size_t first, std::size_t count, std::uint8_t* ground, std::size_t stride) {
+/// Measures a block of the columns received, and follows the ground along its first rows.
+void GroundFilter::State::measure(std::size_t first) {
   tellMap();
   ++block_number_;
   block_.measure(received_, first, parameters_.sensor);
   order_.update(block_);
   estimatePlane(first);
-  is_told_ = !plane_estimator_.isKnown();
   if (plane_estimator_.isKnown())
-    follower_.follow(block_, order_, plane_estimator_.plane(), map_, static_cast<std::uint32_t>(block_number_), ground,
-                     count, stride);
+    follower_.followFirstRows(block_, order_, plane_estimator_.plane(), map_,
+                              static_cast<std::uint32_t>(block_number_));
+}
+
+/// Decides on the first `count` columns of the block measured.
+/// \param ground receives 1 for each cell on the ground, 0 for some of the others, in rows of `stride`
+void GroundFilter::State::decide(std::size_t count, std::uint8_t* ground, std::size_t stride) {
+  is_told_ = !plane_estimator_.isKnown();
+  if (plane_estimator_.isKnown()) follower_.followOtherRows(block_, order_, map_, ground, count, stride);
 }
 
 /// Enters what the latest block has shown into the map, for the next one.

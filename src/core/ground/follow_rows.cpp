@@ -355,7 +355,7 @@ HWY_INLINE Found followRow(const FollowedRow& row, Floats steepest) {
   return found;
 }
 
-void followRows(const FollowSetting& setting, const FollowResult& result) {
+void followRows(const FollowSetting& setting, std::size_t first, std::size_t end, const FollowResult& result) {
   const auto steepest = set(setting.max_slope);
   // Looked up once: the bytes that are stored may be those of any pointer.
   const float* const rho = setting.block->rho.data();
@@ -368,8 +368,7 @@ void followRows(const FollowSetting& setting, const FollowResult& result) {
   Passed* const passed = result.passed;
   ground::Followed* const reached = result.followed;
   Found* const found = result.found;
-  const std::size_t size = setting.size;
-  for (std::size_t i = 0; i < size; ++i) {
+  for (std::size_t i = first; i < end; ++i) {
     const RowOrder::Row& row = rows[i];
     const Passed& before = row.down == RowOrder::kNone ? starts[i] : passed[row.down];
     if (returns[row.row] == 0) {
@@ -402,8 +401,8 @@ namespace lisco {
 
 HWY_EXPORT(followRows);
 
-void ground::followRows(const FollowSetting& setting, const FollowResult& result) {
-  HWY_DYNAMIC_DISPATCH(followRows)(setting, result);
+void ground::followRows(const FollowSetting& setting, std::size_t first, std::size_t end, const FollowResult& result) {
+  HWY_DYNAMIC_DISPATCH(followRows)(setting, first, end, result);
 }
 
 }  // namespace lisco

@@ -50,7 +50,8 @@ struct FollowResult {
   Found* found;
 };
 
-/// Follows the ground of a block's columns outwards, row by row in their order.
-void followRows(const FollowSetting& setting, const FollowResult& result);
+/// Follows the ground of a block's columns outwards, row by row in their order, from row `first` to before `end`; those
+/// before them have been followed.
+void followRows(const FollowSetting& setting, std::size_t first, std::size_t end, const FollowResult& result);
 
 }  // namespace lisco::ground

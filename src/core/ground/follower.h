@@ -21,12 +21,16 @@ class Follower {
  public:
   /// Allocates only if there are more lasers than ever before.
   void begin(std::size_t lasers, float max_slope);
+  /// Follows the first rows of a block.
   /// \param number of the block, from 1 on
   /// \param map tells of the blocks before
+  void followFirstRows(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map,
+                       std::uint32_t number);
+  /// Follows the other rows.
   /// \param ground receives 1 for each of the first `columns` cells of the lasers that is on the ground, in rows of
   ///        `stride`; 0 or nothing for the others
-  void follow(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map, std::uint32_t number,
-              std::uint8_t* ground, std::size_t columns, std::size_t stride);
+  void followOtherRows(const Block& block, const RowOrder& order, const GroundMap& map, std::uint8_t* ground,
+                       std::size_t columns, std::size_t stride);
   /// Tells the map of the block just followed.
   void tell(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map);
 
