@@ -307,7 +307,7 @@ TEST(GroundFilter, GoesOnAfterAVisitorsException) {
     } catch (const std::runtime_error&) {
     }
   }
-  while (visits < scan.columns) {
+  for (std::size_t attempt = 0; attempt < scan.columns && visits < scan.columns; ++attempt) {
     try {
       filter.finish(visit);
     } catch (const std::runtime_error&) {
