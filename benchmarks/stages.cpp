@@ -97,10 +97,7 @@ class StagedExtraction {
   void collect(const Problem& problem, Clusters& clusters) {
     pcl::detail::LiscoClusterWriter writer(clusterer_, problem.cloud->header, problem.min_size, problem.max_size,
                                            places_, clusters);
-    clusterer_.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-      writer.append(lisco::RunVisitor::From::kFirst, subcluster, count,
-                    [cells](std::size_t i) { return static_cast<pcl::index_t>(cells[i]); });
-    });
+    clusterer_.forEachRun(pcl::detail::LiscoRunAppender<decltype(writer)>{writer});
   }
 
   lisco::ColumnClusterer clusterer_;

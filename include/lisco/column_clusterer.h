@@ -74,10 +74,10 @@ class LISCO_EXPORT ColumnClusterer {
 
   /// Calls visit(source_indices, count, subcluster) for all returns, in groups of the same subcluster, of one laser and
   /// of consecutive columns: laser by laser, and the returns of each in the order of their columns. After update().
+  /// If visit takes const std::uint32_t* subclusters, too, that receives groups of one return each, several at once.
   template <typename Visit>
   void forEachRun(Visit&& visit) {
-    const auto visit_run = [&visit](RunVisitor::From, const std::uint32_t* source_indices, std::size_t count,
-                                    std::uint32_t subcluster) { visit(source_indices, count, subcluster); };
+    const RunVisitor::WithoutFrom<Visit> visit_run{visit};
     visitRuns(RunVisitor(visit_run), false);
   }
 

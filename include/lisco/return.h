@@ -100,7 +100,9 @@ class RunVisitor {
   enum class From { kFirst, kLast };
 
   /// \param visit callable as void (From from, const std::uint32_t* source_indices, std::size_t count,
-  ///        std::uint32_t subcluster)
+  ///        std::uint32_t subcluster). If it is callable as void (From from, const std::uint32_t* source_indices,
+  ///        std::size_t count, const std::uint32_t* subclusters), too, that receives runs of one return each, several at
+  ///        once; from the last backwards, they are to be taken from the last on
   template <typename Visit>
   explicit RunVisitor(Visit& visit)
       : context_(std::addressof(visit)),
@@ -115,9 +117,29 @@ class RunVisitor {
         visit_single_([](const void* context, From from, const std::uint32_t* subclusters, std::size_t count,
                          const std::uint32_t* source_indices) {
           Visit& visit_run = *static_cast<Visit*>(const_cast<void*>(context));
-          forEach(from, count,
-                  [&](std::size_t i) { visit_run(from, source_indices + i, std::size_t{1}, subclusters[i]); });
+          if constexpr (std::is_invocable_v<Visit&, From, const std::uint32_t*, std::size_t, const std::uint32_t*>)
+            visit_run(from, source_indices, count, subclusters);
+          else
+            forEach(from, count,
+                    [&](std::size_t i) { visit_run(from, source_indices + i, std::size_t{1}, subclusters[i]); });
         }) {}
+
+  /// A visit, as RunVisitor takes it, that leaves out From.
+  /// \tparam Visit callable as RunVisitor's, without its first argument
+  template <typename Visit>
+  struct WithoutFrom {
+    Visit& visit;
+
+    void operator()(From, const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster) const {
+      visit(source_indices, count, subcluster);
+    }
+    template <typename Called = Visit, typename = std::enable_if_t<std::is_invocable_v<
+                                           Called&, const std::uint32_t*, std::size_t, const std::uint32_t*>>>
+    void operator()(From, const std::uint32_t* source_indices, std::size_t count,
+                    const std::uint32_t* subclusters) const {
+      visit(source_indices, count, subclusters);
+    }
+  };
 
   /// Visits `count` runs, whose cells index `source_indices`.
   void operator()(From from, const Run* runs, std::size_t count, const std::uint32_t* source_indices) const {

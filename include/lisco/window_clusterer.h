@@ -63,8 +63,7 @@ class LISCO_EXPORT WindowClusterer {
   /// Visits all returns of the last window as ColumnClusterer::forEachRun does, until the next window ends.
   template <typename Visit>
   void forEachRun(Visit&& visit) {
-    const auto visit_run = [&visit](RunVisitor::From, const std::uint32_t* source_indices, std::size_t count,
-                                    std::uint32_t subcluster) { visit(source_indices, count, subcluster); };
+    const RunVisitor::WithoutFrom<Visit> visit_run{visit};
     visitRuns(RunVisitor(visit_run));
   }
 

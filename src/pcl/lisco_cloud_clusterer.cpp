@@ -122,18 +122,13 @@ void LiscoCloudClusterer::collect(const Indices* indices, const PCLHeader& heade
       if (subcluster != kNone) writer.place(subcluster);
     }
   }
-  using From = lisco::RunVisitor::From;
-  const auto append = [&](From from, const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-    writer.append(from, subcluster, count, [cells](std::size_t i) { return static_cast<index_t>(cells[i]); });
-  };
+  const LiscoRunAppender<decltype(writer)> append{writer};
   if (clusterer.threadCount() > 1) {
     writer.placeAll();
     clusterer.forEachRunFromBothEnds(append);
     if (is_sorted) writer.orderByFirstPoints();
   } else {
-    clusterer.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-      append(From::kFirst, cells, count, subcluster);
-    });
+    clusterer.forEachRun(append);
   }
 }
 

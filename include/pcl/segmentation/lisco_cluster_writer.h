@@ -87,6 +87,20 @@ class LiscoClusterWriter {
     next = is_first ? next + advance : next - advance;
   }
 
+  /** \brief Appends points one by one, each to the cluster of its subcluster.
+   * \param[in] from the last: in reverse order, as append () does
+   * \param[in] point_at callable as index_t (std::size_t i), below \a count
+   */
+  template <typename PointAt>
+  void appendSingle(From from, const std::uint32_t* subclusters, std::size_t count, PointAt&& point_at) {
+    if (from == From::kFirst) {
+      for (std::size_t i = 0; i < count; ++i) place(subclusters[i]);
+      appendPairs<1>(places_.next.data(), ignored_, subclusters, count, point_at);
+    } else {
+      appendPairs<-1>(places_.last.data(), ignored_from_last_ + kMaxIgnored, subclusters, count, point_at);
+    }
+  }
+
   /** \brief Orders the clusters by their first points, which all have been appended, instead of their places. */
   void orderByFirstPoints() {
     places_.order.clear();
@@ -117,6 +131,33 @@ class LiscoClusterWriter {
     copy_some(count - kStep);
   }
 
+  /** \brief Writes two points at a time: the place of the second does not wait for that of the first to be written.
+   * \tparam kStep 1: forwards; -1: backwards, where places are behind the points
+   * \param[in] next the places, by subcluster
+   */
+  template <std::ptrdiff_t kStep, typename PointAt>
+  static void appendPairs(index_t** next, const index_t* ignored, const std::uint32_t* subclusters, std::size_t count,
+                          PointAt&& point_at) {
+    constexpr std::ptrdiff_t kAt = kStep > 0 ? 0 : -1;
+    const auto number = [count](std::size_t i) { return (kStep > 0 ? i : count - 1 - i); };
+    const auto stepOf = [ignored](const index_t* place) { return (std::ptrdiff_t{place != ignored} * kStep); };
+    std::size_t i = 0;
+    for (; i + 1 < count; i += 2) {
+      const std::uint32_t a = subclusters[number(i)];
+      const std::uint32_t b = subclusters[number(i + 1)];
+      index_t* const place_a = next[a];
+      index_t* const place_b = next[b] + std::ptrdiff_t{a == b} * stepOf(next[b]);
+      place_a[kAt] = point_at(number(i));
+      place_b[kAt] = point_at(number(i + 1));
+      next[a] = place_a + stepOf(place_a);
+      next[b] = place_b + stepOf(place_b);
+    }
+    if (i == count) return;
+    index_t*& place = next[subclusters[number(i)]];
+    place[kAt] = point_at(number(i));
+    place += stepOf(place);
+  }
+
   index_t* begin(std::uint32_t size) {
     static_assert(std::is_nothrow_move_constructible<PointIndices>::value, "clusters that move keep their indices");
     clusters_.emplace_back();
@@ -132,6 +173,25 @@ class LiscoClusterWriter {
   index_t ignored_from_last_[kMaxIgnored];  ///< the same, from the last backwards
   std::vector<PointIndices>& clusters_;
   const std::size_t before_;  ///< clusters of others in the vector
+};
+
+/** \brief Appends what lisco::ColumnClusterer::forEachRun () visits; source indices are points. */
+template <typename Writer>
+struct LiscoRunAppender {
+  using From = lisco::RunVisitor::From;
+
+  Writer& writer;
+
+  void operator()(From from, const std::uint32_t* points, std::size_t count, std::uint32_t subcluster) const {
+    writer.append(from, subcluster, count, [points](std::size_t i) { return static_cast<index_t>(points[i]); });
+  }
+  void operator()(From from, const std::uint32_t* points, std::size_t count, const std::uint32_t* subclusters) const {
+    writer.appendSingle(from, subclusters, count, [points](std::size_t i) { return static_cast<index_t>(points[i]); });
+  }
+  template <typename Subcluster>
+  void operator()(const std::uint32_t* points, std::size_t count, Subcluster subcluster) const {
+    (*this)(From::kFirst, points, count, subcluster);
+  }
 };
 
 }  // namespace pcl::detail
