@@ -65,6 +65,46 @@ std::vector<std::uint32_t> visitedFromBothEnds(lisco::ColumnClusterer& clusterer
   return from_first;
 }
 
+/// Takes single returns several at once.
+struct ReturnVisit {
+  std::vector<std::array<std::uint32_t, 2>> returns;  ///< source indices and subclusters
+  std::size_t taken_at_once = 0;
+
+  void operator()(const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster) {
+    for (std::size_t i = 0; i < count; ++i) returns.push_back({source_indices[i], subcluster});
+  }
+  void operator()(const std::uint32_t* source_indices, std::size_t count, const std::uint32_t* subclusters) {
+    for (std::size_t i = 0; i < count; ++i) returns.push_back({source_indices[i], subclusters[i]});
+    taken_at_once += count;
+  }
+};
+
+TEST(Visits, HandOnSingleReturnsTogether) {
+  constexpr std::size_t kReturns = 5001;
+  Random random(1);
+  std::vector<lisco::Return> cells(kReturns);
+  for (std::size_t i = 0; i < kReturns; ++i) {
+    for (float* coordinate : {&cells[i].x, &cells[i].y, &cells[i].z})
+      *coordinate = static_cast<float>(random.between(1.0, 12.0));
+    cells[i].source_index = static_cast<std::uint32_t>(i);
+  }
+  lisco::Parameters parameters;
+  parameters.tolerance = 0.4F;
+  lisco::ColumnClusterer clusterer;
+  clusterer.begin(parameters);
+  clusterer.addColumns(kReturns, 1, [&](std::size_t, std::size_t column) { return cells[column]; });
+  clusterer.update();
+  ReturnVisit one_by_one;
+  clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster) {
+    one_by_one(source_indices, count, subcluster);
+  });
+  ReturnVisit at_once;
+  clusterer.forEachRun(at_once);
+  EXPECT_EQ(one_by_one.returns.size(), kReturns);
+  EXPECT_EQ(at_once.returns, one_by_one.returns);
+  EXPECT_EQ(at_once.taken_at_once, kReturns);
+}
+
 // One object with changing numbers of threads, some of them more than the lasers.
 TEST(Threads, GiveTheSubclustersOfOneThread) {
   lisco::ColumnClusterer alone;

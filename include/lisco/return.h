@@ -101,8 +101,8 @@ class RunVisitor {
 
   /// \param visit callable as void (From from, const std::uint32_t* source_indices, std::size_t count,
   ///        std::uint32_t subcluster). If it is callable as void (From from, const std::uint32_t* source_indices,
-  ///        std::size_t count, const std::uint32_t* subclusters), too, that receives runs of one return each, several at
-  ///        once; from the last backwards, they are to be taken from the last on
+  ///        std::size_t count, const std::uint32_t* subclusters), too, that receives runs of one return each, several
+  ///        at once; from the last backwards, they are to be taken from the last on
   template <typename Visit>
   explicit RunVisitor(Visit& visit)
       : context_(std::addressof(visit)),

@@ -118,16 +118,16 @@ HWY_INLINE Column columnOf(const FollowedRow& row, std::size_t k, Floats steepes
   return column;
 }
 
+/// The most height of ground above the map's. \param smooth whether the surface is smooth, or may be
+HWY_INLINE Floats mostAboveMap(const Mapped& map, Floats rho, Mask smooth) {
+  const Mask near = hn::And(smooth, hn::Lt(rho, set(kSmoothRange)));
+  return hn::Add(select(near, set(kSmoothAboveMap), set(kAboveMap)), map.slack);
+}
+
 /// Returns that are too high for ground, whatever the rows above show: it cannot rise so steeply from lower and nearer
 /// returns.
 HWY_INLINE Mask areTooHigh(const Column& column) {
   return hn::AndNot(hn::Lt(column.above, set(-kNearBelow)), hn::Gt(column.height, hn::Add(column.limit, set(kStepUp))));
-}
-
-/// How far the ground may be above the map's, in a surface that is smooth or may be.
-HWY_INLINE Floats mostAboveMap(const Mapped& map, Floats rho, Mask smooth) {
-  const Mask near = hn::And(smooth, hn::Lt(rho, set(kSmoothRange)));
-  return hn::Add(select(near, set(kSmoothAboveMap), set(kAboveMap)), map.slack);
 }
 
 /// Likewise: the map has the ground clearly lower.

@@ -10,13 +10,13 @@
 namespace lisco::ground {
 namespace {
 
+constexpr float kStartLimit = 0.2F;  // metres above the ground beneath the sensor
+
 /// The first rows are followed by the column that measures the block, the others by the next one, so that neither has
 /// more work than the other (benchmarks/suite.sh ground_latency).
 std::size_t firstRows(const RowOrder& order) {
   return order.rows().size() / 4;
 }
-
-constexpr float kStartLimit = 0.2F;  // metres above the ground beneath the sensor
 
 /// A byte for each of eight bits, 0 or 1, the lowest one first.
 std::array<std::uint8_t, 8> bytesOf(std::uint8_t bits) {
