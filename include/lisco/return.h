@@ -128,11 +128,13 @@ class RunVisitor {
   /// \tparam Visit callable as RunVisitor's, without its first argument
   template <typename Visit>
   struct WithoutFrom {
-    Visit& visit;
+    Visit& visit;  ///< which is called
 
+    /// Visits a run.
     void operator()(From, const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster) const {
       visit(source_indices, count, subcluster);
     }
+    /// Visits several runs of one return each, if `visit` takes them at once.
     template <typename Called = Visit, typename = std::enable_if_t<std::is_invocable_v<
                                            Called&, const std::uint32_t*, std::size_t, const std::uint32_t*>>>
     void operator()(From, const std::uint32_t* source_indices, std::size_t count,
