@@ -91,6 +91,21 @@ TEST(PclGroundFilter, FiltersUnorganizedCloudsInAnyOrder) {
   expectGround(cloud, ground);
 }
 
+TEST(PclGroundFilter, WritesItsIndicesOverThoseGiven) {
+  const auto cloud = scan();
+  auto given = std::make_shared<pcl::Indices>(cloud->size() / 2);
+  std::iota(given->begin(), given->end(), 0);
+  pcl::LiscoGroundFilter<pcl::PointXYZI> filter;
+  filter.setInputCloud(cloud);
+  filter.setIndices(given);
+  pcl::Indices apart;
+  filter.filter(apart);
+  ASSERT_FALSE(apart.empty());
+  ASSERT_LT(apart.size(), given->size());
+  filter.filter(*given);
+  EXPECT_EQ(*given, apart);
+}
+
 TEST(PclGroundFilter, KeepsTheCloudOrganized) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "PCL's library allocates the cloud, and Eigen frees it differently in sanitized code";

@@ -3,9 +3,9 @@
 #include "lisco/label_clusters.h"
 
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
 
+#include "core/strided_points.h"
 #include "lisco/cluster_order.h"
 #include "lisco/column_clusterer.h"
 
@@ -71,12 +71,8 @@ std::size_t labelClusters(const void* points, std::size_t count, std::size_t str
   check(count, parameters, labels);
   if (count > 0 && points == nullptr) throw std::invalid_argument("lisco::labelClusters: points must not be null");
   const std::size_t columns = count / parameters.lasers;
-  const auto* const bytes = static_cast<const unsigned char*>(points);
-  const auto cell_at = [=](std::size_t laser, std::size_t column) {
-    float xyz[3];
-    std::memcpy(xyz, bytes + (laser * columns + column) * stride, sizeof xyz);
-    return Return{xyz[0], xyz[1], xyz[2], 0};
-  };
+  const StridedPoints all{static_cast<const unsigned char*>(points), stride};
+  const auto cell_at = [=](std::size_t laser, std::size_t column) { return all.at(laser * columns + column); };
   ClusterLabeller labeller;
   return labeller.label(count, cell_at, parameters, labels);
 }

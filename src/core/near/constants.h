@@ -32,8 +32,6 @@ inline constexpr double kMinSortedTolerance = 1e-18;
 inline constexpr double kMaxSortedTolerance = 1e18;
 /// Of a voxel's number along an axis: converted by signed instructions of 32 bits.
 inline constexpr double kMaxVoxelNumber = 2147480000.0;
-/// Of the radix sort: a histogram of 8 KiB fits into the first-level cache.
-inline constexpr unsigned kDigitBits = 11;
 /// Work of a fragment beyond that of its returns, in returns: for dividing it among threads (threads).
 inline constexpr std::uint32_t kWorkOfFragment = 2;
 /// Single returns of a brick that are compared with each other instead of by voxels: one vector, at most.

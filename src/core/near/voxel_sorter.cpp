@@ -8,6 +8,7 @@
 #include "core/bits.h"
 #include "core/near/constants.h"
 #include "core/parallel.h"
+#include "core/radix_sort.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/near/voxel_sorter.cpp"
@@ -324,59 +325,10 @@ void VoxelSorter::divide() {
   std::swap(items_, scratch_);
 }
 
-/// Sorts the fragments of a slab by key. They are counted and moved two at a time: where both have the same digit, the
-/// second need not wait until the first one's count or place is written.
+/// Sorts the fragments of a slab by key.
 void VoxelSorter::sort(const Slab& slab) {
-  constexpr std::size_t kMaxPasses = 6;
-  const unsigned passes = (numbering_.bits + kDigitBits - 1) / kDigitBits;
-  const unsigned digit_bits = (numbering_.bits + passes - 1) / passes;
-  const std::uint64_t mask = (std::uint64_t{1} << digit_bits) - 1;
-  static_assert(kMaxPasses * kDigitBits >= 64, "the longest keys fit");
-  std::uint32_t places[kMaxPasses][std::size_t{1} << kDigitBits];
-  std::uint32_t others[kMaxPasses][std::size_t{1} << kDigitBits];  // counts of every second fragment
-  for (unsigned pass = 0; pass < passes; ++pass) {
-    std::fill_n(places[pass], mask + 1, 0);
-    std::fill_n(others[pass], mask + 1, 0);
-  }
-  std::uint64_t* from = items_.data() + slab.begin;
-  std::uint64_t* to = scratch_.data() + slab.begin;
-  const std::size_t count = slab.end - slab.begin;
-  const std::size_t even = count - count % 2;
-  const unsigned number_bits = number_bits_;  // a copy, which no store through a pointer may change
-  for (std::size_t i = 0; i < even; i += 2) {
-    std::uint64_t rest = from[i] >> number_bits;
-    std::uint64_t other = from[i + 1] >> number_bits;
-    for (unsigned pass = 0; pass < passes; ++pass, rest >>= digit_bits, other >>= digit_bits) {
-      ++places[pass][rest & mask];
-      ++others[pass][other & mask];
-    }
-  }
-  if (even < count) {
-    std::uint64_t rest = from[even] >> number_bits;
-    for (unsigned pass = 0; pass < passes; ++pass, rest >>= digit_bits) ++places[pass][rest & mask];
-  }
-  for (unsigned pass = 0; pass < passes; ++pass) {
-    std::uint32_t* const place = places[pass];
-    const std::uint32_t* const other = others[pass];
-    const unsigned shift = number_bits + pass * digit_bits;
-    const std::uint64_t first = from[0] >> shift & mask;
-    if (place[first] + other[first] == count) continue;  // the same digit in all
-    std::uint32_t sum = 0;
-    for (std::size_t digit = 0; digit <= mask; ++digit) sum += std::exchange(place[digit], sum) + other[digit];
-    for (std::size_t i = 0; i < even; i += 2) {
-      const std::uint64_t digit = from[i] >> shift & mask;
-      const std::uint64_t other_digit = from[i + 1] >> shift & mask;
-      const std::uint32_t at = place[digit];
-      const std::uint32_t other_at = place[other_digit] + static_cast<std::uint32_t>(digit == other_digit);
-      to[at] = from[i];
-      to[other_at] = from[i + 1];
-      place[digit] = at + 1;
-      place[other_digit] = other_at + 1;
-    }
-    if (even < count) to[place[from[even] >> shift & mask]] = from[even];
-    std::swap(from, to);
-  }
-  if (from != items_.data() + slab.begin) std::copy_n(from, count, to);
+  radixSort(items_.data() + slab.begin, scratch_.data() + slab.begin, slab.end - slab.begin, number_bits_,
+            numbering_.bits);
 }
 
 std::size_t VoxelSorter::endOfPlane(std::size_t begin, std::size_t end) const {

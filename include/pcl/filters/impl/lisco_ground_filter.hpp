@@ -20,19 +20,29 @@
 template <typename PointT>
 void pcl::LiscoGroundFilter<PointT>::applyFilter(Indices& indices) {
   const PointCloud& cloud = *this->input_;
-  indices.clear();
-  this->removed_indices_->clear();
-  // Copied, since points without an index are no returns here.
-  std::vector<std::array<float, 3>> points(cloud.size(), {0.0F, 0.0F, 0.0F});
-  std::vector<std::uint8_t> ground(cloud.size());
-  for (const auto index : *this->indices_) {
+  const Indices& selected = *this->indices_;  // may be the output, too
+  Indices& removed = *this->removed_indices_;
+  removed.clear();
+  for (const auto index : selected)
     if (index < 0 || static_cast<std::size_t>(index) >= cloud.size()) {
       PCL_ERROR("[pcl::%s::applyFilter] An index is not within the cloud!\n", this->getClassName().c_str());
+      indices.clear();
       return;
     }
-    const PointT& point = cloud[static_cast<std::size_t>(index)];
-    points[static_cast<std::size_t>(index)] = {point.x, point.y, point.z};
+  // Coordinates that lie apart in PointT are copied; so are selected points, among no returns.
+  const float* xyz = cloud.empty() ? nullptr : &cloud[0].x;
+  std::size_t stride = sizeof(PointT);
+  std::vector<std::array<float, 3>> copy;
+  if (xyz && (!this->fake_indices_ || &cloud[0].y != xyz + 1 || &cloud[0].z != xyz + 2)) {
+    copy.assign(cloud.size(), {0.0F, 0.0F, 0.0F});
+    for (const auto index : selected) {
+      const PointT& point = cloud[static_cast<std::size_t>(index)];
+      copy[static_cast<std::size_t>(index)] = {point.x, point.y, point.z};
+    }
+    xyz = copy[0].data();
+    stride = sizeof copy[0];
   }
+  std::vector<std::uint8_t> ground(cloud.size());
   lisco::LabelGroundParameters parameters;
   parameters.sensor_height = sensor_height_;
   parameters.max_slope = max_slope_;
@@ -40,19 +50,27 @@ void pcl::LiscoGroundFilter<PointT>::applyFilter(Indices& indices) {
   parameters.lasers = is_organized ? cloud.height : 1;
   parameters.origin = {cloud.sensor_origin_[0], cloud.sensor_origin_[1], cloud.sensor_origin_[2]};
   try {
-    lisco::labelGround(points.data(), points.size(), sizeof points[0], parameters, ground.data());
+    lisco::labelGround(xyz, cloud.size(), stride, parameters, ground.data());
   } catch (const std::exception& error) {
     PCL_ERROR("[pcl::%s::applyFilter] %s\n", this->getClassName().c_str(), error.what());
+    indices.clear();
     return;
   }
-  for (const auto index : *this->indices_) {
-    const auto i = static_cast<std::size_t>(index);
-    const bool is_return = lisco::isReturn(points[i][0], points[i][1], points[i][2]);
-    if (is_return && (ground[i] != 0) == this->negative_)
-      indices.push_back(index);
-    else if (this->extract_removed_indices_)
-      this->removed_indices_->push_back(index);
+  // Written always, counted if they belong there.
+  indices.resize(selected.size());
+  removed.resize(this->extract_removed_indices_ ? selected.size() : 1);
+  std::size_t kept = 0, others = 0;
+  for (const auto index : selected) {
+    const PointT& point = cloud[static_cast<std::size_t>(index)];
+    const bool keep =
+        lisco::isReturn(point.x, point.y, point.z) && (ground[static_cast<std::size_t>(index)] != 0) == this->negative_;
+    indices[kept] = index;
+    removed[others] = index;
+    kept += keep ? 1 : 0;
+    others += !keep && this->extract_removed_indices_ ? 1 : 0;
   }
+  indices.resize(kept);
+  removed.resize(others);
 }
 
 #define PCL_INSTANTIATE_LiscoGroundFilter(T) template class LISCO_EXPORT pcl::LiscoGroundFilter<T>;
