@@ -54,17 +54,27 @@ void labelGround(const void* points, std::size_t count, std::size_t stride, cons
   sensor = SensorHints();
   sensor.origin = parameters.origin;
   const AzimuthColumns sorted(all, count, parameters.origin);
-  const auto cell_at = [&](std::size_t row, std::size_t column) {
-    const std::uint32_t point = sorted.pointAt(row, column);
-    return point == AzimuthColumns::kNone ? kNoReturn : all.at(point);
+  // Pointers are chosen without branches: which cells are empty cannot be predicted.
+  const auto cells = [&](std::size_t row, std::size_t first, std::size_t columns, const CellSource::Destination& to) {
+    const StridedPoints none{reinterpret_cast<const unsigned char*>(&kNoReturn), 0};
+    for (std::size_t i = 0; i < columns; ++i) {
+      const std::uint32_t point = sorted.pointAt(row, first + i);
+      const Return cell = (point == AzimuthColumns::kNone ? none : all).at(point);
+      to.x[i] = cell.x;
+      to.y[i] = cell.y;
+      to.z[i] = cell.z;
+      to.source_index[i] = 0;
+    }
   };
   std::vector<std::uint8_t> decisions(sorted.rows() * sorted.columns());
-  filter.filterScan(filter_parameters, sorted.columns(), sorted.rows(), cell_at, decisions.data());
+  filter.filterScan(filter_parameters, sorted.columns(), sorted.rows(), cells, decisions.data());
   std::fill_n(ground, count, std::uint8_t{0});
+  std::uint8_t of_none = 0;
   for (std::size_t column = 0; column < sorted.columns(); ++column)
-    for (std::size_t row = 0; row < sorted.rows(); ++row)
-      if (const std::uint32_t point = sorted.pointAt(row, column); point != AzimuthColumns::kNone)
-        ground[point] = decisions[row * sorted.columns() + column];
+    for (std::size_t row = 0; row < sorted.rows(); ++row) {
+      const std::uint32_t point = sorted.pointAt(row, column);
+      *(point == AzimuthColumns::kNone ? &of_none : ground + point) = decisions[row * sorted.columns() + column];
+    }
 }
 
 }  // namespace lisco

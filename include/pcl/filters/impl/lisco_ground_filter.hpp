@@ -60,14 +60,16 @@ void pcl::LiscoGroundFilter<PointT>::applyFilter(Indices& indices) {
   indices.resize(selected.size());
   removed.resize(this->extract_removed_indices_ ? selected.size() : 1);
   std::size_t kept = 0, others = 0;
+  const std::size_t removes = this->extract_removed_indices_ ? 1 : 0;
+  const std::uint8_t is_kept = this->negative_ ? 1 : 0;
   for (const auto index : selected) {
     const PointT& point = cloud[static_cast<std::size_t>(index)];
-    const bool keep =
-        lisco::isReturn(point.x, point.y, point.z) && (ground[static_cast<std::size_t>(index)] != 0) == this->negative_;
+    const bool is_return = lisco::isReturn(point.x, point.y, point.z);
+    const std::size_t keep = is_return ? std::size_t{ground[static_cast<std::size_t>(index)] == is_kept} : 0;
     indices[kept] = index;
     removed[others] = index;
-    kept += keep ? 1 : 0;
-    others += !keep && this->extract_removed_indices_ ? 1 : 0;
+    kept += keep;
+    others += removes & (keep ^ 1U);
   }
   indices.resize(kept);
   removed.resize(others);
