@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -191,6 +192,44 @@ TEST(GroundFilter, IsNotMisledByReflectionsBelowTheGround) {
   EXPECT_GT(reflections, 1000);
   EXPECT_LT(called / reflections, 0.02);
   EXPECT_GT(found / plane, 0.97);
+}
+
+/// Leaves 0.9 m to 1.4 m away hide a plane, but where a sector is open.
+Scan planeBehindPlants(double height, const std::function<bool(double azimuth)>& is_open) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> leaf(0.9, 1.4);
+  return scanOf(32, 4000, [&, height, is_open](double azimuth, double slope) {
+    return is_open(azimuth) ? meetsPlane(azimuth, slope, height) : leaf(random);
+  });
+}
+
+TEST(GroundFilter, ForgetsAPlaneThatFewColumnsShow) {
+  const Scan scan = planeBehindPlants(1.8, [](double azimuth) { return azimuth < 0.3 || azimuth > 6.0; });
+  const std::vector<std::uint8_t> ground = filterAll(scan);
+  const auto azimuthOf = [](const lisco::Return& cell) {
+    const float azimuth = std::atan2(cell.y, cell.x);
+    return azimuth < 0.0F ? azimuth + 6.2831853F : azimuth;
+  };
+  EXPECT_EQ(share(scan, ground, [&](const auto& cell) { return azimuthOf(cell) < 0.29F && cell.z < -1.79F; }), 1.0);
+  EXPECT_EQ(share(scan, ground, [&](const auto& cell) { return azimuthOf(cell) > 3.2F && azimuthOf(cell) < 6.1F; }),
+            0.0);
+}
+
+TEST(GroundFilter, KeepsAPlaneThatAThirdOfTheColumnsShow) {
+  const Scan scan = planeBehindPlants(1.8, [](double azimuth) { return std::fmod(azimuth, 0.6) < 0.2; });
+  const std::vector<std::uint8_t> ground = filterAll(scan);
+  EXPECT_GT(share(scan, ground, [](const auto& cell) { return cell.z < -1.79F; }), 0.95);
+}
+
+TEST(GroundFilter, TakesALowPlaneForATableWhereFewColumnsShowIt) {
+  for (const double open : {0.12, 0.4}) {
+    const Scan scan = planeBehindPlants(0.45, [=](double azimuth) { return std::fmod(azimuth, 0.6) < open; });
+    const std::vector<std::uint8_t> ground = filterAll(scan);
+    const auto isPlane = [](const lisco::Return& cell) {
+      return std::fabs(cell.z + 0.45F) < 0.001F && std::hypot(cell.x, cell.y) > 1.5F && cell.y < -0.5F;
+    };
+    EXPECT_NEAR(share(scan, ground, isPlane), open > 0.2 ? 1.0 : 0.0, 0.001) << "open " << open << " of 0.6";
+  }
 }
 
 TEST(GroundFilter, GoesOnAfterARotationWithoutAnotherBegin) {

@@ -15,11 +15,11 @@
 namespace lisco_apps {
 namespace {
 
-/// Whether unorganized points lie around the sensor as those of a rotating one do: on most sides, and hardly any
-/// straight above or below it, where cameras look and the middle of a map is.
+/// Whether points lie around the sensor as those of a rotating one do, or of a sector of its turn: on several sides, and
+/// hardly any straight above or below it, where cameras look and the middle of a map is.
 bool isAroundSensor(const Cloud& cloud) {
   constexpr std::size_t kBins = 360;
-  constexpr double kMinSides = 0.5;
+  constexpr double kMinSides = 1.0 / 12;
   constexpr double kSteep = 60 * kPi / 180;
   constexpr double kMaxSteep = 0.01;  // share of the returns
   std::vector<bool> sides(kBins, false);
@@ -48,24 +48,23 @@ std::vector<std::uint8_t> groundBySlope(const Cloud& cloud, const Region& region
   };
   const std::array<float, 3> origin{cloud.sensor_origin_[0], cloud.sensor_origin_[1], cloud.sensor_origin_[2]};
   std::vector<std::uint8_t> ground(cloud.size());
-  if (lasers < 2) {
-    if (!isAroundSensor(cloud)) return {};
-    std::vector<lisco::Return> points;
-    for (std::size_t i = 0; i < cloud.size(); ++i) points.push_back(cell_at(0, i));
-    lisco::LabelGroundParameters unorganized;
-    unorganized.origin = origin;
-    lisco::labelGround(points.data(), points.size(), sizeof points[0], unorganized, ground.data());
-    return ground;
-  }
   lisco::GroundFilter filter;
   lisco::GroundParameters parameters;
   if (is_rotation) {
     filter.filter(parameters, columns, lasers, cell_at, ground.data());
     return ground;
   }
-  parameters.sensor = lisco::estimateSensor(columns, lasers, origin, lisco::CellSource(cell_at));
-  if (parameters.sensor.steps_per_turn == 0) return {};
-  filter.filterScan(parameters, columns, lasers, cell_at, ground.data());
+  if (lasers > 1) parameters.sensor = lisco::estimateSensor(columns, lasers, origin, lisco::CellSource(cell_at));
+  if (parameters.sensor.steps_per_turn != 0) {
+    filter.filterScan(parameters, columns, lasers, cell_at, ground.data());
+    return ground;
+  }
+  if (!isAroundSensor(cloud)) return {};
+  std::vector<lisco::Return> points;
+  for (std::size_t i = 0; i < cloud.size(); ++i) points.push_back(cell_at(0, i));
+  lisco::LabelGroundParameters unorganized;
+  unorganized.origin = origin;
+  lisco::labelGround(points.data(), points.size(), sizeof points[0], unorganized, ground.data());
   return ground;
 }
 

@@ -202,8 +202,8 @@ void GroundFilter::State::tellMap() {
 /// \param first of the columns received that the block has
 void GroundFilter::State::estimatePlane(std::size_t first) {
   constexpr std::uint64_t kEstimatePeriod = 4;  // blocks
-  if (plane_estimator_.isKnown() && block_number_ % kEstimatePeriod != 0) return;
-  const std::size_t count = plane_estimator_.isKnown() ? 1 : Block::kColumns;
+  if (plane_estimator_.hasHeight() && block_number_ % kEstimatePeriod != 0) return;
+  const std::size_t count = plane_estimator_.hasHeight() ? 1 : Block::kColumns;
   for (std::size_t column = 0; column < count; ++column) plane_estimator_.add(block_, received_, first, column);
   plane_estimator_.update();
 }

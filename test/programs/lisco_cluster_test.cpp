@@ -100,14 +100,15 @@ TEST_F(LiscoCluster, WritesOneCloudPerClusterOnRequest) {
   EXPECT_FALSE(fs::exists(folder_ / "results/clusters"));
 }
 
-/// A turn of 32 lasers x 900 steps over flat ground 2 m below, with a wall of 60 columns 8 m ahead.
-std::string rotatingScan() {
+/// A turn of 32 lasers x 900 steps over flat ground 2 m below, with a wall of 60 columns 8 m ahead; of it, the columns
+/// within `width` of that wall's middle.
+std::string rotatingScan(int width = 450) {
   const auto floats = [](const std::vector<float>& values) {
     return std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
   };
   std::string data;
   for (int row = 0; row < 32; ++row)
-    for (int column = 0; column < 900; ++column) {
+    for (int column = 450 - width; column < 450 + width; ++column) {
       const double elevation = (2 - row) * 0.015;
       const double azimuth = 3.14159265 - column * (2 * 3.14159265 / 900);
       double range = elevation < 0 ? 2 / -std::sin(elevation) : 200;
@@ -117,9 +118,8 @@ std::string rotatingScan() {
                       static_cast<float>(range * std::cos(elevation) * std::sin(azimuth)),
                       static_cast<float>(range * std::sin(elevation))});
     }
-  return "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 900\nHEIGHT 32\n"
-         "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 28800\nDATA binary\n" +
-         data;
+  return "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " + std::to_string(2 * width) +
+         "\nHEIGHT 32\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(64 * width) + "\nDATA binary\n" + data;
 }
 
 TEST_F(LiscoCluster, LeavesOutTheGroundUnlessToldOtherwise) {
@@ -133,12 +133,32 @@ TEST_F(LiscoCluster, LeavesOutTheGroundUnlessToldOtherwise) {
   EXPECT_NE(run("turn.pcd --tolerance 1 --ground height:-1.9").out.find("below z = -1.9 m"), std::string::npos);
 }
 
+TEST_F(LiscoCluster, LeavesOutTheGroundOfASector) {
+  std::string sector = rotatingScan(100);
+  write("organized.pcd", sector);
+  sector.replace(sector.find("WIDTH 200\nHEIGHT 32"), 19, "WIDTH 6400\nHEIGHT 1");
+  write("unorganized.pcd", sector);
+  for (const std::string name : {"organized.pcd", "unorganized.pcd"}) {
+    const Outcome outcome = run(name + " --tolerance 1");
+    EXPECT_NE(outcome.out.find("left out, by slope; --ground none keeps them"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find("clusters  1 of at least 10"), std::string::npos) << outcome.out;
+  }
+}
+
 TEST_F(LiscoCluster, LeavesOutNothingWhereNoSensorTurns) {
-  write("walls.pcd", twoWalls());
-  const Outcome outcome = run("walls.pcd --tolerance 0.3");
+  // Of a map, many points are straight below the origin.
+  std::ostringstream map;
+  map << "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2500\nHEIGHT 1\n"
+         "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2500\nDATA ascii\n";
+  for (int i = 0; i < 2500; ++i) map << -5 + 0.2 * (i % 50) << ' ' << -5 + 0.2 * (i / 50) << " -2\n";
+  write("map.pcd", map.str());
+  const Outcome outcome = run("map.pcd --tolerance 0.3");
   EXPECT_NE(outcome.out.find("ground    nothing left out: this is not the scan of a rotating sensor\n"),
             std::string::npos)
       << outcome.out;
+  write("walls.pcd", twoWalls());
+  const std::string walls = run("walls.pcd --tolerance 0.3").out;
+  EXPECT_NE(walls.find("ground    nothing left out: none was found\n"), std::string::npos) << walls;
 }
 
 TEST_F(LiscoCluster, TakesTheGroundOfEachInput) {

@@ -33,6 +33,9 @@ constexpr double kPointReach = 6.0;     // metres; where lines begin further out
 constexpr double kSlopeReach = 2.0;     // metres, over which a line's slope counts
 constexpr double kLevelWeight = 20.0;   // square metres, of the horizon
 constexpr float kMinWeight = 6.0F;      // of the lines that show a plane
+// Looks per one that shows ground, at most: 1 to 2 on streets, 9 and more where objects alone are around. Where a plane
+// may be a table's, most looks show it, or it is none.
+constexpr std::uint32_t kLooksPerGround = 8, kLooksPerLowGround = 3;
 
 }  // namespace
 
@@ -45,10 +48,19 @@ void PlaneEstimator::begin(const GroundParameters& parameters, float max_slope, 
   highest_ = origin_known ? -0.2F : 0.5F;  // otherwise the ground may be as high as the cloud's origin
   max_slope_ = max_slope;
   origin_ = sensor.origin;
-  height_given_ = known_ = !std::isnan(parameters.sensor_height);
-  plane_ = {known_ ? -parameters.sensor_height : 0.0F, parameters.slope[0] - sensor.tilt[0],
+  height_state_ = std::isnan(parameters.sensor_height) ? Height::kUnknown : Height::kGiven;
+  plane_ = {hasHeight() ? -parameters.sensor_height : 0.0F, parameters.slope[0] - sensor.tilt[0],
             parameters.slope[1] - sensor.tilt[1]};
-  count_ = 0;
+  count_ = seen_ = 0;
+  looks_ = 0;
+  showed_ = 0;
+}
+
+bool PlaneEstimator::isKnown() const {
+  if (height_state_ == Height::kGiven) return true;
+  const auto shown = static_cast<std::uint32_t>(__builtin_popcountll(showed_));
+  const std::uint32_t looks_per_one = plane_.height > -kTable ? kLooksPerLowGround : kLooksPerGround;
+  return height_state_ == Height::kFound && looks_per_one * shown >= std::min(looks_, 64U);
 }
 
 void PlaneEstimator::add(const Block& block, const Columns& columns, std::size_t first, std::size_t column) {
@@ -172,19 +184,20 @@ PlaneEstimator::Agreed PlaneEstimator::lowestOf(const Line* lines, std::size_t s
 }
 
 void PlaneEstimator::update() {
-  if (known_ && !height_given_) return refine();
+  ++looks_;
+  showed_ = showed_ << 1 | static_cast<std::uint64_t>(count_ != seen_);
+  seen_ = count_;
+  if (height_state_ == Height::kFound) return refine();
+  if (height_state_ == Height::kGiven) return fitSlopes();
   const std::size_t size = std::min(count_, kMemory);
-  if (!height_given_) {
-    const Agreed agreed = lowestOf(lines_.data(), size, kWindow, kEnough);
-    if (agreed.weight < kMinWeight) return;
-    plane_.height = agreed.height;
-    known_ = true;
-  }
+  const Agreed agreed = lowestOf(lines_.data(), size, kWindow, kEnough);
+  if (agreed.weight < kMinWeight) return;
+  plane_.height = agreed.height;
+  height_state_ = Height::kFound;
   fitSlopes();
   // The lines so far come from all kColumns columns of a block, which have one direction. From now on one column of a
   // block adds a line, and each of these lines counts as much less.
-  if (!height_given_)
-    for (std::size_t i = 0; i < size; ++i) lines_[i].weight /= static_cast<float>(Block::kColumns);
+  for (std::size_t i = 0; i < size; ++i) lines_[i].weight /= static_cast<float>(Block::kColumns);
 }
 
 /// Fits the slopes of a plane to those of the lines at its height.

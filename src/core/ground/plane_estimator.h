@@ -35,10 +35,13 @@ class PlaneEstimator {
   /// \param columns those that the block was measured from, `first` its first one
   void add(const Block& block, const Columns& columns, std::size_t first, std::size_t column);
 
-  /// Updates the plane by the columns added; it stays as it is, if they show too little.
+  /// Looks at the columns added since the last time, and updates the plane; it stays as it is, if they show too little.
   void update();
 
-  bool isKnown() const { return known_; }
+  /// Whether a height was given or found.
+  bool hasHeight() const { return height_state_ != Height::kUnknown; }
+  /// Whether there is a plane: a height was given, or enough of the latest looks have shown ground.
+  bool isKnown() const;
   const Plane& plane() const { return plane_; }
 
  private:
@@ -63,9 +66,11 @@ class PlaneEstimator {
   std::array<Line, kMemory> lines_;
   std::size_t count_ = 0;  // ever added
   Plane plane_;
-  bool known_ = false;
-  bool height_given_ = false;
-  float highest_ = 0.0F;  // metres
+  enum class Height { kUnknown, kGiven, kFound } height_state_ = Height::kUnknown;
+  std::uint32_t looks_ = 0;
+  std::size_t seen_ = 0;      // of count_, by the latest look
+  std::uint64_t showed_ = 0;  // bit i: whether the look i looks ago showed ground
+  float highest_ = 0.0F;      // metres
   float max_slope_ = 0.0F;
   std::array<float, 3> origin_{};  // of the sensor
 };
