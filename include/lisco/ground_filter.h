@@ -16,15 +16,15 @@
 
 namespace lisco {
 
-/// What the ground filter is told. The z axis points up, to within about 10 degrees.
+/// Parameters of the ground filter. The z axis points up, to within about 10 degrees.
 struct GroundParameters {
-  /// Of the sensor above the ground beneath it, metres; NaN: estimated from the returns.
+  /// Height of the sensor above the ground beneath it, metres; NaN: estimated from the returns.
   float sensor_height = std::numeric_limits<float>::quiet_NaN();
-  /// Rise of the ground around the sensor along x and y, metres per metre; a start, refined by the returns.
+  /// Slope of the ground around the sensor along x and y, metres per metre: where the estimate begins.
   std::array<float, 2> slope{0.0F, 0.0F};
-  /// Steepest ground, degrees against the x-y plane of the cloud, 1 to 60.
+  /// Steepest slope of ground, degrees against the x-y plane of the cloud, 1 to 60.
   float max_slope = 17.0F;
-  /// Its origin and tilt decide where the ground is looked for; see estimateSensor.
+  /// Its origin and tilt decide where the ground is searched for; see estimateSensor.
   SensorHints sensor;
 };
 
@@ -62,7 +62,7 @@ class LISCO_EXPORT GroundFilter {
   /// \param lasers number of cells, may differ from column to column
   /// \param visit callable as void (std::size_t column, const std::uint8_t* ground, std::size_t lasers): the column
   ///        counted from begin (), 1 for each cell on the ground, 0 for the others, and the number of cells as given
-  /// \throws std::logic_error before begin (); std::invalid_argument if there are more cells than begin () was told
+  /// \throws std::logic_error before begin (); std::invalid_argument if there are more cells than lasers in begin ()
   template <typename Visit>
   void addColumn(const Return* cells, std::size_t lasers, Visit&& visit) {
     receive(cells, lasers, std::ref(visit));
@@ -86,8 +86,8 @@ class LISCO_EXPORT GroundFilter {
     filterAll(parameters, columns, lasers, CellSource(cells), ground);
   }
 
-  /// The same by what the whole scan shows: the plane around the sensor is estimated first, and where none is clearly
-  /// seen, nothing is ground.
+  /// Estimates the plane of the ground around the sensor from the whole scan, then filters as filter () does. Without a
+  /// clear plane, nothing is ground.
   /// \param parameters as estimateGroundPlane takes them: the sensor's, and its height if it is known
   /// \return the parameters with the estimates; the height is NaN where nothing is ground
   template <typename Cells>

@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <vector>
 
-#include "core/bits.h"
 #include "core/ground/block.h"
 #include "core/ground/follower.h"
 #include "core/ground/ground_map.h"
@@ -36,7 +34,7 @@ float maxSlope(const GroundParameters& parameters) {
 
 }  // namespace
 
-/// Blocks of columns, the polar grid that they fill, and the ground found in it.
+/// The columns of a block, and the ground found in the blocks before.
 class GroundFilter::State {
  public:
   void begin(const GroundParameters& parameters, std::size_t lasers);
@@ -50,11 +48,10 @@ class GroundFilter::State {
   void visitNext(const Visitor& visit);
   void measure(std::size_t first);
   void decide(std::size_t count, std::uint8_t* ground, std::size_t stride);
-  void tellMap();
+  void enterIntoMap();
   void estimatePlane(std::size_t first);
 
   GroundParameters parameters_;
-  float max_slope_ = 0.0F;
   std::size_t lasers_ = 0;
   bool begun_ = false;
   Columns received_;
@@ -62,17 +59,16 @@ class GroundFilter::State {
   std::array<std::size_t, Block::kColumns> cell_counts_{};  // of these columns
   // The latest block measured:
   std::array<std::size_t, Block::kColumns> block_counts_{};  // cells of its columns
-  std::size_t block_end_ = 0;                                // number of its columns
-  std::size_t ready_ = 0;                                    // the first of them that is not visited
-  bool is_decided_ = true;
+  std::size_t block_columns_ = 0;                            // number of its columns
+  std::size_t next_visited_ = 0;                             // of them
+  enum class Stage { kMeasured, kDecided, kInMap } stage_ = Stage::kInMap;
+  std::vector<std::uint8_t> block_ground_, column_ground_;
   std::size_t visited_ = 0;  // columns, from begin () on
-  std::vector<std::uint8_t> ready_ground_, column_ground_;
   Block block_;
   std::uint64_t block_number_ = 0;
   RowOrder order_;
   GroundMap map_;
   Follower follower_;
-  bool is_told_ = true;  // the map, of the latest block
   PlaneEstimator plane_estimator_;
 };
 
@@ -82,80 +78,74 @@ void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t 
   if (!(parameters.max_slope >= 1.0F && parameters.max_slope <= 60.0F))
     throw std::invalid_argument("lisco::GroundFilter: max_slope is not within 1 to 60 degrees");
   parameters_ = parameters;
-  max_slope_ = maxSlope(parameters);
+  const float max_slope = maxSlope(parameters);
   lasers_ = lasers;
   block_.resize(lasers);
   received_.resize(lasers, Block::kColumns);
-  ready_ground_.resize(std::max(ready_ground_.size(), lasers * Block::kColumns));
+  block_ground_.resize(std::max(block_ground_.size(), lasers * Block::kColumns));
   column_ground_.resize(std::max(column_ground_.size(), lasers));
   order_.begin(lasers);
   map_.begin();
-  follower_.begin(lasers, max_slope_);
-  waiting_ = ready_ = block_end_ = visited_ = 0;
-  is_decided_ = true;
+  follower_.begin(lasers, max_slope);
+  waiting_ = next_visited_ = block_columns_ = visited_ = 0;
+  stage_ = Stage::kInMap;
   block_number_ = 0;
-  is_told_ = true;
-  plane_estimator_.begin(parameters, max_slope_, lasers);
+  plane_estimator_.begin(parameters, max_slope, lasers);
   begun_ = true;
 }
 
+/// Spreads the work of a block over columns: its last one measures it, the next one decides, and the one after that
+/// enters it into the map. Each of them visits a column of the block before.
 void GroundFilter::State::add(const Return* cells, std::size_t lasers, const Visitor& visit) {
   if (!begun_) throw std::logic_error("lisco::GroundFilter: addColumn before begin");
   if (lasers > lasers_) throw std::invalid_argument("lisco::GroundFilter: more cells than lasers");
   if (waiting_ == Block::kColumns) measureWaiting();  // an exception of `visit` has prevented it
   for (std::size_t laser = 0; laser < lasers_; ++laser) {
-    const Return cell = laser < lasers ? cells[laser] : kNoReturn;
-    const std::size_t i = laser * Block::kColumns + waiting_;
-    received_.x[i] = cell.x;
-    received_.y[i] = cell.y;
-    received_.z[i] = cell.z;
+    received_.set(laser, waiting_, laser < lasers ? cells[laser] : kNoReturn);
   }
   cell_counts_[waiting_++] = lasers;
-  if (is_decided_)
-    tellMap();
-  else
+  if (stage_ == Stage::kMeasured)
     decideMeasured();
-  if (ready_ < block_end_) visitNext(visit);
+  else
+    enterIntoMap();
+  if (next_visited_ < block_columns_) visitNext(visit);
   if (waiting_ == Block::kColumns) measureWaiting();
 }
 
 void GroundFilter::State::finish(const Visitor& visit) {
   if (!begun_) return;
-  if (!is_decided_) decideMeasured();
-  while (ready_ < block_end_) visitNext(visit);
+  if (stage_ == Stage::kMeasured) decideMeasured();
+  while (next_visited_ < block_columns_) visitNext(visit);
   if (waiting_ == 0) return;
   for (std::size_t column = waiting_; column < Block::kColumns; ++column) received_.clear(column, lasers_);
   measureWaiting();
   decideMeasured();
-  while (ready_ < block_end_) visitNext(visit);
+  while (next_visited_ < block_columns_) visitNext(visit);
 }
 
-/// A block's work is spread over columns, each of which visits one, too: the last of the block measures, the next one
-/// decides, and the one after that tells the map.
 void GroundFilter::State::measureWaiting() {
   block_counts_ = cell_counts_;
-  block_end_ = waiting_;
-  ready_ = waiting_ = 0;
-  is_decided_ = false;
+  block_columns_ = waiting_;
+  next_visited_ = waiting_ = 0;
   measure(0);
 }
 
 void GroundFilter::State::decideMeasured() {
-  is_decided_ = true;
-  std::fill(ready_ground_.begin(), ready_ground_.end(), std::uint8_t{0});
-  decide(block_end_, ready_ground_.data(), Block::kColumns);
+  std::fill(block_ground_.begin(), block_ground_.end(), std::uint8_t{0});
+  decide(block_columns_, block_ground_.data(), Block::kColumns);
 }
 
 void GroundFilter::State::visitNext(const Visitor& visit) {
-  const std::size_t column = ready_++, cells = block_counts_[column];
+  const std::size_t column = next_visited_++, cells = block_counts_[column];
   for (std::size_t laser = 0; laser < cells; ++laser)
-    column_ground_[laser] = ready_ground_[laser * Block::kColumns + column];
+    column_ground_[laser] = block_ground_[laser * Block::kColumns + column];
   visit(visited_++, column_ground_.data(), cells);
 }
 
 /// Reads more columns at a time than are decided together: the returns of a laser lie side by side in a cloud's memory.
 void GroundFilter::State::addAll(std::size_t columns, const CellSource& cells, std::uint8_t* ground) {
   constexpr std::size_t kRead = 128;
+  static_assert(kRead % Block::kColumns == 0, "blocks are read as a whole");
   std::array<std::uint32_t, kRead> source_indices;
   received_.resize(lasers_, kRead);
   std::fill_n(ground, columns * lasers_, std::uint8_t{0});
@@ -176,7 +166,8 @@ void GroundFilter::State::addAll(std::size_t columns, const CellSource& cells, s
 
 /// Measures a block of the columns received, and follows the ground along its first rows.
 void GroundFilter::State::measure(std::size_t first) {
-  tellMap();
+  enterIntoMap();
+  stage_ = Stage::kMeasured;
   ++block_number_;
   block_.measure(received_, first, parameters_.sensor);
   order_.update(block_);
@@ -187,16 +178,16 @@ void GroundFilter::State::measure(std::size_t first) {
 }
 
 /// Decides on the first `count` columns of the block measured.
-/// \param ground receives 1 for each cell on the ground, 0 for some of the others, in rows of `stride`
+/// \param ground zeros, in rows of `stride`; receives 1 for each cell on the ground
 void GroundFilter::State::decide(std::size_t count, std::uint8_t* ground, std::size_t stride) {
-  is_told_ = !plane_estimator_.isKnown();
+  stage_ = plane_estimator_.isKnown() ? Stage::kDecided : Stage::kInMap;
   if (plane_estimator_.isKnown()) follower_.followOtherRows(block_, order_, map_, ground, count, stride);
 }
 
 /// Enters what the latest block has shown into the map, for the next one.
-void GroundFilter::State::tellMap() {
-  if (!is_told_) follower_.tell(block_, order_, plane_estimator_.plane(), map_);
-  is_told_ = true;
+void GroundFilter::State::enterIntoMap() {
+  if (stage_ == Stage::kDecided) follower_.enterIntoMap(block_, order_, plane_estimator_.plane(), map_);
+  stage_ = Stage::kInMap;
 }
 
 /// \param first of the columns received that the block has
@@ -228,11 +219,7 @@ GroundParameters estimateGroundPlane(std::size_t columns, std::size_t lasers, Gr
     const std::size_t to = sample % Block::kColumns;
     const std::size_t column = (2 * sample + 1) * columns / (2 * samples);
     for (std::size_t laser = 0; laser < lasers; ++laser) {
-      const Return cell = cells.at(laser, column);
-      const std::size_t i = laser * Block::kColumns + to;
-      sampled.x[i] = cell.x;
-      sampled.y[i] = cell.y;
-      sampled.z[i] = cell.z;
+      sampled.set(laser, to, cells.at(laser, column));
     }
     if (to + 1 < Block::kColumns && sample + 1 < samples) continue;
     block.measure(sampled, 0, parameters.sensor);
@@ -245,6 +232,9 @@ GroundParameters estimateGroundPlane(std::size_t columns, std::size_t lasers, Gr
                       estimator.plane().slope_y + parameters.sensor.tilt[1]};
   return parameters;
 }
+
+static_assert(GroundFilter::kMaxDelay == Block::kColumns,
+              "a column waits for its block, and is visited during the next");
 
 GroundFilter::GroundFilter() : state_(std::make_unique<State>()) {
   chooseSimdLevel();

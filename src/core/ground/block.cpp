@@ -99,8 +99,7 @@ void Columns::resize(std::size_t lasers, std::size_t columns) {
 }
 
 void Columns::clear(std::size_t column, std::size_t lasers) {
-  for (std::size_t laser = 0; laser < lasers; ++laser)
-    for (auto* values : {&x, &y, &z}) (*values)[laser * stride + column] = 0.0F;
+  for (std::size_t laser = 0; laser < lasers; ++laser) set(laser, column, kNoReturn);
 }
 
 void Block::resize(std::size_t lasers) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/aligned_vector.h"
+#include "lisco/return.h"
 #include "lisco/sensor_hints.h"
 
 namespace lisco::ground {
@@ -18,6 +19,12 @@ struct Columns {
 
   /// Allocates only if there are more cells than ever before.
   void resize(std::size_t lasers, std::size_t columns);
+  void set(std::size_t laser, std::size_t column, const Return& cell) {
+    const std::size_t i = laser * stride + column;
+    x[i] = cell.x;
+    y[i] = cell.y;
+    z[i] = cell.z;
+  }
   /// Makes the cells of a column no returns.
   void clear(std::size_t column, std::size_t lasers);
 };

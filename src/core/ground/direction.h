@@ -4,9 +4,12 @@
 
 #include <cstddef>
 
+#include "core/pi.h"
+
 namespace lisco::ground {
 
-inline constexpr std::size_t kSectors = 256;  ///< of azimuth
+inline constexpr std::size_t kSectors = 256;                   ///< of azimuth
+inline constexpr float kTurn = static_cast<float>(2.0 * kPi);  ///< radians
 
 /// A unit vector.
 struct Direction {

@@ -20,7 +20,7 @@ namespace HWY_NAMESPACE {
 // Distances and heights are metres, slopes metres per metre.
 // Least loss of objects and of ground in the tables of benchmarks/suite.sh ground ground_real.
 
-// The ground known from the blocks before.
+// The map, which is the ground known from the blocks before. Slack is what the map's height may be off by.
 constexpr float kKnown = 1.5F;        // most slack of what may contradict
 constexpr float kWellKnown = 0.15F;   // most slack of what decides
 constexpr float kNearlyKnown = 0.5F;  // most slack of what decides where the ground seems to go on
@@ -31,21 +31,28 @@ constexpr float kAboveMap = 0.08F;                              // contradicts
 constexpr float kSmoothAboveMap = 0.13F, kSmoothRange = 40.0F;  // contradicts a smooth surface up to this distance
 constexpr float kKnownHeight = 0.06F;                           // even among returns of which most are higher
 
-// The ground of the same column.
-constexpr float kAtColumn = 0.16F, kAtColumnGrowth = 0.03F, kAtColumnMost = 0.15F;
-constexpr float kLevel = 0.15F, kLevelGrowth = 0.11F, kLevelMost = 0.8F, kSameSlope = 0.2F;
-constexpr float kFirst = 0.1F, kFirstGrowth = 0.04F, kFirstLevelGrowth = 0.12F, kFirstMost = 10.0F;
-constexpr float kFirstHighest = 0.2F, kFirstHighestGrowth = 0.3F;
-constexpr float kBend = 0.13F, kBendGrowth = 0.1F, kLineBend = 0.2F, kLineKnown = 0.3F;
-constexpr float kStepDown = 0.15F, kStepUp = 0.13F;
-constexpr float kAgrees = 0.1F, kAgreesGrowth = 0.03F;
-constexpr float kObstacle = 0.3F;
-constexpr float kHigher = 0.1F;
-constexpr float kReflection = 0.5F;     // below the ground
-constexpr float kReflectedFrom = 1.0F;  // below the highest possible ground
-constexpr float kNearBelow = 0.1F;
-constexpr float kAdvance = 0.02F;
-constexpr float kBaseline = 1.5F, kBaselineGrowth = 0.1F, kMinBaseline = 0.3F;
+// Heights off the straight continuation of the column's ground, growing with the distance from the ground reached:
+// k + kGrowth * distance, of which the growth is kMost at most.
+constexpr float kAtColumn = 0.16F, kAtColumnGrowth = 0.03F, kAtColumnMost = 0.15F;  // is ground
+constexpr float kLevel = 0.15F, kLevelGrowth = 0.11F, kLevelMost = 0.8F;            // is, where it seems to go on
+constexpr float kFirst = 0.1F, kFirstGrowth = 0.04F, kFirstLevelGrowth = 0.12F;     // before any ground is reached
+constexpr float kFirstMost = 10.0F;                                                 // distance up to which these grow
+constexpr float kFirstHighest = 0.2F, kFirstHighestGrowth = 0.3F;  // the first returns above are objects
+constexpr float kAgrees = 0.1F, kAgreesGrowth = 0.03F;             // with kSure: may be as rough as leaves
+constexpr float kObstacle = 0.3F;                                  // hides the ground beyond
+constexpr float kHigher = 0.1F;                                    // counts as Found::higher
+constexpr float kNearBelow = 0.1F, kReflection = 0.5F;  // in between, returns below are ground that is not followed
+// Differences of slopes.
+constexpr float kSameSlope = 0.2F;                  // the ground seems to go on
+constexpr float kBend = 0.13F, kBendGrowth = 0.1F;  // at a bend, where the growth is by 1 / step
+constexpr float kLineBend = 0.2F;                   // of a line beyond an object
+// Others.
+constexpr float kLineKnown = 0.3F;                         // slack up to which the map decides against returns above it
+constexpr float kStepDown = 0.15F, kStepUp = 0.13F;        // below the steepest descent, above the steepest rise
+constexpr float kReflectedFrom = 1.0F;                     // below the highest possible ground
+constexpr float kAdvance = 0.02F;                          // least way of the ground reached
+constexpr float kBaseline = 1.5F, kBaselineGrowth = 0.1F;  // way over which the slope of the ground is measured
+constexpr float kMinBaseline = 0.3F;                       // a shorter way keeps the slope from before
 
 /// The ground that the map has where a return is.
 struct Mapped {
@@ -151,9 +158,14 @@ HWY_INLINE void lowerLimit(const FollowedRow& row, std::size_t k, const Column& 
   hn::StoreU(select(limits, lower, limit), kLanes, row.passed->limit.data() + k);
 }
 
+/// Returns clearly above the continuation of the ground reached.
+HWY_INLINE Mask areOver(const Column& column) {
+  return hn::AndNot(column.first, hn::Gt(column.above, set(kObstacle)));
+}
+
 /// Whether the rows above show an object, or the ground further inwards does.
 HWY_INLINE Mask rises(const Column& column, const Above& above) {
-  return hn::Or(hn::Or(above.wall, above.steep), hn::AndNot(column.first, hn::Gt(column.above, set(kObstacle))));
+  return hn::Or(hn::Or(above.wall, above.steep), areOver(column));
 }
 
 /// Moves the ground reached to the returns of `reached`.
@@ -196,9 +208,8 @@ HWY_INLINE Mask lanesOf(std::uint8_t bits, std::size_t k) {
 
 /// What is found of a part of a row without ground.
 HWY_INLINE Found passObjects(const FollowedRow& row, std::size_t k, const Column& column, Floats steepest) {
-  const auto over = hn::AndNot(column.first, hn::Gt(column.above, set(kObstacle)));
   std::uint8_t& obstacles = row.passed->obstacles;
-  obstacles |= bitsOf(hn::And(over, column.valid), k);
+  obstacles |= bitsOf(hn::And(areOver(column), column.valid), k);
   if ((bitsOf(column.valid, k) & ~obstacles) != 0)
     obstacles |= bitsOf(hn::And(rises(column, lookUp(row, k, column.rho, column.height, steepest)), column.valid), k);
   lowerLimit(row, k, column, hn::Lt(column.rho, hn::Zero(kLanes)));
@@ -281,11 +292,10 @@ HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const Column&
   lowerLimit(row, k, column, found);
 
   // But no ground: first returns that are too high, walls above their feet, rough surfaces where ground is unsure.
-  const auto too_high =
+  const auto first_too_high =
       hn::And(column.first, hn::Gt(column.above, grown(kFirstHighest, kFirstHighestGrowth, distance)));
-  const auto foot =
-      hn::And(hn::And(hn::Lt(map.slack, set(kSure)), hn::Lt(off_map, set(kFoot))), hn::Lt(off_column, set(kSure)));
-  found = hn::AndNot(hn::Or(too_high, hn::AndNot(foot, above.wall)), found);
+  const auto foot = areWhereExpected(column, map);
+  found = hn::AndNot(hn::Or(first_too_high, hn::AndNot(foot, above.wall)), found);
   const auto unsure = hn::AndNot(hn::And(sure, agrees), found);
   if (!hn::AllFalse(kLanes, unsure)) found = hn::AndNot(hn::And(unsure, isRough(row, k, rho, height)), found);
 

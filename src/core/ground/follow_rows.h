@@ -21,13 +21,13 @@ struct alignas(sizeof(Lanes)) Followed {
   Lanes rho, height;            ///< of the ground reached; rho is 0 before the first return on it
   Lanes slope;                  ///< of the ground up to there
   Lanes back_rho, back_height;  ///< ground further inwards, from which the slope is measured
-  Lanes next_rho, next_height;  ///< becomes that
+  Lanes next_rho, next_height;  ///< becomes back_rho, back_height, once the ground is kBaseline beyond it
 };
 
-/// What the rows up to one of them have shown.
+/// What the rows up to one of them have shown, per column of the block.
 struct alignas(sizeof(Lanes)) Passed {
   Lanes reach;             ///< distance of the farthest return
-  Lanes limit;             ///< no ground is higher than this, beneath the sensor, but for the steepest slope
+  Lanes limit;             ///< metres: at a distance rho, no ground is higher than limit + max_slope * rho
   std::size_t followed;    ///< number of the Followed, in FollowResult
   std::uint8_t obstacles;  ///< columns in which objects hide the ground beyond the ground reached, as bits
 };

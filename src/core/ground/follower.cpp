@@ -3,9 +3,8 @@
 #include "core/ground/follower.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
-
-#include "core/bits.h"
 
 namespace lisco::ground {
 namespace {
@@ -87,7 +86,7 @@ void Follower::write(const RowOrder::Row* rows, std::size_t count, std::uint8_t*
   }
 }
 
-void Follower::tell(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map) {
+void Follower::enterIntoMap(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map) {
   reports_.enter({settingOf(block, order, map), result(), plane.height, order.turnsLeft()}, map.sectors());
 }
 

@@ -23,16 +23,15 @@ class Follower {
   void begin(std::size_t lasers, float max_slope);
   /// Follows the first rows of a block.
   /// \param number of the block, from 1 on
-  /// \param map tells of the blocks before
+  /// \param map ground of the blocks before
   void followFirstRows(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map,
                        std::uint32_t number);
-  /// Follows the other rows.
-  /// \param ground receives 1 for each of the first `columns` cells of the lasers that is on the ground, in rows of
-  ///        `stride`; 0 or nothing for the others
+  /// Follows the other rows, and writes the decisions on all.
+  /// \param ground zeros, in rows of `stride`; receives 1 for each of the first `columns` cells of a laser on the ground
   void followOtherRows(const Block& block, const RowOrder& order, const GroundMap& map, std::uint8_t* ground,
                        std::size_t columns, std::size_t stride);
-  /// Tells the map of the block just followed.
-  void tell(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map);
+  /// Enters the block just followed into the map.
+  void enterIntoMap(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map);
 
  private:
   void prepare(const RowOrder& order, const Plane& plane, GroundMap& map, std::uint32_t number);
@@ -45,9 +44,9 @@ class Follower {
   // By position in the order.
   std::vector<std::uint32_t> sectors_;  // of the map
   std::vector<Passed> starts_;          // of rows with none below: what is known before
-  std::vector<Followed> followed_;      // then those of the starts
+  std::vector<Followed> followed_;      // element i: of row i; element lasers + i: before row i, if it has none below
   std::vector<Passed> passed_;
-  std::vector<Found> found_;  // behind that of position -1
+  std::vector<Found> found_;  // element i + 1: of row i; element 0: none
   std::vector<std::int32_t> with_ground_, scattered_;
 
   MapReports reports_;

@@ -9,20 +9,20 @@
 
 namespace lisco::ground {
 
-/// Which columns of a row of a block have ground, as bits.
+/// Decisions on the returns of a row of a block: bit i for column i.
 struct Found {
-  std::uint8_t ground;     ///< the return is on the ground
-  std::uint8_t reached;    ///< and the ground goes on to there
-  std::uint8_t confirmed;  ///< it is about where the ground before lets expect it
-  std::uint8_t known;      ///< it is where the map has ground
-  std::uint8_t higher;     ///< the return is no ground, and higher than the ground would be
+  std::uint8_t ground;     ///< on the ground
+  std::uint8_t reached;    ///< of these, those from which the ground is followed further outwards
+  std::uint8_t confirmed;  ///< near the straight continuation of the ground further inwards
+  std::uint8_t known;      ///< at the height of the map, where that is well known
+  std::uint8_t higher;     ///< no ground, and above that continuation
 };
 
-/// Takes back ground among returns of which most are higher, as single leaves of a hedge may be in line with the ground
-/// in front of it; what the map has known stays.
-/// \param found by position in the order; that of position -1, RowOrder::kNone, is empty
-/// \param with_ground positions of the rows with ground
-/// \param scattered room for as many
+/// Removes ground from rows where most returns around are `higher`, as single leaves of a hedge may be in line with the
+/// ground in front of it. `known` ground stays.
+/// \param found by position in the order; that of RowOrder::kNone, position -1, is empty
+/// \param with_ground positions of the rows with ground; the first `count` are used
+/// \param scattered at least `count` elements, overwritten
 void dropScattered(const RowOrder::Row* rows, Found* found, const std::vector<std::int32_t>& with_ground,
                    std::size_t count, std::vector<std::int32_t>& scattered);
 

@@ -35,7 +35,6 @@ class GroundMap {
     Values age{};     ///< sectors since the ground was seen
 
     Sector() { slack.fill(kUnknown); }
-    float heightAt(std::size_t bin, float rho) const { return offset[bin] + slope[bin] * rho; }
   };
 
   void begin();
@@ -63,7 +62,7 @@ class GroundMap {
   const Sector* sectors() const { return sectors_.data(); }
 
  private:
-  static constexpr float kSectorWidth = 6.2831853F / static_cast<float>(kSectors);  // radians
+  static constexpr float kSectorWidth = kTurn / static_cast<float>(kSectors);  // radians
   static constexpr std::uint32_t kFresh = 40;  // blocks after which a sector shows the rotation before
 
   void renew(std::size_t number, std::uint32_t block, const Plane& plane);

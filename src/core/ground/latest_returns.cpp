@@ -4,7 +4,6 @@
 
 #include "core/ground/direction.h"
 #include "core/ground/targets.h"
-#include "core/pi.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/ground/latest_returns.cpp"
@@ -46,7 +45,7 @@ HWY_INLINE RowVector azimuthOf(RowVector x, RowVector y) {
 /// Enters a block's last returns.
 void updateLatest(const Block& block, std::size_t lasers, std::uint32_t number, ground::LatestReturns& latest,
                   ground::Turned& turned) {
-  constexpr float kTurn = static_cast<float>(2.0 * kPi);
+  using ground::kTurn;
   constexpr float kSectorsPerRadian = static_cast<float>(ground::kSectors) / kTurn;
   constexpr std::size_t kStep = hn::MaxLanes(kRows);
   const auto sector_mask = hn::Set(kRowInts, static_cast<std::int32_t>(ground::kSectors) - 1);

@@ -112,8 +112,7 @@ std::size_t collectRays(const Shown& shown, MapReports& reports, std::size_t& st
   float* const to_height = reports.rays.height.data();
   std::uint32_t* const sector = reports.rays.sector.data();
   std::uint32_t* const with_ground = reports.rays.has_ground.data();
-  std::uint32_t* const ground = reports.ground.data();
-  // One more than the number of the stretch; 0: none.
+  std::uint32_t* const stretch_rows = reports.stretch_rows.data();
   std::uint32_t* const latest = reports.latest.data() + 1;
   latest[RowOrder::kNone] = 0;
   std::uint32_t ray = 0, stretch = 0;
@@ -128,7 +127,7 @@ std::size_t collectRays(const Shown& shown, MapReports& reports, std::size_t& st
     sector[ray] = setting.sectors[i];
     with_ground[ray] = has_ground;
     ray += static_cast<std::uint32_t>(to > from) | has_ground;
-    ground[stretch] = static_cast<std::uint32_t>(i);
+    stretch_rows[stretch] = static_cast<std::uint32_t>(i);
     stretch += has_ground;
     const std::uint32_t below = latest[row.down];
     latest[i] = below ^ ((below ^ stretch) & (0U - has_ground));  // a choice that is no branch
@@ -144,7 +143,7 @@ void collectStretches(const Shown& shown, MapReports& reports, std::size_t count
   const std::uint32_t* const latest = reports.latest.data() + 1;
   stretches.is_last[0] = 0;
   for (std::size_t stretch = 0; stretch < count; ++stretch) {
-    const std::size_t i = reports.ground[stretch];
+    const std::size_t i = reports.stretch_rows[stretch];
     const RowOrder::Row& row = setting.rows[i];
     const bool is_first = row.down == RowOrder::kNone;
     const Passed& before = is_first ? setting.starts[i] : result.passed[row.down];
@@ -309,8 +308,8 @@ void MapReports::begin(std::size_t lasers) {
         &stretches.height, &stretches.long_slope, &stretches.slope, &stretches.offset, &stretches.ray})
     values->resize(size);
   for (auto* values : {&rays.first, &rays.end, &stretches.first, &stretches.last}) values->resize(size);
-  for (auto* values :
-       {&rays.sector, &rays.has_ground, &stretches.sector, &stretches.is_doubted, &stretches.is_last, &ground, &latest})
+  for (auto* values : {&rays.sector, &rays.has_ground, &stretches.sector, &stretches.is_doubted, &stretches.is_last,
+                       &stretch_rows, &latest})
     values->resize(size);
 }
 

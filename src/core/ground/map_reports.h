@@ -20,7 +20,7 @@ struct Shown {
   bool turns_left;     ///< sense of rotation
 };
 
-/// What the map is told of a block, as arrays that are longer than needed. Distances and heights are metres. Flags are
+/// What a block shows of the map, as arrays that are longer than needed. Distances and heights are metres. Flags are
 /// words, since stores of bytes may be to any pointer.
 struct MapReports {
   /// Rays of the latest column of the rows: each passes above the ground from one distance to another.
@@ -29,22 +29,24 @@ struct MapReports {
     AlignedVector<float> slope;              ///< of the ray
     AlignedVector<std::int32_t> first, end;  ///< the bins in between
     std::vector<std::uint32_t> sector;       ///< of the map
-    std::vector<std::uint32_t> has_ground;   ///< it shows the next of the stretches, too: 1, else 0
+    std::vector<std::uint32_t> has_ground;   ///< 1 if the next stretch ends with this ray, else 0
   };
   /// Ground found from one distance to another.
   struct Stretches {
     AlignedVector<float> from_rho, from_height, rho, height;
     AlignedVector<float> long_slope;          ///< of the ground up to rho, over a longer way
     AlignedVector<float> slope, offset, ray;  ///< of the line that is entered, and of the ray to its end
-    AlignedVector<std::int32_t> first, last;  ///< bins; if it is no ground, the last one is -1
+    AlignedVector<std::int32_t> first, last;  ///< bins; last is -1 for a stretch that is not entered
     std::vector<std::uint32_t> sector;        ///< of the map
-    std::vector<std::uint32_t> is_doubted;    ///< it is not where the ground before lets expect it
-    std::vector<std::uint32_t> is_last;       ///< behind one more: no ground has been found beyond
+    std::vector<std::uint32_t> is_doubted;    ///< 1 if it is off the ground of the blocks before, else 0
+    std::vector<std::uint32_t>
+        is_last;  ///< element s + 1: 1 if no stretch lies beyond stretch s, else 0; element 0: unused
   };
   Rays rays;
   Stretches stretches;
-  std::vector<std::uint32_t> ground;  ///< positions of the rows with ground
-  std::vector<std::uint32_t> latest;  ///< by position: the latest stretch from there down
+  std::vector<std::uint32_t> stretch_rows;  ///< of each stretch, the position of its row
+  std::vector<std::uint32_t>
+      latest;  ///< element i + 1, of row i: 1 + its outermost stretch, 0 if none; element 0: none
 
   /// Allocates only if there are more lasers than ever before.
   void begin(std::size_t lasers);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/ground/polar_grid.h"
+#include "core/ground/column_profile.h"
 
 namespace lisco::ground {
 namespace {
@@ -86,10 +86,10 @@ void PlaneEstimator::add(const Block& block, const Columns& columns, std::size_t
     levels_[i] = levelOf(height_[i]);
   }
   for (std::size_t i = 0; i < count; ++i) lowest_[i] = ground::lowestOf(rho_[i], height_[i]);
-  Sector sector;  // of all azimuths: lasers of a column may be staggered
+  ColumnProfile profile;  // of all azimuths: lasers of a column may be staggered
   Direction sum{0.0F, 0.0F};
   for (std::size_t i = 0; i < count; ++i) {
-    sector.add(bins_[i], lowest_[i], levels_[i]);
+    profile.add(bins_[i], lowest_[i], levels_[i]);
     sum.x += x_[i];
     sum.y += y_[i];
   }
@@ -98,8 +98,8 @@ void PlaneEstimator::add(const Block& block, const Columns& columns, std::size_t
 
   std::array<Low, kMaxCells + 1> lows;
   std::size_t size = 0;
-  forEachBin(sector, [&](std::size_t bin) {
-    const Cell& cell = sector.cells[bin];
+  forEachBin(profile, [&](std::size_t bin) {
+    const Cell& cell = profile.cells[bin];
     lows[size] = {cell.lowRho(), cell.low()};
     size += static_cast<std::size_t>((size < kMaxCells) & isBare(cell.low(), cell.levels));
   });
@@ -119,8 +119,8 @@ void PlaneEstimator::add(const Block& block, const Columns& columns, std::size_t
   // Whether the column has returns below a line, as those of the floor are beyond a table.
   const auto isPassedBelow = [&](float height, float slope) {
     bool is_below = false;
-    forEachBin(sector, [&](std::size_t bin) {
-      const float rho = sector.cells[bin].lowRho(), below = height + slope * rho - sector.cells[bin].low();
+    forEachBin(profile, [&](std::size_t bin) {
+      const float rho = profile.cells[bin].lowRho(), below = height + slope * rho - profile.cells[bin].low();
       is_below = is_below || (rho < kRoom && below > kBelowTable);
     });
     return is_below;

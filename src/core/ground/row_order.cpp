@@ -6,9 +6,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/ground/polar_grid.h"
+#include "core/ground/column_profile.h"
 #include "core/ground/targets.h"
-#include "core/pi.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/ground/row_order.cpp"
@@ -20,13 +19,13 @@ namespace lisco {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
+using ground::kTurn;
 using ground::RowOrder;
 
 using AzimuthFloats = hn::CappedTag<float, RowOrder::kPadding>;
 constexpr AzimuthFloats kAzimuths{};
 constexpr auto kStep = static_cast<std::int32_t>(hn::MaxLanes(kAzimuths));
 
-constexpr float kTurn = static_cast<float>(2.0 * kPi);
 // Least loss of objects and of ground in the tables of benchmarks/suite.sh ground ground_real.
 constexpr float kSameAzimuth = 0.022F;  // radians
 constexpr float kNearAzimuth = 0.04F;   // radians; for the row below, if none has the same azimuth
@@ -102,11 +101,6 @@ namespace lisco {
 HWY_EXPORT(linkRows);
 
 namespace ground {
-namespace {
-
-constexpr float kTurn = static_cast<float>(2.0 * kPi);
-
-}  // namespace
 
 void RowOrder::begin(std::size_t lasers) {
   lasers_ = lasers;
@@ -137,7 +131,7 @@ void RowOrder::update(const Block& block) {
 void RowOrder::sort() {
   const auto keyOf = [&](std::size_t row) {
     // A slope of -0 is one of 0.
-    return std::uint64_t{orderedHeight(latest_.height[row] / latest_.rho[row] + 0.0F)} << 32 | row;
+    return std::uint64_t{orderedBits(latest_.height[row] / latest_.rho[row] + 0.0F)} << 32 | row;
   };
   // Mostly the order is that of the last time.
   for (std::uint64_t& key : order_) key = keyOf(static_cast<std::size_t>(rowOf(key)));

@@ -50,9 +50,9 @@ class RowOrder {
   std::size_t lasers_ = 0;
   LatestReturns latest_;
   std::vector<Row> rows_;
-  std::vector<std::uint64_t> order_;  // slope and row; see orderedHeight
-  // By position in the order, of the latest return: its azimuth, turned to the latest block, behind and before more
-  // elements than a vector has; and the slope of its ray.
+  std::vector<std::uint64_t> order_;  // slope and row; see orderedBits
+  // By position in the order: azimuth of the latest return, turned on to the latest block, radians, with kPadding
+  // elements before and behind; and the slope of its ray.
   std::vector<float> azimuths_, slopes_;
   std::uint32_t block_ = 0;
   std::uint32_t sort_at_ = 0;

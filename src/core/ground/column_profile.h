@@ -12,12 +12,13 @@
 
 namespace lisco::ground {
 
-/// Of distance, eight for each octave of the squared distance: each is 4 % wider than the one before.
+/// Bins of horizontal distance: eight of equal width in each octave of the squared distance, 3 to 6 % of it wide. Bin 0
+/// begins at 0.5 m; nearer returns belong to it.
 inline constexpr std::size_t kBins = 192;
 
-/// What the returns in a cell of the polar grid show. Heights are metres above the sensor's horizon.
+/// What the returns in a bin of a column show. Heights are metres above the sensor's horizon.
 struct Cell {
-  /// Of the lowest return, so that a return below it has a lower number: its height (see orderedHeight) in the upper
+  /// Of the lowest return, so that a return below it has a lower number: its height (see orderedBits) in the upper
   /// half, its horizontal distance from the sensor in the lower half.
   std::uint64_t lowest;
   std::uint64_t levels;  ///< occupied heights: bit i for level i modulo 64
@@ -31,10 +32,10 @@ struct Cell {
   }
 };
 
-/// The bits of a height as an integer that grows with it.
-inline std::uint32_t orderedHeight(float height) {
+/// The bits of a number as an integer of the same order; -0 is below 0.
+inline std::uint32_t orderedBits(float number) {
   std::uint32_t bits;
-  std::memcpy(&bits, &height, sizeof bits);
+  std::memcpy(&bits, &number, sizeof bits);
   return bits ^ ((bits >> 31) * 0x7FFFFFFFU | 0x80000000U);
 }
 
@@ -50,7 +51,7 @@ inline float Cell::low() const {
 inline std::uint64_t lowestOf(float rho, float height) {
   std::uint32_t bits;
   std::memcpy(&bits, &rho, sizeof bits);
-  return std::uint64_t{orderedHeight(height)} << 32 | bits;
+  return std::uint64_t{orderedBits(height)} << 32 | bits;
 }
 
 inline constexpr float kLevelsPerMetre = 4.0F;  ///< of height
@@ -73,8 +74,8 @@ inline std::uint32_t binOf(float rho) {
   return static_cast<std::uint32_t>(positive > kLast ? kLast : positive);
 }
 
-/// The cells of one azimuth, from the sensor outwards.
-struct Sector {
+/// The returns of a column by distance, from the sensor outwards.
+struct ColumnProfile {
   std::array<Cell, kBins> cells;
   std::array<std::uint64_t, kBins / 64> occupied{};  ///< bit i: cell i has returns; only then it has a value
 
@@ -94,14 +95,15 @@ struct Sector {
   }
 };
 
-/// Calls visit(bin) for each cell with returns, from the sensor outwards.
+/// Calls visit(bin) for each bin with returns, from the sensor outwards.
 template <typename Visit>
-void forEachBin(const Sector& sector, Visit&& visit) {
-  for (std::size_t word = 0; word < sector.occupied.size(); ++word)
-    forEachBit(sector.occupied[word], [&](std::size_t bit) { visit(word * 64 + bit); });
+void forEachBin(const ColumnProfile& profile, Visit&& visit) {
+  for (std::size_t word = 0; word < profile.occupied.size(); ++word)
+    forEachBit(profile.occupied[word], [&](std::size_t bit) { visit(word * 64 + bit); });
 }
 
-/// Whether none of the occupied levels is up to about 2 m above a height.
+/// Whether no level from the second to the eighth above a height, about 0.4 to 2.1 m, is occupied. Levels repeat every
+/// 16 m.
 inline bool isBare(float low, std::uint64_t levels) {
   constexpr std::uint64_t kAbove = 0x7F;  // levels
   const unsigned level = levelOf(low);
