@@ -15,8 +15,8 @@
 namespace lisco_apps {
 namespace {
 
-/// Whether points lie around the sensor as those of a rotating one do, or of a sector of its turn: on several sides, and
-/// hardly any straight above or below it, where cameras look and the middle of a map is.
+/// Whether points lie around the sensor as those of a turn or of a sector do: on several sides, and hardly any straight
+/// above or below it, where cameras look and the middle of a map is.
 bool isAroundSensor(const Cloud& cloud) {
   constexpr std::size_t kBins = 360;
   constexpr double kMinSides = 1.0 / 12;

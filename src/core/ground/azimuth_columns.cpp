@@ -90,8 +90,8 @@ void AzimuthColumns::measure(const StridedPoints& points, std::size_t count, con
   items_.resize(returns);
 }
 
-/// Joins pairs of bins until most of those with returns are followed by one: a bin narrower than the sensor's step would
-/// be empty beside a bin of a whole column. \return how often
+/// Joins pairs of bins until most of those with returns are followed by one: a bin narrower than the sensor's step
+/// would be empty beside a bin of a whole column. \return how often
 unsigned AzimuthColumns::widen() {
   unsigned widened = 0;
   for (; sizes_.size() > kWidestBins; ++widened) {

@@ -27,7 +27,7 @@ class Follower {
   void followFirstRows(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map,
                        std::uint32_t number);
   /// Follows the other rows, and writes the decisions on all.
-  /// \param ground zeros, in rows of `stride`; receives 1 for each of the first `columns` cells of a laser on the ground
+  /// \param ground zeros, in rows of `stride`; receives 1 for each of a laser's first `columns` cells on the ground
   void followOtherRows(const Block& block, const RowOrder& order, const GroundMap& map, std::uint8_t* ground,
                        std::size_t columns, std::size_t stride);
   /// Enters the block just followed into the map.

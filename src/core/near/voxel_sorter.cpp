@@ -181,7 +181,7 @@ bool VoxelSorter::number(std::vector<SingleReturns>& parts, const Tolerance& tol
 
 /// Sorts all fragments by voxel, in slabs. \return false if the voxels cannot be numbered
 bool VoxelSorter::sortFragments(const Tolerance& tolerance) {
-  if (!numberVoxels(tolerance)) return false;
+  if (!chooseNumbering(tolerance)) return false;
   cutFragments();
   divide();
   if (planes_.size() < 2 * slabs_.size()) planes_.resize(2 * slabs_.size());
@@ -221,7 +221,7 @@ void VoxelSorter::numberReturns(const Slab& slab) {
 }
 
 /// Chooses the axes and the bits of the keys.
-bool VoxelSorter::numberVoxels(const Tolerance& tolerance) {
+bool VoxelSorter::chooseNumbering(const Tolerance& tolerance) {
   if (tolerance.reach() < kMinSortedTolerance || tolerance.reach() > kMaxSortedTolerance) return false;
   if (fragments_.end > VoxelPlane::kInItems) return false;
   numbering_.per_metre = 1 / (kVoxelSide * tolerance.reach());
@@ -255,7 +255,7 @@ bool VoxelSorter::numberVoxels(const Tolerance& tolerance) {
   return numbering_.bits + number_bits_ <= 64;
 }
 
-/// Numbers the voxels of all returns, each part by a thread of its own.
+/// Cuts all returns into fragments with their keys, each part by a thread of its own.
 void VoxelSorter::cutFragments() {
   const std::size_t size = fragments_.end;
   items_.grow(size + kPrefetch);

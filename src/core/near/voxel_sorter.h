@@ -68,7 +68,7 @@ class VoxelSorter {
   const Sets* sets() const { return reinterpret_cast<const Sets*>(scratch_.data()); }
 
   bool sortFragments(const Tolerance& tolerance);
-  bool numberVoxels(const Tolerance& tolerance);
+  bool chooseNumbering(const Tolerance& tolerance);
   void cutFragments();
   void divide();
   void sort(const Slab& slab);
