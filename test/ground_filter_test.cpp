@@ -397,6 +397,25 @@ TEST(LabelGround, SortsUnorganizedPoints) {
   EXPECT_EQ(lost, 0U);
 }
 
+TEST(LabelGround, FindsTheGroundOfUnorganizedPointsInAVehiclesFrame) {
+  // The sensor is 1.8 m above the ground, where the vehicle's origin is, and 1.2 m in front of it.
+  const Scan scan = planeWithWall(32, 1000, 20.0);
+  std::vector<std::array<float, 3>> points;
+  for (const lisco::Return& cell : scan.cells)
+    if (lisco::isReturn(cell.x, cell.y, cell.z)) points.push_back({cell.x + 1.2F, cell.y, cell.z + 1.8F});
+  std::vector<std::uint8_t> ground(points.size(), 7);
+  lisco::labelGround(points.data(), points.size(), sizeof points[0], {}, ground.data());
+  double plane = 0, found = 0, lost = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    plane += points[i][2] < 0.001F;
+    found += points[i][2] < 0.001F && ground[i] == 1;
+    lost += points[i][2] > 0.4F && ground[i] == 1;
+  }
+  EXPECT_GT(plane, 5000);
+  EXPECT_GT(found, 0.99 * plane);
+  EXPECT_EQ(lost, 0);
+}
+
 TEST(LabelGround, FindsNothingAmongPlants) {
   // Leaves 0.9 m to 1.4 m away hide the floor all around the sensor.
   for (const std::size_t lasers : {16U, 32U, 64U}) {

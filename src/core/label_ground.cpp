@@ -3,6 +3,7 @@
 #include "lisco/label_ground.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <vector>
 
@@ -26,6 +27,55 @@ void check(const void* points, std::size_t count, std::size_t stride, const Labe
     throw std::invalid_argument("lisco::labelGround: the number of points must be a multiple of the lasers");
   if (count > 0 && (points == nullptr || ground == nullptr))
     throw std::invalid_argument("lisco::labelGround: points and ground must not be null");
+}
+
+/// Reads the points in the cells of columns.
+struct SortedPoints {
+  const AzimuthColumns& columns;
+  const StridedPoints& all;
+
+  void operator()(std::size_t row, std::size_t first, std::size_t count, const CellSource::Destination& to) const {
+    // Chosen without a branch: which cells are empty cannot be predicted.
+    const StridedPoints none{reinterpret_cast<const unsigned char*>(&kNoReturn), 0};
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t point = columns.pointAt(row, first + i);
+      const Return cell = (point == AzimuthColumns::kNone ? none : all).at(point);
+      to.x[i] = cell.x;
+      to.y[i] = cell.y;
+      to.z[i] = cell.z;
+      to.source_index[i] = 0;
+    }
+  }
+};
+
+/// \param parameters with the origin
+/// \param ground receives `count` bytes
+void labelUnorganized(const StridedPoints& points, std::size_t count, GroundParameters parameters,
+                      std::uint8_t* ground) {
+  // Metres. Seen from a point on the ground, as is the origin of a vehicle's frame, rays to the ground do not rise with
+  // the distance; seen from above it, they do. Of a scan in its sensor's frame, that point finds as much.
+  constexpr float kLowOrigin = 0.5F, kRise = 1.5F;
+  std::fill_n(ground, count, std::uint8_t{0});
+  AzimuthColumns columns(points, count, parameters.sensor.origin);
+  SortedPoints cells{columns, points};
+  const auto estimated = [&] {
+    return estimateGroundPlane(columns.columns(), columns.rows(), parameters, CellSource(cells));
+  };
+  GroundParameters plane = estimated();
+  if (std::isnan(parameters.sensor_height) && plane.sensor_height < kLowOrigin) {
+    parameters.sensor.origin[2] += kRise;
+    columns = AzimuthColumns(points, count, parameters.sensor.origin);
+    plane = estimated();
+  }
+  if (std::isnan(plane.sensor_height)) return;
+  std::vector<std::uint8_t> decisions(columns.rows() * columns.columns());
+  GroundFilter().filter(plane, columns.columns(), columns.rows(), cells, decisions.data());
+  std::uint8_t of_none = 0;
+  for (std::size_t column = 0; column < columns.columns(); ++column)
+    for (std::size_t row = 0; row < columns.rows(); ++row) {
+      const std::uint32_t point = columns.pointAt(row, column);
+      *(point == AzimuthColumns::kNone ? &of_none : ground + point) = decisions[row * columns.columns() + column];
+    }
 }
 
 }  // namespace
@@ -53,28 +103,7 @@ void labelGround(const void* points, std::size_t count, std::size_t stride, cons
   }
   sensor = SensorHints();
   sensor.origin = parameters.origin;
-  const AzimuthColumns sorted(all, count, parameters.origin);
-  // Pointers are chosen without branches: which cells are empty cannot be predicted.
-  const auto cells = [&](std::size_t row, std::size_t first, std::size_t columns, const CellSource::Destination& to) {
-    const StridedPoints none{reinterpret_cast<const unsigned char*>(&kNoReturn), 0};
-    for (std::size_t i = 0; i < columns; ++i) {
-      const std::uint32_t point = sorted.pointAt(row, first + i);
-      const Return cell = (point == AzimuthColumns::kNone ? none : all).at(point);
-      to.x[i] = cell.x;
-      to.y[i] = cell.y;
-      to.z[i] = cell.z;
-      to.source_index[i] = 0;
-    }
-  };
-  std::vector<std::uint8_t> decisions(sorted.rows() * sorted.columns());
-  filter.filterScan(filter_parameters, sorted.columns(), sorted.rows(), cells, decisions.data());
-  std::fill_n(ground, count, std::uint8_t{0});
-  std::uint8_t of_none = 0;
-  for (std::size_t column = 0; column < sorted.columns(); ++column)
-    for (std::size_t row = 0; row < sorted.rows(); ++row) {
-      const std::uint32_t point = sorted.pointAt(row, column);
-      *(point == AzimuthColumns::kNone ? &of_none : ground + point) = decisions[row * sorted.columns() + column];
-    }
+  labelUnorganized(all, count, filter_parameters, ground);
 }
 
 }  // namespace lisco

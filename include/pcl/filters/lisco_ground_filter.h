@@ -28,8 +28,9 @@ namespace pcl {
  *
  * The cloud's z axis points up, to within about 10 degrees. Organized scans (height = lasers, width = steps of the
  * rotation) are filtered column by column, as lisco::GroundFilter does it; the sensor's position and tilt are
- * estimated. Unorganized clouds, in any order, are sorted by azimuth about sensor_origin_ first. If the height is not
- * set, and the cloud as a whole shows no ground clearly, none is removed. \ingroup filters
+ * estimated. Unorganized clouds, in any order, are sorted by azimuth about sensor_origin_ first, or about a point above
+ * it, where the ground is at its height, as in a vehicle's frame. If the height is not set, and the cloud as a whole
+ * shows no ground clearly, none is removed. \ingroup filters
  */
 template <typename PointT>
 class LiscoGroundFilter : public FilterIndices<PointT> {
