@@ -67,7 +67,7 @@ std::size_t BlockScheduler::columnsToSpreadOver() const {
 
 void BlockScheduler::finish(Partition& partition, DisjointSets& subclusters) {
   finishPending(partition, subclusters);
-  if (isEmpty()) return;
+  if (isStageEmpty()) return;
   std::swap(staged_, pending_);
   columns_since_block_ = 0;
   finishPending(partition, subclusters);

@@ -52,11 +52,11 @@ class BlockScheduler {
   void begin(std::size_t block_columns);
 
   /// Whether columns were taken or skipped since begin ().
-  bool hasColumns() const { return columns_read_ > 0 || !isEmpty() || pending_.columns() > 0; }
+  bool hasColumns() const { return columns_read_ > 0 || !isStageEmpty() || pending_.columns() > 0; }
 
   /// Number of columns until the block is complete.
   std::size_t columnsLeft() const { return block_columns_ - staged_.columns(); }
-  bool isEmpty() const { return staged_.columns() == 0; }
+  bool isStageEmpty() const { return staged_.columns() == 0; }
 
   /// Takes at most columnsLeft () columns, and does the work that is due.
   void add(const CellSource& cells, std::size_t first, std::size_t count, std::size_t lasers, Partition& partition,

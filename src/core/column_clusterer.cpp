@@ -27,7 +27,7 @@ class ColumnClusterer::Rotation {
   /// subclusters = {}
   void begin(const Parameters& parameters);
   /// Event "reception of step s", for several steps.
-  /// \param column the cells of the only one side by side, or nullptr
+  /// \param column if there is one column: its cells, contiguous; else nullptr
   void receive(std::size_t columns, std::size_t lasers, const CellSource& cells, const Return* column = nullptr);
   /// Event "all steps processed".
   void update();
@@ -116,7 +116,7 @@ static_assert(kTriedColumns % RingBlock::kColumns == 0, "whole blocks are read")
 /// The first columns do not show it, as the motion grows from there. At rest 0.05, up to 0.8 in a vehicle's frame; in
 /// motion 1 to 20 (recordings).
 constexpr float kMaxDrift = 1.25F;
-/// Of a range image: more columns than a turn has need no more bins.
+/// Columns that a range image is prepared for when their number is unknown: it needs no more bins than a turn has.
 constexpr std::size_t kWholeTurn = ~std::size_t{0};
 /// Columns that are read from their source; fewer are gathered into blocks, which evens out their work (latency).
 constexpr std::size_t kWorthReadingAtOnce = 16;
@@ -311,7 +311,7 @@ void ColumnClusterer::Rotation::receiveInSequence(std::size_t columns, std::size
   for (std::size_t first = 0; first < columns;) {
     const std::size_t count = std::min(columns - first, scheduler_.columnsLeft());
     const bool is_block = count == parameters_.block_columns || count >= kWorthReadingAtOnce;
-    if (scheduler_.isEmpty() && is_block) {
+    if (scheduler_.isStageEmpty() && is_block) {
       scheduler_.finishPending(partition, subclusters_);
       partition.readColumns(cells, first, count, lasers, scheduler_.columnsRead(), subclusters_);
       scheduler_.skipColumns(count);

@@ -43,7 +43,7 @@ class LoadBalancer {
     if (columns == 0) return;
     const std::size_t begin = first / kGroup;
     const std::size_t end = (first + columns + kGroup - 1) / kGroup;
-    // At least 1, so that every column belongs to a part.
+    // At least 1, so that every column belongs to a part; at most 2^30, which 32 bits hold.
     const std::size_t weight = std::clamp<std::size_t>(work / (end - begin), 1, std::size_t{1} << 30U);
     std::fill(weights_.begin() + static_cast<std::ptrdiff_t>(begin),
               weights_.begin() + static_cast<std::ptrdiff_t>(end), static_cast<std::uint32_t>(weight));

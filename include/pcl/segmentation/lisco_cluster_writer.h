@@ -43,7 +43,7 @@ class LiscoClusterWriter {
   /** \param[in] clusterer lisco::ColumnClusterer or lisco::WindowClusterer, after update () */
   LiscoClusterWriter(const Clusterer& clusterer, const PCLHeader& header, uindex_t min_size, uindex_t max_size,
                      LiscoClusterPlaces& places, std::vector<PointIndices>& clusters)
-      : sizes_(clusterer.sizes()), header_(header), places_(places), clusters_(clusters), before_(clusters.size()) {
+      : sizes_(clusterer.sizes()), header_(header), places_(places), clusters_(clusters), first_own_(clusters.size()) {
     const std::size_t count = clusterer.subclusterCount();
     places_.next.resize(count);
     for (std::size_t i = 0; i < count; ++i)
@@ -54,7 +54,7 @@ class LiscoClusterWriter {
 
   /** \brief Gives the cluster of a subcluster the next place, unless it has one or its size is not accepted. */
   void place(std::uint32_t subcluster) {
-    if (places_.next[subcluster] == nullptr) places_.next[subcluster] = begin(sizes_[subcluster]);
+    if (places_.next[subcluster] == nullptr) places_.next[subcluster] = addCluster(sizes_[subcluster]);
   }
 
   /** \brief Gives all clusters that have none a place, so that a second thread may append () from the last points
@@ -64,13 +64,14 @@ class LiscoClusterWriter {
     places_.last.resize(places_.next.size());
     for (std::uint32_t i = 0; i < places_.next.size(); ++i) {
       place(i);
-      places_.last[i] = places_.next[i] == ignored_ ? ignored_from_last_ + kMaxIgnored : places_.next[i] + sizes_[i];
+      places_.last[i] = places_.next[i] == ignored(From::kFirst) ? ignored(From::kLast) : places_.next[i] + sizes_[i];
     }
   }
 
   /** \brief Appends points to the cluster of a subcluster, if its size is accepted. In all, as many points are appended
    * as its size says.
-   * \param[in] from the last: prepends to what has been appended from there; after placeAll ()
+   * \param[in] from the first: behind the points appended so far; the last: fills the cluster from its end backwards,
+   * after placeAll ()
    * \param[in] count at least 1
    * \param[in] point_at callable as index_t (std::size_t i), below \a count; may be called several times
    */
@@ -79,9 +80,9 @@ class LiscoClusterWriter {
     const bool is_first = from == From::kFirst;
     if (is_first) place(subcluster);
     index_t*& next = is_first ? places_.next[subcluster] : places_.last[subcluster];
-    const bool is_accepted = next != (is_first ? ignored_ : ignored_from_last_ + kMaxIgnored);
+    const bool is_accepted = next != ignored(from);
     if (count > kMaxIgnored && !is_accepted) return;
-    // Those of sizes not accepted are written as well: which sizes follow each other is not foreseen.
+    // Points of sizes that are not accepted are written, too: a branch on the size would be mispredicted.
     copy(is_first ? next : next - count, count, point_at);
     const std::size_t advance = count & (std::size_t{0} - std::size_t{is_accepted});  // without a branch
     next = is_first ? next + advance : next - advance;
@@ -95,33 +96,38 @@ class LiscoClusterWriter {
   void appendSingle(From from, const std::uint32_t* subclusters, std::size_t count, PointAt&& point_at) {
     if (from == From::kFirst) {
       for (std::size_t i = 0; i < count; ++i) place(subclusters[i]);
-      appendPairs<1>(places_.next.data(), ignored_, subclusters, count, point_at);
+      appendPairs<1>(places_.next.data(), ignored(from), subclusters, count, point_at);
     } else {
-      appendPairs<-1>(places_.last.data(), ignored_from_last_ + kMaxIgnored, subclusters, count, point_at);
+      appendPairs<-1>(places_.last.data(), ignored(from), subclusters, count, point_at);
     }
   }
 
   /** \brief Orders the clusters by their first points, which all have been appended, instead of their places. */
   void orderByFirstPoints() {
     places_.order.clear();
-    for (std::size_t i = before_; i < clusters_.size(); ++i) places_.order.push_back(i);
+    for (std::size_t i = first_own_; i < clusters_.size(); ++i) places_.order.push_back(i);
     std::sort(places_.order.begin(), places_.order.end(), [this](std::size_t a, std::size_t b) {
       return (clusters_[a].indices.front() < clusters_[b].indices.front());
     });
     places_.ordered.clear();
     for (const std::size_t i : places_.order) places_.ordered.push_back(std::move(clusters_[i]));
-    std::move(places_.ordered.begin(), places_.ordered.end(), clusters_.begin() + static_cast<std::ptrdiff_t>(before_));
+    std::move(places_.ordered.begin(), places_.ordered.end(),
+              clusters_.begin() + static_cast<std::ptrdiff_t>(first_own_));
   }
 
  private:
+  /// Longest run of a size that is not accepted which is written there; longer ones are skipped by a branch.
   static constexpr std::size_t kMaxIgnored = 64;
+
+  /** \brief The place of points of sizes that are not accepted. */
+  index_t* ignored(From from) { return (from == From::kFirst ? ignored_ : ignored_from_last_ + kMaxIgnored); }
 
   /** \brief Writes four points at a time, the last four again if need be: a branch for each point costs more. */
   template <typename PointAt>
   static void copy(index_t* to, std::size_t count, PointAt&& point_at) {
     constexpr std::size_t kStep = 4;
     if (count < kStep) {
-      for (const std::size_t i : {std::size_t{0}, count / 2, count - 1}) to[i] = point_at(i);
+      for (const std::size_t i : {std::size_t{0}, count / 2, count - 1}) to[i] = point_at(i);  // 1, 2 or 3 points
       return;
     }
     const auto copy_some = [&](std::size_t first) {
@@ -158,7 +164,7 @@ class LiscoClusterWriter {
     place += stepOf(place);
   }
 
-  index_t* begin(std::uint32_t size) {
+  index_t* addCluster(std::uint32_t size) {
     static_assert(std::is_nothrow_move_constructible<PointIndices>::value, "clusters that move keep their indices");
     clusters_.emplace_back();
     clusters_.back().header = header_;
@@ -172,7 +178,7 @@ class LiscoClusterWriter {
   index_t ignored_[kMaxIgnored];            ///< where points of subclusters of other sizes go
   index_t ignored_from_last_[kMaxIgnored];  ///< the same, from the last backwards
   std::vector<PointIndices>& clusters_;
-  const std::size_t before_;  ///< clusters of others in the vector
+  const std::size_t first_own_;  ///< of the clusters, the first that this writer adds
 };
 
 /** \brief Appends what lisco::ColumnClusterer::forEachRun () visits; source indices are points. */

@@ -20,7 +20,7 @@
 
 namespace pcl::detail {
 
-/** \brief The latest columns of a stream. Each cell has a name, its source index in the clustering engine: a running
+/** \brief The latest columns of a stream. Each cell has an id, its source index in the clustering engine: a running
  * number, modulo 2^32. Keeps its memory, which is that of the most cells held at once.
  *
  * Memory comes from std::allocator, as all memory that the library allocates: see LiscoColumnStream::allocate ().
@@ -37,11 +37,11 @@ class LiscoColumnStore {
   /** \brief Drops all columns. */
   void clear() {
     first_column_ = end_column_ = 0;
-    first_cell_ = end_cell_ = kFirstName;
+    first_cell_ = end_cell_ = kFirstId;
   }
 
   /** \brief Appends a column.
-   * \return the name of its first cell; those of the others follow
+   * \return the id of its first cell; those of the others follow
    */
   std::uint32_t add(const PointT* points, std::size_t rows, double position = 0) {
     reserve(rows);
@@ -75,11 +75,11 @@ class LiscoColumnStore {
   const PointT& at(std::size_t row, std::uint64_t column) const {
     return (pointOf(columns_[slotOf(column)].first_cell + static_cast<std::uint32_t>(row)));
   }
-  const PointT& pointOf(std::uint32_t name) const { return (points_[name & (points_.size() - 1)]); }
-  Cell cellOf(std::uint32_t name) const {
-    const std::uint32_t low_bits = column_of_cell_[name & (points_.size() - 1)];
+  const PointT& pointOf(std::uint32_t id) const { return (points_[id & (points_.size() - 1)]); }
+  Cell cellOf(std::uint32_t id) const {
+    const std::uint32_t low_bits = column_of_cell_[id & (points_.size() - 1)];
     const std::uint64_t column = first_column_ + (low_bits - static_cast<std::uint32_t>(first_column_));
-    return {column, name - columns_[slotOf(column)].first_cell};
+    return {column, id - columns_[slotOf(column)].first_cell};
   }
 
   /** \brief The most rows of some columns. */
@@ -104,7 +104,7 @@ class LiscoColumnStore {
 
  private:
   struct Column {
-    std::uint32_t first_cell;  ///< its name
+    std::uint32_t first_cell;  ///< its id
     std::uint32_t rows;
     double position;
   };
@@ -135,17 +135,19 @@ class LiscoColumnStore {
     column_of_cell_.swap(column_of_cell);
   }
 
-  /// Arbitrary; so near to 2^32 that names wrap around in nearly every stream.
-  static constexpr std::uint32_t kFirstName = ~std::uint32_t{0} - 100;
+  /// Any value is right; of this one, ids wrap around in nearly every stream, so that nearly every test covers it.
+  static constexpr std::uint32_t kFirstId = ~std::uint32_t{0} - 100;
 
   std::uint64_t first_column_ = 0, end_column_ = 0;
-  std::uint32_t first_cell_ = kFirstName, end_cell_ = kFirstName;  ///< names
+  std::uint32_t first_cell_ = kFirstId, end_cell_ = kFirstId;  ///< ids
   std::vector<Column> columns_;
   std::vector<PointT> points_;
   std::vector<std::uint32_t> column_of_cell_;  ///< its lowest 32 bits
 };
 
-/** \brief The part common to the states of the classes that receive one column after the other. */
+/** \brief The columns received by LiscoStreamExtraction, LiscoWindowExtraction and LiscoEndlessExtraction: base of their
+ * states.
+ */
 template <typename PointT>
 class LiscoReceivedColumns {
  public:
@@ -179,19 +181,20 @@ class LiscoReceivedColumns {
 
   /** \brief Stores a column that accepts () has passed. Until the caller has clustered it and sets it again, begun is
    * false.
-   * \return the column as the engine takes it, with the cells' names for source indices; valid until the next call
+   * \return the column as the engine takes it, with the cells' ids for source indices; valid until the next call
    */
   const lisco::Return* add(const PointT* points, std::size_t count, double position = 0) {
     begun = false;
     max_rows_ = std::max(max_rows_, count);
-    named_column_.resize(count);  // may throw: before the column is stored
-    std::uint32_t name = store.add(points, count, position);
+    column_with_ids_.resize(count);  // may throw: before the column is stored
+    std::uint32_t id = store.add(points, count, position);
     for (std::size_t row = 0; row < count; ++row)
-      named_column_[row] = {points[row].x, points[row].y, points[row].z, name++};
-    return (named_column_.data());
+      column_with_ids_[row] = {points[row].x, points[row].y, points[row].z, id++};
+    return (column_with_ids_.data());
   }
 
-  /** \brief Appends the clusters of some columns as LiscoClusterExtraction does it for their organized cloud.
+  /** \brief Appends the clusters of some columns as LiscoClusterExtraction does it for their organized cloud;
+   * clears them if that is empty.
    * \param[in] clusterer holds the subclusters of just these columns
    * \param[in] settings the sizes that clusters may have, and their header
    */
@@ -205,8 +208,8 @@ class LiscoReceivedColumns {
     const std::uint64_t width = end_column - first_column;
     LiscoClusterWriter writer(clusterer, settings.getHeader(), settings.getMinClusterSize(),
                               settings.getMaxClusterSize(), places_, clusters);
-    clusterer.forEachRun([&](const std::uint32_t* names, std::size_t count, std::uint32_t subcluster) {
-      const auto cell = store.cellOf(names[0]);  // the others follow it in its row
+    clusterer.forEachRun([&](const std::uint32_t* ids, std::size_t count, std::uint32_t subcluster) {
+      const auto cell = store.cellOf(ids[0]);  // the others follow it in its row
       const auto first = static_cast<index_t>(cell.row * width + (cell.column - first_column));
       writer.append(lisco::RunVisitor::From::kFirst, subcluster, count,
                     [first](std::size_t i) { return static_cast<index_t>(first + static_cast<index_t>(i)); });
@@ -222,7 +225,7 @@ class LiscoReceivedColumns {
  private:
   std::size_t max_rows_ = 0;
   LiscoClusterPlaces places_;
-  std::vector<lisco::Return> named_column_;
+  std::vector<lisco::Return> column_with_ids_;
 };
 
 }  // namespace pcl::detail
