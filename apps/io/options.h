@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -106,11 +107,20 @@ class PerInput {
   Value otherwise_;
 };
 
-/// The body of main (): turns an exception into one line on stderr and exit code 2.
+/// Flushes the standard output. \throws std::runtime_error with one line if it, or a part before, cannot be written
+inline void flushOutput() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    throw std::runtime_error("the standard output cannot be written");
+}
+
+/// The body of main (): flushes the standard output at the end, turns an exception into one line on stderr and exit
+/// code 2.
 template <typename Run>
 int runProgram(const char* name, Run&& run) {
   try {
-    return run();
+    const int code = run();
+    flushOutput();
+    return code;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", name, error.what());
     return 2;

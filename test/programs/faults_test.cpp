@@ -61,6 +61,23 @@ TEST_F(Programs, LeaveNoPartialFilesOnAFullDisk) {
   }
 }
 
+TEST_F(Programs, ReportAnUnwritableStandardOutput) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  const std::string compare = LISCO_COMPARE + std::string(" scan.pcd -t 0.4 --check-only --baselines lisco");
+  for (const std::string& command :
+       {program_ + " scan.pcd -t 0.4", program_ + " scan.pcd -t 0.4 --json", program_ + " --help", compare,
+        LISCO_COMPARE + std::string(" --version"), LISCO_SIMULATE + std::string(" --scene 1 -o other.pcd"),
+        LISCO_SIMULATE + std::string(" --case sheets -o other.pcd"),
+        LISCO_SIMULATE + std::string(" --terrain road -o other.pcd")}) {
+    SCOPED_TRACE(command);
+    const Outcome outcome = runLine("sh -c '" + command + " >/dev/full'");
+    EXPECT_EQ(outcome.status, 2);
+    const std::string name = fs::path(command.substr(0, command.find(' '))).filename().string();
+    EXPECT_EQ(outcome.err.substr(outcome.err.rfind(name)), name + ": the standard output cannot be written\n");
+    fs::remove(folder_ / "other.pcd");
+  }
+}
+
 TEST_F(Programs, RefuseAFolderWithoutWritePermission) {
   if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
   fs::create_directory(folder_ / "closed");
