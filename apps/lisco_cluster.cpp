@@ -347,8 +347,8 @@ int main(int argc, char** argv) {
     if (!parse(argc, argv, options)) return 0;
     Interruption::listen();
     ScanSource source(options.inputs, options.input, Interruption::happened);
-    for (const std::string& name : options.scan.ground.namesNotIn(source.files()))
-      std::cerr << "lisco_cluster: --ground names '" << name << "', which is no input\n";
+    for (const std::string& line : options.scan.unknownNames(source.files()))
+      std::cerr << "lisco_cluster: " << line << '\n';
     return Workers(options, source).run() ? 0 : 2;
   });
 }

@@ -255,8 +255,8 @@ int compare(const Options& options) {
     checkMayWriteInto(options.plot, chartsOf(names, settings));
   }
 
-  for (const std::string& name : options.scan.ground.namesNotIn(files))
-    std::fprintf(stderr, "lisco_compare: --ground names '%s', which is no input\n", name.c_str());
+  for (const std::string& line : options.scan.unknownNames(files))
+    std::fprintf(stderr, "lisco_compare: %s\n", line.c_str());
 
   std::fputs(describeRun(settings).c_str(), stdout);
   std::fflush(stdout);

@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdio>
 #include <exception>
@@ -90,16 +89,6 @@ class PerInput {
     for (const std::string& key : {name, std::string()})
       if (const auto found = of_name_.find(key); found != of_name_.end()) return found->second;
     return otherwise_;
-  }
-
-  /// The names given that are those of no input.
-  std::vector<std::string> namesNotIn(const std::vector<fs::path>& inputs) const {
-    std::vector<std::string> unknown;
-    for (const auto& item : of_name_) {
-      const auto is_named = [&item](const fs::path& input) { return input.stem().string() == item.first; };
-      if (!item.first.empty() && std::none_of(inputs.begin(), inputs.end(), is_named)) unknown.push_back(item.first);
-    }
-    return unknown;
   }
 
  private:

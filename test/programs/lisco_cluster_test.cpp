@@ -157,6 +157,14 @@ TEST_F(LiscoCluster, TakesTheGroundOfEachInput) {
   EXPECT_EQ(ground, (std::map<std::string, int>{{"a.pcd", 0}, {"b.pcd", 40}}));
 }
 
+TEST_F(LiscoCluster, NamesTheOptionThatNamesNoInput) {
+  write("a.pcd", twoWalls());
+  EXPECT_EQ(run("a.pcd --tolerance 0.3 --ground-z b=-1.5").err,
+            "lisco_cluster: --ground-z names 'b', which is no input\n");
+  EXPECT_EQ(run("a.pcd --tolerance 0.3 --ground a.pcd=none").err,
+            "lisco_cluster: --ground names 'a.pcd', which is no input: NAME is given without .pcd\n");
+}
+
 TEST_F(LiscoCluster, LeavesOutReturnsByRangeAndPlace) {
   write("walls.pcd", twoWalls());
   const auto counts = [this](const std::string& options) {
@@ -399,6 +407,8 @@ TEST_F(LiscoCluster, RefusesBadOptionsInOneLine) {
   expectRefusal("walls.pcd --tolerance 0.3 --ground height:low", {"--ground must be a number, not 'low'"});
   expectRefusal("walls.pcd --tolerance 0.3 --ground none --ground-z 1", {"the ground is given twice"});
   expectRefusal("walls.pcd --tolerance 0.3 --ground walls=none --ground-z walls=1", {"the ground is given twice"});
+  expectRefusal("walls.pcd --tolerance 0.3 --ground-z =1", {"--ground-z: NAME is empty in '=1'"});
+  expectRefusal("walls.pcd --tolerance 0.3 --ground =none", {"--ground: NAME is empty in '=none'"});
   expectRefusal("walls.pcd --tolerance 0.3 --min-range -1", {"--min-range must not be negative"});
   expectRefusal("walls.pcd --tolerance 0.3 --max-range far", {"--max-range must be a number, not 'far'"});
   expectRefusal("walls.pcd --tolerance 0.3 --min-range 5 --max-range 4", {"--max-range is smaller"});
