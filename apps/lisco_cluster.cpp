@@ -306,7 +306,8 @@ class Workers {
       estimation.setInputCloud(scan.cloud);
       estimation.compute(scan.clusters, scan.features);
     }
-    if (!folder.empty()) writeResults(scan, folder, options_.kinds);
+    const std::string left_out = folder.empty() ? "" : writeResults(scan, folder, options_.kinds);
+    if (!left_out.empty()) say(left_out);
     std::optional<LabelledScan> labelled;
     if (bag_) labelled = labelledScanOf(scan, item.time_ns, number);
     std::string viewed;
@@ -314,6 +315,7 @@ class Workers {
     const auto written = Clock::now();
 
     const std::lock_guard<std::mutex> lock(terminal_);
+    all_well_ = all_well_ && left_out.empty();
     if (labelled) bag_->write(*labelled);
     if (timeline_) timeline_->add(number, std::move(viewed));
     progress_.clear();

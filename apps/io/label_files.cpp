@@ -18,8 +18,6 @@
 namespace lisco_apps {
 namespace {
 
-constexpr std::uint32_t kMaxInstance = 0xFFFF;  ///< of SemanticKITTI
-
 std::uint32_t bytesOf(const pcl::PCLPointField& field) {
   return static_cast<std::uint32_t>(pcl::getFieldSize(field.datatype)) * std::max(field.count, 1U);
 }
@@ -81,8 +79,6 @@ void writeLabelledPcd(const ClusteredScan& scan, const fs::path& file) {
 }
 
 void writeSemanticKitti(const ClusteredScan& scan, const fs::path& file) {
-  if (scan.clusters.size() > kMaxInstance)
-    fail(file, "cannot be written: there are more clusters than SemanticKITTI numbers, 65535");
   std::vector<std::uint32_t> labels = labelsOf(scan.clusters, scan.cloud->size());
   for (std::uint32_t& label : labels) label <<= 16;
   writeBytes(file, "", labels);

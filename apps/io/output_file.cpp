@@ -9,7 +9,10 @@
 #include <cerrno>
 #include <cstdlib>
 #include <fstream>
+#include <stdexcept>
 #include <system_error>
+
+#include <boost/algorithm/string/replace.hpp>
 
 #include "io/text.h"
 
@@ -154,6 +157,11 @@ void writeOwnFolder(const fs::path& folder, const std::vector<std::string>& name
     fs::path path = error.path2().empty() ? error.path1() : error.path2();
     if (path.filename().string().rfind(kFolderPartial, 0) == 0) path = folder;  // the user's name for it
     fail(path, "cannot be written: " + error.code().message());
+  } catch (const std::runtime_error& error) {
+    undo();
+    const std::string made = (aside / "").string();
+    const std::string named = (folder / "").string();
+    throw std::runtime_error(boost::replace_all_copy(std::string(error.what()), made, named));  // likewise
   } catch (...) {
     undo();
     throw;

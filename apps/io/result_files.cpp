@@ -27,6 +27,7 @@ namespace lisco_apps {
 namespace {
 
 constexpr const char* kClouds = "clusters";  ///< a folder
+constexpr const char* kSemanticKitti = "labels.label";
 
 struct Kind {
   const char* name;
@@ -41,7 +42,7 @@ const std::vector<Kind>& allKinds() {
                                         {"view", &ResultKinds::view, {"view.html"}},
                                         {"clouds", &ResultKinds::clouds, {kClouds}},
                                         {"json", &ResultKinds::json, {"clusters.json"}},
-                                        {"semantickitti", &ResultKinds::semantickitti, {"labels.label", "labels.npy"}}};
+                                        {"semantickitti", &ResultKinds::semantickitti, {kSemanticKitti, "labels.npy"}}};
   return kKinds;
 }
 
@@ -109,10 +110,14 @@ ResultKinds resultKindsOf(const std::string& text) {
   return kinds;
 }
 
-void writeResults(const ClusteredScan& scan, const fs::path& folder, const ResultKinds& kinds) {
+std::string writeResults(const ClusteredScan& scan, const fs::path& folder, const ResultKinds& kinds) {
+  const bool are_too_many = kinds.semantickitti && scan.clusters.size() > kMaxSemanticKittiClusters;
   std::vector<std::string> wanted, others;
   for (const Kind& kind : allKinds())
-    for (const std::string& file : kind.files) (kinds.*kind.is_wanted ? wanted : others).push_back(file);
+    for (const std::string& file : kind.files) {
+      const bool is_wanted = kinds.*kind.is_wanted && !(are_too_many && file == kSemanticKitti);
+      (is_wanted ? wanted : others).push_back(file);
+    }
   const bool has_results = fs::exists(folder / kResultMarker);
   writeOwnFolder(
       folder, wanted,
@@ -124,7 +129,7 @@ void writeResults(const ClusteredScan& scan, const fs::path& folder, const Resul
           if (kinds.view) writeText(aside / "view.html", viewPage(scan.name, {encodeViewScan(viewScanOf(scan))}));
           if (kinds.clouds) writeClusterClouds(scan, aside / kClouds);
           if (kinds.json) writeText(aside / "clusters.json", lineOf(jsonOf(scan)) + "\n");
-          if (kinds.semantickitti) writeSemanticKitti(scan, aside / "labels.label");
+          if (kinds.semantickitti && !are_too_many) writeSemanticKitti(scan, aside / kSemanticKitti);
           if (kinds.semantickitti) writeNpy(scan, aside / "labels.npy");
         } catch (const pcl::IOException&) {
           fail(folder, "cannot be written");
@@ -136,6 +141,12 @@ void writeResults(const ClusteredScan& scan, const fs::path& folder, const Resul
         for (const std::string& file : others)
           if (file != kClouds) fs::remove(folder / file);
       });
+  if (!are_too_many) return "";
+  return (folder / kSemanticKitti).string() +
+         formatted(
+             " is not written: SemanticKITTI's format has 16 bits for an instance, %zu clusters at most; there are "
+             "%zu (a larger --min-size gives fewer)",
+             kMaxSemanticKittiClusters, scan.clusters.size());
 }
 
 nlohmann::ordered_json jsonOf(const ClusteredScan& scan) {

@@ -33,8 +33,9 @@ ResultKinds resultKindsOf(const std::string& text);
 /// - clusters.json: jsonOf ().
 /// - labels.label: SemanticKITTI's labels, a uint32 per point of the input: the id in the upper 16 bits (instance), 0
 ///   in the lower ones (class unlabelled). labels.npy: the labels of labels.pcd, uint32, in the input's shape.
+/// \return a line on what is left out because the format cannot hold it; empty if nothing is
 /// \throws std::runtime_error with one line on what cannot be written, or would be overwritten
-void writeResults(const ClusteredScan& scan, const fs::path& folder, const ResultKinds& kinds);
+std::string writeResults(const ClusteredScan& scan, const fs::path& folder, const ResultKinds& kinds);
 
 /// The scan and its clusters as an object of JSON: scan, rows, columns, returns, ignored, ground, clustered, tolerance,
 /// min_size, noise, clusters (each with id, see addFeatures ()).

@@ -35,8 +35,9 @@ class Programs : public ProgramTest {
 TEST_F(Programs, LeaveNoPartialResultsOnAFullDisk) {
   for (const int blocks : {0, 8, 300}) {
     SCOPED_TRACE(blocks);
-    const Outcome outcome = runWithLimitedDisk(blocks, program_ + " scan.pcd -t 0.4 --clouds -o results 2>/dev/null");
+    const Outcome outcome = runWithLimitedDisk(blocks, program_ + " scan.pcd -t 0.4 --clouds -o results 2>&1");
     EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.out.find("partial"), std::string::npos) << outcome.out;
     EXPECT_EQ(filesLeft(), inputs_);
   }
   EXPECT_EQ(run("scan.pcd -t 0.4 --clouds -o results").status, 0);

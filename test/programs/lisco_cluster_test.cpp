@@ -243,6 +243,35 @@ TEST_F(LiscoCluster, WritesSemanticKittiAndNumpyLabels) {
   }
 }
 
+TEST_F(LiscoCluster, LeavesOutSemanticKittiLabelsOfTooManyClusters) {
+  const auto line = [](std::size_t points) {
+    std::vector<float> values;
+    for (std::size_t i = 0; i < points; ++i) values.insert(values.end(), {static_cast<float>(i + 1), 1, 0});
+    return values;
+  };
+  const auto pcd = [&](std::size_t points) {
+    const std::string count = std::to_string(points);
+    return "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " + count +
+           "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + count + "\nDATA binary\n" + floats(line(points));
+  };
+  const std::string options = " --tolerance 0.3 --min-size 1 --write semantickitti,labels -o results";
+  write("most.pcd", pcd(65535));
+  const Outcome most = run("most.pcd" + options);
+  ASSERT_EQ(most.status, 0) << most.err;
+  EXPECT_EQ(fs::file_size(folder_ / "results/labels.label"), 65535U * 4);
+
+  write("more.pcd", pcd(65536));
+  const Outcome more = run("more.pcd" + options);
+  EXPECT_EQ(more.status, 2);
+  EXPECT_EQ(more.err,
+            "lisco_cluster: results/labels.label is not written: SemanticKITTI's format has 16 bits for an instance, "
+            "65535 clusters at most; there are 65536 (a larger --min-size gives fewer)\n");
+  EXPECT_NE(more.out.find("clusters  65536 of"), std::string::npos) << more.out;
+  EXPECT_FALSE(fs::exists(folder_ / "results/labels.label"));  // of the run before
+  EXPECT_NE(textOf(folder_ / "results/labels.pcd").find("POINTS 65536\n"), std::string::npos);
+  EXPECT_GT(fs::file_size(folder_ / "results/labels.npy"), 65536U * 4);
+}
+
 TEST_F(LiscoCluster, KeepsAllFieldsOfTheInput) {
   // A byte of padding, a field of two values, types of one to eight bytes, and labels.
   const auto point = [](double x, float y, float z, std::uint8_t ring, std::uint16_t pair, std::int32_t object) {
