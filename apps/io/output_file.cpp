@@ -107,6 +107,23 @@ void writeOwnFile(const fs::path& file, const std::string& content, const std::s
   own.finish();
 }
 
+MadeFolders::MadeFolders(const fs::path& folder) {
+  if (folder.empty()) return;
+  std::error_code error;
+  for (fs::path p = fs::absolute(folder).lexically_normal(); fs::status(p, error).type() == fs::file_type::not_found;
+       p = p.parent_path())
+    made_.push_back(p);
+  fs::create_directories(folder, error);
+  if (!error) return;
+  removeEmpty();
+  fail(folder, "cannot be written: " + error.message());
+}
+
+void MadeFolders::removeEmpty() const {
+  std::error_code ignored;
+  for (const fs::path& folder : made_) fs::remove(folder, ignored);  // only if empty
+}
+
 void checkMayWriteInto(const fs::path& folder, const std::vector<std::string>& names) {
   std::error_code error;
   fs::path existing = fs::absolute(folder).lexically_normal();
@@ -122,17 +139,10 @@ void checkMayWriteInto(const fs::path& folder, const std::vector<std::string>& n
 void writeOwnFolder(const fs::path& folder, const std::vector<std::string>& names,
                     const std::function<void(const fs::path&)>& make, const std::function<void()>& tidy) {
   std::error_code ignored;
-  std::vector<fs::path> made;  // innermost first
-  for (fs::path p = fs::absolute(folder).lexically_normal(); fs::status(p, ignored).type() == fs::file_type::not_found;
-       p = p.parent_path())
-    made.push_back(p);
+  const MadeFolders made(folder);
   const fs::path aside = folder / (kFolderPartial + std::to_string(getpid()));
-  const auto undo = [&] {
-    fs::remove_all(aside, ignored);
-    for (const fs::path& p : made) fs::remove(p, ignored);  // only if empty
-  };
+  const auto undo = [&] { fs::remove_all(aside, ignored); };
   try {
-    fs::create_directories(folder);
     checkMayWriteInto(folder, names);
     removeAbandoned(folder, kFolderPartial);
     fs::create_directory(aside);
