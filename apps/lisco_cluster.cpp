@@ -86,8 +86,8 @@ bool parse(int argc, char** argv, Options& options) {
     ("write", po::value<std::string>(&write)->value_name("A,B,..."),
      "the results to write (default labels,table,pictures,view): labels (labels.pcd: the input's fields and `label`, "
      "the cluster's id or 0; a field `label` of the input becomes `input_label`), table (clusters.csv), pictures "
-     "(range_image.png and top_view.png), view (view.html, a page for browsers), clouds (one PCD per cluster), json "
-     "(clusters.json), semantickitti (labels.label, with the id as instance, and labels.npy)")
+     "(range_image.png and top_view.png), view (view.html, a page for browsers), clouds (one PCD per cluster, with the "
+     "input's fields), json (clusters.json), semantickitti (labels.label, with the id as instance, and labels.npy)")
     ("clouds", po::bool_switch(&clouds), "also write one cloud per cluster")
     ("json", po::bool_switch(&options.json), "print a line of JSON for each scan instead of text");
   // clang-format on

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include <pcl/common/io.h>
-#include <pcl/io/pcd_io.h>
 #include <boost/algorithm/string/join.hpp>
 
 #include "drawing/scan_pictures.h"
 #include "io/cluster_json.h"
+#include "io/input_fields.h"
 #include "io/label_files.h"
 #include "io/options.h"
 #include "io/output_file.h"
@@ -76,11 +76,11 @@ std::string tableOf(const ClusteredScan& scan) {
 
 void writeClusterClouds(const ClusteredScan& scan, const fs::path& folder) {
   fs::create_directory(folder);
+  const pcl::PCLPointCloud2 points = inputFieldsOf(scan);
   for (std::size_t i = 0; i < scan.clusters.size(); ++i) {
-    Cloud cluster;
-    pcl::copyPointCloud(*scan.cloud, scan.clusters[i].indices, cluster);
-    const fs::path file = folder / formatted("cluster_%04zu.pcd", i + 1);
-    if (pcl::PCDWriter().writeBinary(file.string(), cluster) != 0) fail(file, "cannot be written");
+    pcl::PCLPointCloud2 cluster;
+    pcl::copyPointCloud(points, scan.clusters[i].indices, cluster);
+    writePcd(cluster, scan, folder / formatted("cluster_%04zu.pcd", i + 1));
   }
 }
 
@@ -122,18 +122,14 @@ std::string writeResults(const ClusteredScan& scan, const fs::path& folder, cons
   writeOwnFolder(
       folder, wanted,
       [&](const fs::path& aside) {
-        try {
-          if (kinds.labels) writeLabelledPcd(scan, aside / "labels.pcd");
-          if (kinds.table) writeText(aside / "clusters.csv", tableOf(scan));
-          if (kinds.pictures) drawPictures(scan, aside / "range_image.png", aside / "top_view.png");
-          if (kinds.view) writeText(aside / "view.html", viewPage(scan.name, {encodeViewScan(viewScanOf(scan))}));
-          if (kinds.clouds) writeClusterClouds(scan, aside / kClouds);
-          if (kinds.json) writeText(aside / "clusters.json", lineOf(jsonOf(scan)) + "\n");
-          if (kinds.semantickitti && !are_too_many) writeSemanticKitti(scan, aside / kSemanticKitti);
-          if (kinds.semantickitti) writeNpy(scan, aside / "labels.npy");
-        } catch (const pcl::IOException&) {
-          fail(folder, "cannot be written");
-        }
+        if (kinds.labels) writeLabelledPcd(scan, aside / "labels.pcd");
+        if (kinds.table) writeText(aside / "clusters.csv", tableOf(scan));
+        if (kinds.pictures) drawPictures(scan, aside / "range_image.png", aside / "top_view.png");
+        if (kinds.view) writeText(aside / "view.html", viewPage(scan.name, {encodeViewScan(viewScanOf(scan))}));
+        if (kinds.clouds) writeClusterClouds(scan, aside / kClouds);
+        if (kinds.json) writeText(aside / "clusters.json", lineOf(jsonOf(scan)) + "\n");
+        if (kinds.semantickitti && !are_too_many) writeSemanticKitti(scan, aside / kSemanticKitti);
+        if (kinds.semantickitti) writeNpy(scan, aside / "labels.npy");
       },
       [&] {
         if (!has_results) return;

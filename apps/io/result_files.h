@@ -17,7 +17,7 @@ struct ResultKinds {
   bool table = true;           ///< clusters.csv
   bool pictures = true;        ///< range_image.png and top_view.png
   bool view = true;            ///< view.html, a page for browsers
-  bool clouds = false;         ///< clusters/cluster_0001.pcd and so on, largest first
+  bool clouds = false;         ///< clusters/cluster_0001.pcd and so on, largest first, with all fields of the input
   bool json = false;           ///< clusters.json
   bool semantickitti = false;  ///< labels.label and labels.npy
 };

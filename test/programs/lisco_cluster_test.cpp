@@ -289,7 +289,7 @@ TEST_F(LiscoCluster, KeepsAllFieldsOfTheInput) {
         "VERSION 0.7\nFIELDS x y z ring _ pair label\nSIZE 8 4 4 1 1 2 4\nTYPE F F F U U U I\nCOUNT 1 1 1 1 1 2 1\n"
         "WIDTH 3\nHEIGHT 1\nVIEWPOINT 1 2 3 1 0 0 0\nPOINTS 3\nDATA binary\n" +
             point(5.125, 1, 2, 7, 300, -4) + point(5.25, 1, 2, 8, 301, -5) + point(9, 1, 2, 9, 302, -6));
-  ASSERT_EQ(run("rich.pcd --tolerance 0.3 --min-size 2 -o results").status, 0);
+  ASSERT_EQ(run("rich.pcd --tolerance 0.3 --min-size 2 -o results --write labels,clouds").status, 0);
   const std::string pcd = textOf(folder_ / "results/labels.pcd");
   for (const char* line : {"FIELDS x y z ring pair input_label label\n", "SIZE 8 4 4 1 2 4 4\n", "TYPE F F F U U I U\n",
                            "COUNT 1 1 1 1 2 1 1\n", "VIEWPOINT 1 2 3 1 0 0 0\n", "WIDTH 3\nHEIGHT 1\n"})
@@ -304,6 +304,13 @@ TEST_F(LiscoCluster, KeepsAllFieldsOfTheInput) {
     EXPECT_EQ(data.substr(29 * i + 17, 8), expected.substr(18, 8)) << i;
     EXPECT_EQ(data[29 * i + 25], i == 2 ? 0 : 1) << i;
   }
+  const std::string cluster = textOf(folder_ / "results/clusters/cluster_0001.pcd");
+  for (const char* line : {"FIELDS x y z ring pair label\n", "SIZE 8 4 4 1 2 4\n", "TYPE F F F U U I\n",
+                           "VIEWPOINT 1 2 3 1 0 0 0\n", "WIDTH 2\nHEIGHT 1\n"})
+    EXPECT_NE(cluster.find(line), std::string::npos) << line << cluster.substr(0, 300);
+  const std::string cluster_data = cluster.substr(cluster.find("DATA binary\n") + 12);
+  ASSERT_EQ(cluster_data.size(), 2U * 25);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(cluster_data.substr(25 * i, 25), data.substr(29 * i, 25)) << i;
   // Its own output is an input, too.
   fs::rename(folder_ / "results/labels.pcd", folder_ / "again.pcd");
   ASSERT_EQ(run("again.pcd --tolerance 0.3 --min-size 2 -o results").status, 0);
