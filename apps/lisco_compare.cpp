@@ -161,7 +161,7 @@ InputResult compareScan(const ScanItem& item, const std::string& name, const Opt
   input.ground = options.scan.ground.of(item.file.stem().string());
   // The rows of an arrangement show the ground; without it, the points stay in the order of the input.
   ScanReturns returns = returnsOf(*read.clustered(), input.ground, options.scan.region, item.of_packets);
-  input.left_out = returns.ground;
+  input.left_out = returns.ground.size();
   if (options.ignored_label) {
     const std::vector<std::uint32_t> object_of = read.objectsOfClustered();
     if (object_of.empty()) throw std::runtime_error(input.file + ": --ignore-label needs a field 'label'");

@@ -15,6 +15,13 @@
 namespace lisco_apps {
 namespace {
 
+constexpr std::uint32_t kOtherGround = 49;  ///< a class of SemanticKITTI
+
+/// Whether ground has been looked for.
+bool isGroundKnown(const ClusteredScan& scan) {
+  return scan.ground.method != GroundChoice::Method::kNone && scan.returns.is_rotating;
+}
+
 /// Makes way for a field that is added: a field of this name becomes `input_NAME`, numbered if there is such a one.
 /// \param inputs number of fields that are the input's
 void renameInputField(const std::string& name, std::size_t inputs, std::vector<pcl::PCLPointField>& fields) {
@@ -33,16 +40,24 @@ void renameInputField(const std::string& name, std::size_t inputs, std::vector<p
 }  // namespace
 
 void writeLabelledPcd(const ClusteredScan& scan, const fs::path& file) {
-  pcl::PCLPointCloud2 output = inputFieldsOf(scan, {{"label", pcl::PCLPointField::UINT32}});
-  const std::size_t inputs = output.fields.size() - 1;
-  renameInputField("label", inputs, output.fields);
-  setField(output.fields.back(), labelsOf(scan.clusters, scan.cloud->size()), output);
+  std::vector<NewField> added{{"label", pcl::PCLPointField::UINT32}};
+  if (isGroundKnown(scan)) added.push_back({"ground", pcl::PCLPointField::UINT8});
+  pcl::PCLPointCloud2 output = inputFieldsOf(scan, added);
+  const std::size_t inputs = output.fields.size() - added.size();
+  for (const char* const name : {"label", "ground"}) renameInputField(name, inputs, output.fields);
+  setField(output.fields[inputs], labelsOf(scan.clusters, scan.cloud->size()), output);
+  if (isGroundKnown(scan)) {
+    std::vector<std::uint8_t> ground(scan.cloud->size(), 0);
+    for (const auto index : scan.returns.ground) ground[static_cast<std::size_t>(index)] = 1;
+    setField(output.fields[inputs + 1], ground, output);
+  }
   writePcd(output, scan, file);
 }
 
 void writeSemanticKitti(const ClusteredScan& scan, const fs::path& file) {
   std::vector<std::uint32_t> labels = labelsOf(scan.clusters, scan.cloud->size());
   for (std::uint32_t& label : labels) label <<= 16;
+  for (const auto index : scan.returns.ground) labels[static_cast<std::size_t>(index)] = kOtherGround;
   writeValues(file, "", labels);
 }
 

@@ -159,7 +159,7 @@ nlohmann::ordered_json jsonOf(const ClusteredScan& scan) {
           {"columns", scan.cloud->width},
           {"returns", scan.returns.returns},
           {"ignored", scan.returns.ignored},
-          {"ground", scan.returns.ground},
+          {"ground", scan.returns.ground.size()},
           {"clustered", scan.returns.clustered.size()},
           {"noise", scan.returns.clustered.size() - in_clusters},
           {"tolerance", scan.tolerance},
