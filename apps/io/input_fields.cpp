@@ -14,8 +14,8 @@
 namespace lisco_apps {
 namespace {
 
-std::uint32_t bytesOf(const pcl::PCLPointField& field) {
-  return static_cast<std::uint32_t>(pcl::getFieldSize(field.datatype)) * std::max(field.count, 1U);
+std::size_t bytesOf(const pcl::PCLPointField& field) {
+  return static_cast<std::size_t>(pcl::getFieldSize(field.datatype)) * std::max(field.count, 1U);
 }
 
 }  // namespace
@@ -31,7 +31,7 @@ pcl::PCLPointCloud2 inputFieldsOf(const ClusteredScan& scan, const std::vector<N
   for (pcl::PCLPointField field : kept) {
     field.offset = output.point_step;
     field.count = std::max(field.count, 1U);
-    output.point_step += bytesOf(field);
+    output.point_step += static_cast<std::uint32_t>(bytesOf(field));
     output.fields.push_back(field);
   }
   for (const NewField& field : added) addField(output, field.name, field.datatype);

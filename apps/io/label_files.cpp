@@ -22,19 +22,19 @@ bool isGroundKnown(const ClusteredScan& scan) {
   return scan.ground.method != GroundChoice::Method::kNone && scan.returns.is_rotating;
 }
 
-/// Makes way for a field that is added: a field of this name becomes `input_NAME`, numbered if there is such a one.
+/// Makes way for a field that is added: fields of this name become `input_NAME`, numbered if there is such a one.
 /// \param inputs number of fields that are the input's
-void renameInputField(const std::string& name, std::size_t inputs, std::vector<pcl::PCLPointField>& fields) {
+void renameInputFields(const std::string& name, std::size_t inputs, std::vector<pcl::PCLPointField>& fields) {
   const auto begin = fields.begin();
   const auto end = begin + static_cast<std::ptrdiff_t>(inputs);
   const auto find = [&](const std::string& wanted) {
     return std::find_if(begin, end, [&](const pcl::PCLPointField& field) { return field.name == wanted; });
   };
-  const auto field = find(name);
-  if (field == end) return;
-  std::string other = "input_" + name;
-  for (int number = 2; find(other) != end; ++number) other = "input_" + name + std::to_string(number);
-  field->name = other;
+  for (auto field = find(name); field != end; field = find(name)) {
+    std::string other = "input_" + name;
+    for (int number = 2; find(other) != end; ++number) other = "input_" + name + std::to_string(number);
+    field->name = other;
+  }
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ void writeLabelledPcd(const ClusteredScan& scan, const fs::path& file) {
   if (isGroundKnown(scan)) added.push_back({"ground", pcl::PCLPointField::UINT8});
   pcl::PCLPointCloud2 output = inputFieldsOf(scan, added);
   const std::size_t inputs = output.fields.size() - added.size();
-  for (const char* const name : {"label", "ground"}) renameInputField(name, inputs, output.fields);
+  for (const char* const name : {"label", "ground"}) renameInputFields(name, inputs, output.fields);
   setField(output.fields[inputs], labelsOf(scan.clusters, scan.cloud->size()), output);
   if (isGroundKnown(scan)) {
     std::vector<std::uint8_t> ground(scan.cloud->size(), 0);

@@ -288,6 +288,15 @@ TEST_F(LiscoCluster, MarksTheGroundOfArrangedCloudsInTheOrderOfTheInput) {
   EXPECT_EQ(nlohmann::json::parse(outcome.out)["ground"], ground);
 }
 
+TEST_F(LiscoCluster, RenamesAllFieldsOfAnAddedName) {
+  write("twice.pcd",
+        "VERSION 0.7\nFIELDS x y z label label\nSIZE 4 4 4 4 4\nTYPE F F F U U\nCOUNT 1 1 1 1 1\nWIDTH 1\nHEIGHT 1\n"
+        "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 1\nDATA ascii\n5 0 1 2 3\n");
+  ASSERT_EQ(run("twice.pcd --tolerance 0.3 --min-size 1 --ground none -o results").status, 0);
+  EXPECT_NE(textOf(folder_ / "results/labels.pcd").find("FIELDS x y z input_label input_label2 label\n"),
+            std::string::npos);
+}
+
 TEST_F(LiscoCluster, RenamesAGroundFieldOfTheInput) {
   write("ground.pcd",
         "VERSION 0.7\nFIELDS x y z ground\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"
