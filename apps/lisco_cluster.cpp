@@ -84,10 +84,11 @@ bool parse(int argc, char** argv, Options& options) {
      "write the labelled clouds (sensor_msgs/PointCloud2) and boxes (visualization_msgs/MarkerArray) as a recording of "
      "ROS 2; scans without a time are 0.1 s apart")
     ("write", po::value<std::string>(&write)->value_name("A,B,..."),
-     "the results to write (default labels,table,pictures,view): labels (labels.pcd: the input's fields and `label`, "
-     "the cluster's id or 0; a field `label` of the input becomes `input_label`), table (clusters.csv), pictures "
-     "(range_image.png and top_view.png), view (view.html, a page for browsers), clouds (one PCD per cluster), json "
-     "(clusters.json), semantickitti (labels.label, with the id as instance, and labels.npy)")
+     "the results to write (default labels,table,pictures,view): labels (labels.pcd: the input's fields, `label`, the "
+     "cluster's id or 0, and, if --ground leaves out any, `ground`, 1 for its returns; an input's own become "
+     "`input_label` and `input_ground`), table (clusters.csv), pictures (range_image.png and top_view.png), view "
+     "(view.html, a page for browsers), clouds (one PCD per cluster, with the input's fields), json (clusters.json), "
+     "semantickitti (labels.label: the id as instance, class 49 for ground and 0 for all others; and labels.npy)")
     ("clouds", po::bool_switch(&clouds), "also write one cloud per cluster")
     ("json", po::bool_switch(&options.json), "print a line of JSON for each scan instead of text");
   // clang-format on
@@ -190,8 +191,10 @@ void toInputOrder(const Scan& input, ClusteredScan& scan) {
   auto rows = std::make_shared<ClusteredScan>(scan);
   scan.cloud = input.cloud;
   input.toInputOrder(scan.clusters);
-  for (auto& index : scan.returns.clustered) index = input.point_of_cell[static_cast<std::size_t>(index)];
-  std::sort(scan.returns.clustered.begin(), scan.returns.clustered.end());
+  for (pcl::Indices* const indices : {&scan.returns.clustered, &scan.returns.ground}) {
+    for (auto& index : *indices) index = input.point_of_cell[static_cast<std::size_t>(index)];
+    std::sort(indices->begin(), indices->end());
+  }
   pcl::Indices cell_of_point(input.cloud->size(), pcl::UNAVAILABLE);
   for (std::size_t cell = 0; cell < input.point_of_cell.size(); ++cell)
     if (const auto point = input.point_of_cell[cell]; point != pcl::UNAVAILABLE)
@@ -306,7 +309,8 @@ class Workers {
       estimation.setInputCloud(scan.cloud);
       estimation.compute(scan.clusters, scan.features);
     }
-    if (!folder.empty()) writeResults(scan, folder, options_.kinds);
+    const std::string left_out = folder.empty() ? "" : writeResults(scan, folder, options_.kinds);
+    if (!left_out.empty()) say(left_out);
     std::optional<LabelledScan> labelled;
     if (bag_) labelled = labelledScanOf(scan, item.time_ns, number);
     std::string viewed;
@@ -314,6 +318,7 @@ class Workers {
     const auto written = Clock::now();
 
     const std::lock_guard<std::mutex> lock(terminal_);
+    all_well_ = all_well_ && left_out.empty();
     if (labelled) bag_->write(*labelled);
     if (timeline_) timeline_->add(number, std::move(viewed));
     progress_.clear();
@@ -347,8 +352,8 @@ int main(int argc, char** argv) {
     if (!parse(argc, argv, options)) return 0;
     Interruption::listen();
     ScanSource source(options.inputs, options.input, Interruption::happened);
-    for (const std::string& name : options.scan.ground.namesNotIn(source.files()))
-      std::cerr << "lisco_cluster: --ground names '" << name << "', which is no input\n";
+    for (const std::string& line : options.scan.unknownNames(source.files()))
+      std::cerr << "lisco_cluster: " << line << '\n';
     return Workers(options, source).run() ? 0 : 2;
   });
 }

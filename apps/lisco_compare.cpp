@@ -161,7 +161,7 @@ InputResult compareScan(const ScanItem& item, const std::string& name, const Opt
   input.ground = options.scan.ground.of(item.file.stem().string());
   // The rows of an arrangement show the ground; without it, the points stay in the order of the input.
   ScanReturns returns = returnsOf(*read.clustered(), input.ground, options.scan.region, item.of_packets);
-  input.left_out = returns.ground;
+  input.left_out = returns.ground.size();
   if (options.ignored_label) {
     const std::vector<std::uint32_t> object_of = read.objectsOfClustered();
     if (object_of.empty()) throw std::runtime_error(input.file + ": --ignore-label needs a field 'label'");
@@ -255,8 +255,8 @@ int compare(const Options& options) {
     checkMayWriteInto(options.plot, chartsOf(names, settings));
   }
 
-  for (const std::string& name : options.scan.ground.namesNotIn(files))
-    std::fprintf(stderr, "lisco_compare: --ground names '%s', which is no input\n", name.c_str());
+  for (const std::string& line : options.scan.unknownNames(files))
+    std::fprintf(stderr, "lisco_compare: %s\n", line.c_str());
 
   std::fputs(describeRun(settings).c_str(), stdout);
   std::fflush(stdout);

@@ -81,6 +81,15 @@ void checkKnown(const std::string& name, const std::vector<std::string>& names, 
     throw std::runtime_error("there is no " + what + " '" + name + "'; known are " + boost::join(names, ", "));
 }
 
+/// The sensors of which there are only packets.
+std::vector<std::string> packetOnlySensors() {
+  const std::vector<std::string> simulated = simulatedSensors();
+  std::vector<std::string> names;
+  for (const std::string& name : packetSensorNames())
+    if (std::find(simulated.begin(), simulated.end(), name) == simulated.end()) names.push_back(name);
+  return names;
+}
+
 std::string usageText() {
   std::string usage =
       "Usage: lisco_simulate --scene N -o SCAN.pcd [options]\n"
@@ -145,7 +154,8 @@ bool parse(int argc, char** argv, Options& options) {
   po::options_description shown(usageText());
   const std::string cases = boost::join(caseNames(), ", ");
   const std::string terrains = boost::join(terrainNames(), ", ");
-  const std::string sensors = boost::join(simulatedSensors(), ", ") + " (default " + options.sensor + ")";
+  const std::string sensors = boost::join(simulatedSensors(), ", ") + " (default " + options.sensor +
+                              "); with --pcap only: " + boost::join(packetOnlySensors(), ", ");
   const std::string pcap = "adds capture.pcap, the packets of a " + boost::join(packetSensorNames(), ", ") +
                            ", to the folder; lasers, steps (1800 unless given) and duration of a rotation are those of "
                            "the packets";
@@ -178,7 +188,7 @@ bool parse(int argc, char** argv, Options& options) {
      "of the sensor on the terrain (default 1), of 0.1 s each; several are written into a folder")
     ("pcap", po::bool_switch(&options.pcap), pcap.c_str())
     ("output,o", pathOption("FILE", "--output", options.output),
-     "the scan to write (PCD); of a terrain also a folder")
+     "the scan to write (PCD); of a terrain also a folder; folders above it are made")
     ("seed", countOption("--seed", options.seed, 0),
      "seed of the layout, noise and drop-outs (default 1)")
     ("sensor", po::value<std::string>(&options.sensor)->value_name("NAME"), sensors.c_str())
@@ -223,6 +233,9 @@ bool parse(int argc, char** argv, Options& options) {
 }
 
 Sensor sensorFor(const Options& options) {
+  const std::vector<std::string> with_pcap = packetOnlySensors();
+  if (!options.pcap && std::find(with_pcap.begin(), with_pcap.end(), options.sensor) != with_pcap.end())
+    throw std::runtime_error("--sensor " + options.sensor + " is of --terrain with --pcap only");
   if (!options.pcap) checkKnown(options.sensor, simulatedSensors(), "sensor");
   const auto check = [](std::size_t lasers, std::size_t steps) {
     if (std::max<std::size_t>(lasers, 1) > kMaxCells / std::max<std::size_t>(steps, 1))
@@ -325,8 +338,9 @@ int drive(const Options& options, const Sensor& sensor, const std::string& comme
 }
 
 int simulate(const Options& options) {
-  if (!options.isFolder()) checkMayWrite(options.output, kSignature);
   const Sensor sensor = sensorFor(options);
+  const MadeFolders parents(options.isFolder() ? fs::path() : options.output.parent_path());
+  if (!options.isFolder()) checkMayWrite(options.output, kSignature);
   std::ostringstream comment;
   comment << kSignature << LISCO_VERSION << ": " << argumentsOf(options, sensor);
   if (!options.terrain.empty()) return drive(options, sensor, comment.str());

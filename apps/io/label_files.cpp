@@ -3,89 +3,62 @@
 #include "io/label_files.h"
 
 #include <algorithm>
-#include <cstring>
-#include <fstream>
+#include <cstddef>
 #include <string>
 #include <vector>
 
-#include <pcl/common/io.h>
-#include <pcl/conversions.h>
-#include <pcl/io/pcd_io.h>
+#include <pcl/PCLPointCloud2.h>
 
-#include "io/formats.h"
+#include "io/input_fields.h"
 #include "io/little_endian.h"
 
 namespace lisco_apps {
 namespace {
 
-constexpr std::uint32_t kMaxInstance = 0xFFFF;  ///< of SemanticKITTI
+constexpr std::uint32_t kOtherGround = 49;  ///< a class of SemanticKITTI
 
-std::uint32_t bytesOf(const pcl::PCLPointField& field) {
-  return static_cast<std::uint32_t>(pcl::getFieldSize(field.datatype)) * std::max(field.count, 1U);
+/// Whether ground has been looked for.
+bool isGroundKnown(const ClusteredScan& scan) {
+  return scan.ground.method != GroundChoice::Method::kNone && scan.returns.is_rotating;
 }
 
-bool hasField(const std::vector<pcl::PCLPointField>& fields, const std::string& name) {
-  return std::any_of(fields.begin(), fields.end(), [&](const auto& field) { return field.name == name; });
-}
-
-/// All fields of the input without padding, and a field `label` of zeros at the end.
-pcl::PCLPointCloud2 withLabelField(const pcl::PCLPointCloud2& input) {
-  pcl::PCLPointCloud2 output;
-  std::vector<pcl::PCLPointField> kept;  // of the input
-  for (const pcl::PCLPointField& field : input.fields)
-    if (field.name != "_" && field.offset + bytesOf(field) <= input.point_step) kept.push_back(field);
-  for (pcl::PCLPointField field : kept) {
-    if (field.name == "label") {
-      field.name = "input_label";
-      for (int number = 2; hasField(kept, field.name); ++number) field.name = "input_label" + std::to_string(number);
-    }
-    field.offset = output.point_step;
-    field.count = std::max(field.count, 1U);
-    output.point_step += bytesOf(field);
-    output.fields.push_back(field);
+/// Makes way for a field that is added: fields of this name become `input_NAME`, numbered if there is such a one.
+/// \param inputs number of fields that are the input's
+void renameInputFields(const std::string& name, std::size_t inputs, std::vector<pcl::PCLPointField>& fields) {
+  const auto begin = fields.begin();
+  const auto end = begin + static_cast<std::ptrdiff_t>(inputs);
+  const auto find = [&](const std::string& wanted) {
+    return std::find_if(begin, end, [&](const pcl::PCLPointField& field) { return field.name == wanted; });
+  };
+  for (auto field = find(name); field != end; field = find(name)) {
+    std::string other = "input_" + name;
+    for (int number = 2; find(other) != end; ++number) other = "input_" + name + std::to_string(number);
+    field->name = other;
   }
-  addField(output, "label", pcl::PCLPointField::UINT32);
-  output.is_dense = input.is_dense;
-  allocate(output, input.width, input.height);
-  const std::size_t points = static_cast<std::size_t>(input.width) * input.height;
-  for (std::size_t field = 0; field < kept.size(); ++field)
-    for (std::size_t i = 0; i < points; ++i)
-      std::memcpy(&output.data[i * output.point_step + output.fields[field].offset],
-                  &input.data[i * input.point_step + kept[field].offset], bytesOf(kept[field]));
-  return output;
-}
-
-template <typename Value>
-void writeBytes(const fs::path& file, const std::string& header, const std::vector<Value>& values) {
-  std::ofstream stream(file, std::ios::binary);
-  stream << header;
-  stream.write(reinterpret_cast<const char*>(values.data()),
-               static_cast<std::streamsize>(values.size() * sizeof values[0]));
-  stream.close();
-  if (!stream) fail(file, "cannot be written");
 }
 
 }  // namespace
 
 void writeLabelledPcd(const ClusteredScan& scan, const fs::path& file) {
-  pcl::PCLPointCloud2 coordinates;
-  if (scan.fields.fields.empty()) pcl::toPCLPointCloud2(*scan.cloud, coordinates);
-  pcl::PCLPointCloud2 output = withLabelField(scan.fields.fields.empty() ? coordinates : scan.fields);
-  const std::vector<std::uint32_t> labels = labelsOf(scan.clusters, scan.cloud->size());
-  for (std::size_t i = 0; i < labels.size(); ++i)
-    std::memcpy(&output.data[i * output.point_step + output.fields.back().offset], &labels[i], sizeof labels[i]);
-  // PCL's writer would append bytes up to a whole page.
-  const std::string header =
-      pcl::PCDWriter().generateHeaderBinary(output, scan.cloud->sensor_origin_, scan.cloud->sensor_orientation_);
-  writeBytes(file, header + "DATA binary\n", output.data);
+  std::vector<NewField> added{{"label", pcl::PCLPointField::UINT32}};
+  if (isGroundKnown(scan)) added.push_back({"ground", pcl::PCLPointField::UINT8});
+  pcl::PCLPointCloud2 output = inputFieldsOf(scan, added);
+  const std::size_t inputs = output.fields.size() - added.size();
+  for (const char* const name : {"label", "ground"}) renameInputFields(name, inputs, output.fields);
+  setField(output.fields[inputs], labelsOf(scan.clusters, scan.cloud->size()), output);
+  if (isGroundKnown(scan)) {
+    std::vector<std::uint8_t> ground(scan.cloud->size(), 0);
+    for (const auto index : scan.returns.ground) ground[static_cast<std::size_t>(index)] = 1;
+    setField(output.fields[inputs + 1], ground, output);
+  }
+  writePcd(output, scan, file);
 }
 
 void writeSemanticKitti(const ClusteredScan& scan, const fs::path& file) {
-  if (scan.clusters.size() > kMaxInstance)
-    fail(file, "cannot be written: there are more clusters than SemanticKITTI numbers, 65535");
   std::vector<std::uint32_t> labels = labelsOf(scan.clusters, scan.cloud->size());
   for (std::uint32_t& label : labels) label <<= 16;
-  writeBytes(file, "", labels);
+  for (const auto index : scan.returns.ground) labels[static_cast<std::size_t>(index)] = kOtherGround;
+  writeValues(file, "", labels);
 }
 
 void writeNpy(const ClusteredScan& scan, const fs::path& file) {
@@ -99,7 +72,7 @@ void writeNpy(const ClusteredScan& scan, const fs::path& file) {
   description += '\n';
   std::string header("\x93NUMPY\x01\x00", 8);
   putNumber(header, static_cast<std::uint16_t>(description.size()));
-  writeBytes(file, header + description, labelsOf(scan.clusters, cloud.size()));
+  writeValues(file, header + description, labelsOf(scan.clusters, cloud.size()));
 }
 
 }  // namespace lisco_apps

@@ -2,13 +2,13 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdio>
 #include <exception>
 #include <functional>
 #include <limits>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -91,26 +91,25 @@ class PerInput {
     return otherwise_;
   }
 
-  /// The names given that are those of no input.
-  std::vector<std::string> namesNotIn(const std::vector<fs::path>& inputs) const {
-    std::vector<std::string> unknown;
-    for (const auto& item : of_name_) {
-      const auto is_named = [&item](const fs::path& input) { return input.stem().string() == item.first; };
-      if (!item.first.empty() && std::none_of(inputs.begin(), inputs.end(), is_named)) unknown.push_back(item.first);
-    }
-    return unknown;
-  }
-
  private:
   std::map<std::string, Value> of_name_;  ///< "": all others
   Value otherwise_;
 };
 
-/// The body of main (): turns an exception into one line on stderr and exit code 2.
+/// Flushes the standard output. \throws std::runtime_error with one line if it, or a part before, cannot be written
+inline void flushOutput() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    throw std::runtime_error("the standard output cannot be written");
+}
+
+/// The body of main (): flushes the standard output at the end, turns an exception into one line on stderr and exit
+/// code 2.
 template <typename Run>
 int runProgram(const char* name, Run&& run) {
   try {
-    return run();
+    const int code = run();
+    flushOutput();
+    return code;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", name, error.what());
     return 2;

@@ -9,7 +9,10 @@
 #include <cerrno>
 #include <cstdlib>
 #include <fstream>
+#include <stdexcept>
 #include <system_error>
+
+#include <boost/algorithm/string/replace.hpp>
 
 #include "io/text.h"
 
@@ -104,6 +107,23 @@ void writeOwnFile(const fs::path& file, const std::string& content, const std::s
   own.finish();
 }
 
+MadeFolders::MadeFolders(const fs::path& folder) {
+  if (folder.empty()) return;
+  std::error_code error;
+  for (fs::path p = fs::absolute(folder).lexically_normal(); fs::status(p, error).type() == fs::file_type::not_found;
+       p = p.parent_path())
+    made_.push_back(p);
+  fs::create_directories(folder, error);
+  if (!error) return;
+  removeEmpty();
+  fail(folder, "cannot be written: " + error.message());
+}
+
+void MadeFolders::removeEmpty() const {
+  std::error_code ignored;
+  for (const fs::path& folder : made_) fs::remove(folder, ignored);  // only if empty
+}
+
 void checkMayWriteInto(const fs::path& folder, const std::vector<std::string>& names) {
   std::error_code error;
   fs::path existing = fs::absolute(folder).lexically_normal();
@@ -119,17 +139,10 @@ void checkMayWriteInto(const fs::path& folder, const std::vector<std::string>& n
 void writeOwnFolder(const fs::path& folder, const std::vector<std::string>& names,
                     const std::function<void(const fs::path&)>& make, const std::function<void()>& tidy) {
   std::error_code ignored;
-  std::vector<fs::path> made;  // innermost first
-  for (fs::path p = fs::absolute(folder).lexically_normal(); fs::status(p, ignored).type() == fs::file_type::not_found;
-       p = p.parent_path())
-    made.push_back(p);
+  const MadeFolders made(folder);
   const fs::path aside = folder / (kFolderPartial + std::to_string(getpid()));
-  const auto undo = [&] {
-    fs::remove_all(aside, ignored);
-    for (const fs::path& p : made) fs::remove(p, ignored);  // only if empty
-  };
+  const auto undo = [&] { fs::remove_all(aside, ignored); };
   try {
-    fs::create_directories(folder);
     checkMayWriteInto(folder, names);
     removeAbandoned(folder, kFolderPartial);
     fs::create_directory(aside);
@@ -154,6 +167,11 @@ void writeOwnFolder(const fs::path& folder, const std::vector<std::string>& name
     fs::path path = error.path2().empty() ? error.path1() : error.path2();
     if (path.filename().string().rfind(kFolderPartial, 0) == 0) path = folder;  // the user's name for it
     fail(path, "cannot be written: " + error.code().message());
+  } catch (const std::runtime_error& error) {
+    undo();
+    const std::string made = (aside / "").string();
+    const std::string named = (folder / "").string();
+    throw std::runtime_error(boost::replace_all_copy(std::string(error.what()), made, named));  // likewise
   } catch (...) {
     undo();
     throw;

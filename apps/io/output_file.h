@@ -47,6 +47,22 @@ class OwnFile {
 /// \param content must hold `signature` within its first kilobyte
 void writeOwnFile(const fs::path& file, const std::string& content, const std::string& signature);
 
+/// Makes a folder and those above it; removes those of them that are still empty at its end.
+class MadeFolders {
+ public:
+  /// \param folder empty: none
+  /// \throws std::runtime_error with one line if it cannot be made
+  explicit MadeFolders(const fs::path& folder);
+  ~MadeFolders() { removeEmpty(); }
+  MadeFolders(const MadeFolders&) = delete;
+  MadeFolders& operator=(const MadeFolders&) = delete;
+
+ private:
+  void removeEmpty() const;
+
+  std::vector<fs::path> made_;  ///< innermost first
+};
+
 /// Checks that files of these names may be written into a folder: these programs have written there before, or the
 /// folder has nothing of these names, or can be made.
 /// \throws std::runtime_error with one line that names what would be overwritten, is no folder, or is not writable

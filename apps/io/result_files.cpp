@@ -10,11 +10,11 @@
 #include <vector>
 
 #include <pcl/common/io.h>
-#include <pcl/io/pcd_io.h>
 #include <boost/algorithm/string/join.hpp>
 
 #include "drawing/scan_pictures.h"
 #include "io/cluster_json.h"
+#include "io/input_fields.h"
 #include "io/label_files.h"
 #include "io/options.h"
 #include "io/output_file.h"
@@ -27,6 +27,7 @@ namespace lisco_apps {
 namespace {
 
 constexpr const char* kClouds = "clusters";  ///< a folder
+constexpr const char* kSemanticKitti = "labels.label";
 
 struct Kind {
   const char* name;
@@ -41,7 +42,7 @@ const std::vector<Kind>& allKinds() {
                                         {"view", &ResultKinds::view, {"view.html"}},
                                         {"clouds", &ResultKinds::clouds, {kClouds}},
                                         {"json", &ResultKinds::json, {"clusters.json"}},
-                                        {"semantickitti", &ResultKinds::semantickitti, {"labels.label", "labels.npy"}}};
+                                        {"semantickitti", &ResultKinds::semantickitti, {kSemanticKitti, "labels.npy"}}};
   return kKinds;
 }
 
@@ -75,11 +76,11 @@ std::string tableOf(const ClusteredScan& scan) {
 
 void writeClusterClouds(const ClusteredScan& scan, const fs::path& folder) {
   fs::create_directory(folder);
+  const pcl::PCLPointCloud2 points = inputFieldsOf(scan);
   for (std::size_t i = 0; i < scan.clusters.size(); ++i) {
-    Cloud cluster;
-    pcl::copyPointCloud(*scan.cloud, scan.clusters[i].indices, cluster);
-    const fs::path file = folder / formatted("cluster_%04zu.pcd", i + 1);
-    if (pcl::PCDWriter().writeBinary(file.string(), cluster) != 0) fail(file, "cannot be written");
+    pcl::PCLPointCloud2 cluster;
+    pcl::copyPointCloud(points, scan.clusters[i].indices, cluster);
+    writePcd(cluster, scan, folder / formatted("cluster_%04zu.pcd", i + 1));
   }
 }
 
@@ -109,26 +110,26 @@ ResultKinds resultKindsOf(const std::string& text) {
   return kinds;
 }
 
-void writeResults(const ClusteredScan& scan, const fs::path& folder, const ResultKinds& kinds) {
+std::string writeResults(const ClusteredScan& scan, const fs::path& folder, const ResultKinds& kinds) {
+  const bool are_too_many = kinds.semantickitti && scan.clusters.size() > kMaxSemanticKittiClusters;
   std::vector<std::string> wanted, others;
   for (const Kind& kind : allKinds())
-    for (const std::string& file : kind.files) (kinds.*kind.is_wanted ? wanted : others).push_back(file);
+    for (const std::string& file : kind.files) {
+      const bool is_wanted = kinds.*kind.is_wanted && !(are_too_many && file == kSemanticKitti);
+      (is_wanted ? wanted : others).push_back(file);
+    }
   const bool has_results = fs::exists(folder / kResultMarker);
   writeOwnFolder(
       folder, wanted,
       [&](const fs::path& aside) {
-        try {
-          if (kinds.labels) writeLabelledPcd(scan, aside / "labels.pcd");
-          if (kinds.table) writeText(aside / "clusters.csv", tableOf(scan));
-          if (kinds.pictures) drawPictures(scan, aside / "range_image.png", aside / "top_view.png");
-          if (kinds.view) writeText(aside / "view.html", viewPage(scan.name, {encodeViewScan(viewScanOf(scan))}));
-          if (kinds.clouds) writeClusterClouds(scan, aside / kClouds);
-          if (kinds.json) writeText(aside / "clusters.json", lineOf(jsonOf(scan)) + "\n");
-          if (kinds.semantickitti) writeSemanticKitti(scan, aside / "labels.label");
-          if (kinds.semantickitti) writeNpy(scan, aside / "labels.npy");
-        } catch (const pcl::IOException&) {
-          fail(folder, "cannot be written");
-        }
+        if (kinds.labels) writeLabelledPcd(scan, aside / "labels.pcd");
+        if (kinds.table) writeText(aside / "clusters.csv", tableOf(scan));
+        if (kinds.pictures) drawPictures(scan, aside / "range_image.png", aside / "top_view.png");
+        if (kinds.view) writeText(aside / "view.html", viewPage(scan.name, {encodeViewScan(viewScanOf(scan))}));
+        if (kinds.clouds) writeClusterClouds(scan, aside / kClouds);
+        if (kinds.json) writeText(aside / "clusters.json", lineOf(jsonOf(scan)) + "\n");
+        if (kinds.semantickitti && !are_too_many) writeSemanticKitti(scan, aside / kSemanticKitti);
+        if (kinds.semantickitti) writeNpy(scan, aside / "labels.npy");
       },
       [&] {
         if (!has_results) return;
@@ -136,6 +137,12 @@ void writeResults(const ClusteredScan& scan, const fs::path& folder, const Resul
         for (const std::string& file : others)
           if (file != kClouds) fs::remove(folder / file);
       });
+  if (!are_too_many) return "";
+  return (folder / kSemanticKitti).string() +
+         formatted(
+             " is not written: SemanticKITTI's format has 16 bits for an instance, %zu clusters at most; there are "
+             "%zu (a larger --min-size gives fewer)",
+             kMaxSemanticKittiClusters, scan.clusters.size());
 }
 
 nlohmann::ordered_json jsonOf(const ClusteredScan& scan) {
@@ -152,7 +159,7 @@ nlohmann::ordered_json jsonOf(const ClusteredScan& scan) {
           {"columns", scan.cloud->width},
           {"returns", scan.returns.returns},
           {"ignored", scan.returns.ignored},
-          {"ground", scan.returns.ground},
+          {"ground", scan.returns.ground.size()},
           {"clustered", scan.returns.clustered.size()},
           {"noise", scan.returns.clustered.size() - in_clusters},
           {"tolerance", scan.tolerance},

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <stdexcept>
 
+#include <boost/algorithm/string/predicate.hpp>
+
 namespace lisco_apps {
 
 namespace po = boost::program_options;
@@ -30,6 +32,12 @@ Region::Box boxOf(const std::string& text) {
     if (!(box.min[axis] <= box.max[axis]))
       throw std::runtime_error("--ignore-box takes the lower corner first, not '" + text + "'");
   return box;
+}
+
+/// The NAME of "NAME=VALUE"; empty if there is none.
+std::string nameOf(const std::string& item) {
+  const std::size_t equals = item.rfind('=');
+  return equals == std::string::npos ? "" : item.substr(0, equals);
 }
 
 OptionValue* rangeOption(const char* option, double& range) {
@@ -103,6 +111,8 @@ void ScanOptions::check() {
       const bool is_named = item.find('=') != std::string::npos;
       if (is_named && !by_name_)
         throw std::runtime_error(std::string(option) + " applies to all: NAME= is not taken here, '" + item + "'");
+      if (is_named && nameOf(item).empty())
+        throw std::runtime_error(std::string(option) + ": NAME is empty in '" + item + "'");
       if (!ground.set(item, read))
         throw std::runtime_error(std::string(option) + ": the ground is given twice" +
                                  (is_named ? " for one input" : ""));
@@ -112,6 +122,26 @@ void ScanOptions::check() {
   set(heights_, "--ground-z", [](const std::string& text) { return atHeight(text, "--ground-z"); });
   for (const std::string& box : boxes_) region.ignored.push_back(boxOf(box));
   if (!(region.min_range <= region.max_range)) throw std::runtime_error("--max-range is smaller than --min-range");
+}
+
+std::vector<std::string> ScanOptions::unknownNames(const std::vector<fs::path>& inputs) const {
+  std::vector<std::string> lines;
+  const auto add = [&](const std::vector<std::string>& items, const char* option) {
+    for (const std::string& item : items) {
+      const std::string name = nameOf(item);
+      const auto is_named = [&name](const fs::path& input) { return input.stem().string() == name; };
+      if (name.empty() || std::any_of(inputs.begin(), inputs.end(), is_named)) continue;
+      const auto ends_name = [&name](const fs::path& input) {
+        return input.has_extension() && boost::ends_with(name, input.extension().string());
+      };
+      const auto like = std::find_if(inputs.begin(), inputs.end(), ends_name);
+      lines.push_back(std::string(option) + " names '" + name + "', which is no input" +
+                      (like == inputs.end() ? "" : ": NAME is given without " + like->extension().string()));
+    }
+  };
+  add(methods_, "--ground");
+  add(heights_, "--ground-z");
+  return lines;
 }
 
 }  // namespace lisco_apps

@@ -54,6 +54,8 @@ struct ScanOptions {
   void addTo(boost::program_options::options_description& shown);
   /// To be called once the command line has been read.
   void check();
+  /// A line for each NAME given that is that of no input.
+  std::vector<std::string> unknownNames(const std::vector<fs::path>& inputs) const;
 
  private:
   std::string standard_;

@@ -89,7 +89,7 @@ ScanReturns returnsOf(const Cloud& cloud, const GroundChoice& ground, const Regi
     if (!region.contains(point.x, point.y, point.z))
       ++result.ignored;
     else if (!by_slope.empty() ? by_slope[i] != 0 : point.z < ground.height)
-      ++result.ground;
+      result.ground.push_back(static_cast<pcl::index_t>(i));
     else
       result.clustered.push_back(static_cast<pcl::index_t>(i));
   }
@@ -99,13 +99,13 @@ ScanReturns returnsOf(const Cloud& cloud, const GroundChoice& ground, const Regi
 std::string describe(const ScanReturns& returns, const GroundChoice& ground) {
   std::string text;
   if (returns.ignored > 0) text += "  ignored   " + shareOf(returns.ignored, returns.returns) + " by range or place\n";
-  const std::string left_out = shareOf(returns.ground, returns.returns) + " left out";
+  const std::string left_out = shareOf(returns.ground.size(), returns.returns) + " left out";
   if (ground.method == GroundChoice::Method::kHeight)
     text += "  ground    " + left_out + formatted(", below z = %g m\n", static_cast<double>(ground.height));
   if (ground.method == GroundChoice::Method::kSlope)
-    text += !returns.is_rotating  ? "  ground    nothing left out: this is not the scan of a rotating sensor\n"
-            : returns.ground == 0 ? "  ground    nothing left out: none was found\n"
-                                  : "  ground    " + left_out + ", by slope; --ground none keeps them\n";
+    text += !returns.is_rotating     ? "  ground    nothing left out: this is not the scan of a rotating sensor\n"
+            : returns.ground.empty() ? "  ground    nothing left out: none was found\n"
+                                     : "  ground    " + left_out + ", by slope; --ground none keeps them\n";
   return text;
 }
 

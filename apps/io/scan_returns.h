@@ -13,9 +13,9 @@ namespace lisco_apps {
 /// What becomes of the returns of a scan.
 struct ScanReturns {
   pcl::Indices clustered;   ///< the rest, in the cloud's order
+  pcl::Indices ground;      ///< left out as ground, in the cloud's order
   std::size_t returns = 0;  ///< of the scan
   std::size_t ignored = 0;  ///< left out by range or place
-  std::size_t ground = 0;   ///< of the others, left out as ground
   bool is_rotating = true;  ///< false: the slope method found no scan of a rotating sensor, and left out nothing
 };
 

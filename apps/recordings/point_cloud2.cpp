@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <utility>
@@ -61,6 +62,18 @@ void refuseWithoutCoordinates(const pcl::PCLPointCloud2& cloud) {
   }
 }
 
+/// A message that describes itself rightly, without bytes behind its rows.
+pcl::PCLPointCloud2 withoutPadding(const pcl::PCLPointCloud2& message) {
+  const std::uint32_t row_bytes = message.width * message.point_step;
+  if (row_bytes == 0 || message.row_step == row_bytes) return message;
+  pcl::PCLPointCloud2 cloud = message;
+  cloud.row_step = row_bytes;
+  cloud.data.resize(std::size_t{row_bytes} * message.height);
+  for (std::size_t row = 0; row < message.height; ++row)
+    std::memcpy(&cloud.data[row * row_bytes], &message.data[row * message.row_step], row_bytes);
+  return cloud;
+}
+
 }  // namespace
 
 pcl::PCLPointCloud2 pointCloud2In(const Message& message, const Topic& topic) {
@@ -113,7 +126,7 @@ Scan scanOf(const pcl::PCLPointCloud2& message) {
     (*scan.cloud)[static_cast<std::size_t>(point_of_cell[cell])] = (*arranged)[cell];
     is_same = is_same && static_cast<std::size_t>(point_of_cell[cell]) == cell;
   }
-  if (message.is_bigendian == 0 && message.row_step == message.point_step * message.width) scan.fields = message;
+  scan.fields = withoutPadding(message);
   if (is_same || arranged->height < 2) return scan;
   scan.note = formatted("arranged by ring in %u rows x %u columns", arranged->height, arranged->width);
   scan.arranged = std::move(arranged);

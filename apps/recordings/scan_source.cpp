@@ -3,10 +3,13 @@
 #include "recordings/scan_source.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <deque>
 #include <stdexcept>
 #include <utility>
 
+#include "io/formats.h"
 #include "io/options.h"
 #include "recordings/bytes.h"
 #include "recordings/packet_input.h"
@@ -46,6 +49,52 @@ ScanItem itemOf(const fs::path& file, std::uint64_t number, std::int64_t time_ns
   item.file = file;
   item.time_ns = time_ns;
   return item;
+}
+
+/// The columns of one rotation.
+struct Rotation {
+  std::vector<Cell> cells;  ///< column by column
+  std::size_t rows = 0;
+  std::vector<double> times_us;  ///< of the columns, see Column
+
+  std::size_t columns() const { return times_us.size(); }
+};
+
+/// Seconds from one time past the hour to another, the nearest.
+float secondsBetween(double from_us, double to_us) {
+  constexpr double kHourUs = 3600e6;
+  return static_cast<float>(1e-6 * std::remainder(to_us - from_us, kHourUs));
+}
+
+/// A rotation as a cloud, with fields x y z intensity ring time: the laser, 0 at the top, and seconds since the first
+/// column, of the firing of the column's first laser.
+/// \param lasers of the sensor; one with several returns has a row for each
+Scan scanOf(const Rotation& rotation, std::size_t lasers) {
+  static_assert(sizeof(Cell) == 4 * sizeof(float), "cells are written as they are");
+  const std::size_t columns = rotation.columns();
+  const std::size_t rows_of_laser = std::max<std::size_t>(1, rotation.rows / lasers);
+  Scan scan;
+  scan.cloud = std::make_shared<Cloud>(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rotation.rows));
+  scan.cloud->is_dense = false;
+  for (const char* const name : {"x", "y", "z", "intensity"}) addField(scan.fields, name, pcl::PCLPointField::FLOAT32);
+  addField(scan.fields, "ring", pcl::PCLPointField::UINT16);
+  addField(scan.fields, "time", pcl::PCLPointField::FLOAT32);
+  scan.fields.is_dense = 0;
+  allocate(scan.fields, scan.cloud->width, scan.cloud->height);
+  std::uint8_t* at = scan.fields.data.data();
+  const auto put = [&at](const auto& value) {
+    std::memcpy(at, &value, sizeof value);
+    at += sizeof value;
+  };
+  for (std::size_t row = 0; row < rotation.rows; ++row)
+    for (std::size_t column = 0; column < columns; ++column) {
+      const Cell& cell = rotation.cells[column * rotation.rows + row];
+      (*scan.cloud)[row * columns + column] = pcl::PointXYZ(cell.x, cell.y, cell.z);
+      put(cell);
+      put(static_cast<std::uint16_t>(row / rows_of_laser));
+      put(secondsBetween(rotation.times_us.front(), rotation.times_us[column]));
+    }
+  return scan;
 }
 
 }  // namespace
@@ -134,35 +183,24 @@ class ScanSource::Turns : public Sequence {
 
  private:
   void add(const Column& column) {
-    const bool is_full = rows_ != 0 && cells_.size() / rows_ == kMaxColumns;
-    if (cutter_.startsRotation(column.azimuth, column.after_break) || is_full || column.cells.size() != rows_) {
+    const bool is_full = rotation_.columns() == kMaxColumns;
+    if (cutter_.startsRotation(column.azimuth, column.after_break) || is_full ||
+        column.cells.size() != rotation_.rows) {
       end();
-      rows_ = column.cells.size();
+      rotation_.rows = column.cells.size();
     }
-    cells_.insert(cells_.end(), column.cells.begin(), column.cells.end());
+    rotation_.cells.insert(rotation_.cells.end(), column.cells.begin(), column.cells.end());
+    rotation_.times_us.push_back(column.time_us);
     time_us_ = packet_time_us_;
   }
 
   void end() {
-    if (cells_.empty()) return;
-    if (rotations_++ % every_ == 0) ended_.push_back(rotation());
-    cells_.clear();
-  }
-
-  ScanItem rotation() const {
-    const std::size_t columns = cells_.size() / rows_;
-    Scan scan;
-    scan.cloud = std::make_shared<Cloud>(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows_));
-    scan.cloud->is_dense = false;
-    for (std::size_t column = 0; column < columns; ++column)
-      for (std::size_t row = 0; row < rows_; ++row) {
-        const Cell& cell = cells_[column * rows_ + row];
-        (*scan.cloud)[row * columns + column] = pcl::PointXYZ(cell.x, cell.y, cell.z);
-      }
+    Rotation ended = std::exchange(rotation_, Rotation());
+    if (ended.cells.empty() || rotations_++ % every_ != 0) return;
     ScanItem item = itemOf(file_, rotations_, 1000 * time_us_);
     item.of_packets = true;
-    item.read = [scan = std::move(scan)] { return scan; };
-    return item;
+    item.read = [rotation = std::move(ended), lasers = input_.decoder->lasers()] { return scanOf(rotation, lasers); };
+    ended_.push_back(std::move(item));
   }
 
   fs::path file_;
@@ -170,9 +208,8 @@ class ScanSource::Turns : public Sequence {
   unsigned every_;
   RotationCutter cutter_;
   bool is_over_ = false;
-  std::uint64_t rotations_ = 0;  ///< that have ended
-  std::vector<Cell> cells_;      ///< of the rotation that has begun, column by column
-  std::size_t rows_ = 0;
+  std::uint64_t rotations_ = 0;                    ///< that have ended
+  Rotation rotation_;                              ///< that has begun
   std::int64_t time_us_ = 0, packet_time_us_ = 0;  ///< of the last column, and of the last packet
   std::deque<ScanItem> ended_;
 };

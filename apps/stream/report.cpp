@@ -4,10 +4,10 @@
 
 #include <cmath>
 #include <cstdio>
-#include <stdexcept>
 #include <string>
 
 #include "io/cluster_json.h"
+#include "io/options.h"
 #include "io/point_geometry.h"
 #include "io/text.h"
 #include "sensors/laser.h"
@@ -61,7 +61,7 @@ void Report::print(const std::string& line) {
 void Report::flush() {
   if (!unflushed_) return;
   unflushed_ = false;
-  if (std::fflush(stdout) != 0) throw std::runtime_error("the standard output cannot be written");
+  flushOutput();
   if (shares_terminal_ && !shown_.empty()) status_.show(shown_);
 }
 

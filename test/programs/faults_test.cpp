@@ -35,8 +35,9 @@ class Programs : public ProgramTest {
 TEST_F(Programs, LeaveNoPartialResultsOnAFullDisk) {
   for (const int blocks : {0, 8, 300}) {
     SCOPED_TRACE(blocks);
-    const Outcome outcome = runWithLimitedDisk(blocks, program_ + " scan.pcd -t 0.4 --clouds -o results 2>/dev/null");
+    const Outcome outcome = runWithLimitedDisk(blocks, program_ + " scan.pcd -t 0.4 --clouds -o results 2>&1");
     EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.out.find("partial"), std::string::npos) << outcome.out;
     EXPECT_EQ(filesLeft(), inputs_);
   }
   EXPECT_EQ(run("scan.pcd -t 0.4 --clouds -o results").status, 0);
@@ -58,6 +59,23 @@ TEST_F(Programs, LeaveNoPartialFilesOnAFullDisk) {
     SCOPED_TRACE(command);
     EXPECT_EQ(runWithLimitedDisk(0, command + " >/dev/null 2>&1").status, 2);
     EXPECT_EQ(filesLeft(), inputs_);
+  }
+}
+
+TEST_F(Programs, ReportAnUnwritableStandardOutput) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  const std::string compare = LISCO_COMPARE + std::string(" scan.pcd -t 0.4 --check-only --baselines lisco");
+  for (const std::string& command :
+       {program_ + " scan.pcd -t 0.4", program_ + " scan.pcd -t 0.4 --json", program_ + " --help", compare,
+        LISCO_COMPARE + std::string(" --version"), LISCO_SIMULATE + std::string(" --scene 1 -o other.pcd"),
+        LISCO_SIMULATE + std::string(" --case sheets -o other.pcd"),
+        LISCO_SIMULATE + std::string(" --terrain road -o other.pcd")}) {
+    SCOPED_TRACE(command);
+    const Outcome outcome = runLine("sh -c '" + command + " >/dev/full'");
+    EXPECT_EQ(outcome.status, 2);
+    const std::string name = fs::path(command.substr(0, command.find(' '))).filename().string();
+    EXPECT_EQ(outcome.err.substr(outcome.err.rfind(name)), name + ": the standard output cannot be written\n");
+    fs::remove(folder_ / "other.pcd");
   }
 }
 

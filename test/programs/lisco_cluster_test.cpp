@@ -65,18 +65,20 @@ TEST_F(LiscoCluster, WritesLabelsTableAndPictures) {
     EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
   }
   const std::string labels = textOf(folder_ / "results/labels.pcd");
-  EXPECT_NE(labels.find("FIELDS x y z label\n"), std::string::npos);
+  EXPECT_NE(labels.find("FIELDS x y z label ground\nSIZE 4 4 4 4 1\nTYPE F F F U U\n"), std::string::npos);
   EXPECT_NE(labels.find("WIDTH 41\nHEIGHT 4\n"), std::string::npos);
   EXPECT_FALSE(fs::exists(folder_ / "results/clusters"));
 
-  // The binary part: x y z label of every cell, the walls labelled, ground and no-return 0.
+  // The binary part: x y z label ground of every cell, the walls labelled, ground and no-return 0.
   const std::string data = labels.substr(labels.find("DATA binary\n") + 12);
-  ASSERT_EQ(data.size(), 164U * 16U);
+  ASSERT_EQ(data.size(), 164U * 17U);
   const auto label = [&data](std::size_t row, std::size_t column) {
     std::uint32_t value;
-    std::memcpy(&value, data.data() + (row * 41 + column) * 16 + 12, 4);
+    std::memcpy(&value, data.data() + (row * 41 + column) * 17 + 12, 4);
     return value;
   };
+  for (std::size_t cell = 0; cell < 164; ++cell)
+    EXPECT_EQ(data[cell * 17 + 16], cell >= 123 && cell != 143 ? 1 : 0) << cell;
   EXPECT_EQ(label(0, 0), 1U);
   EXPECT_EQ(label(2, 40), 2U);
   EXPECT_EQ(label(1, 20), 0U);
@@ -177,6 +179,14 @@ TEST_F(LiscoCluster, TakesTheGroundOfEachInput) {
   EXPECT_EQ(ground, (std::map<std::string, int>{{"a.pcd", 0}, {"b.pcd", 40}}));
 }
 
+TEST_F(LiscoCluster, NamesTheOptionThatNamesNoInput) {
+  write("a.pcd", twoWalls());
+  EXPECT_EQ(run("a.pcd --tolerance 0.3 --ground-z b=-1.5").err,
+            "lisco_cluster: --ground-z names 'b', which is no input\n");
+  EXPECT_EQ(run("a.pcd --tolerance 0.3 --ground a.pcd=none").err,
+            "lisco_cluster: --ground names 'a.pcd', which is no input: NAME is given without .pcd\n");
+}
+
 TEST_F(LiscoCluster, LeavesOutReturnsByRangeAndPlace) {
   write("walls.pcd", twoWalls());
   const auto counts = [this](const std::string& options) {
@@ -249,10 +259,106 @@ TEST_F(LiscoCluster, WritesSemanticKittiAndNumpyLabels) {
     std::memcpy(&value, bytes.data() + place, 4);
     return value;
   };
-  for (const auto& [point, id] : {std::pair{0U, 1U}, {20U, 0U}, {40U, 2U}, {3U * 41 + 5, 0U}}) {
-    EXPECT_EQ(at(labels, 4 * point), id << 16);
+  for (const auto& [point, id] : {std::pair{0U, 1U}, {20U, 0U}, {40U, 2U}, {3U * 41 + 5, 0U}, {3U * 41 + 20, 0U}}) {
+    EXPECT_EQ(at(labels, 4 * point), id << 16 | (point == 3U * 41 + 5 ? 49U : 0U));
     EXPECT_EQ(at(npy, npy.size() - 164 * 4 + 4 * point), id);
   }
+}
+
+TEST_F(LiscoCluster, MarksTheGroundOfArrangedCloudsInTheOrderOfTheInput) {
+  const std::string turn = rotatingScan();
+  const std::string cells = turn.substr(turn.find("DATA binary\n") + 12);
+  std::string points;
+  std::size_t count = 0;
+  for (std::size_t column = 0; column < 900; ++column)
+    for (std::uint8_t ring = 0; ring < 32; ++ring) {
+      const std::string cell = cells.substr((ring * std::size_t{900} + column) * 12, 12);
+      float x;
+      std::memcpy(&x, cell.data(), sizeof x);
+      if (std::isnan(x)) continue;
+      points += cell + std::string(1, static_cast<char>(ring));
+      ++count;
+    }
+  const std::string number = std::to_string(count);
+  write("firings.pcd", "VERSION 0.7\nFIELDS x y z ring\nSIZE 4 4 4 1\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH " + number +
+                           "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + number + "\nDATA binary\n" + points);
+  const Outcome outcome = run("firings.pcd --tolerance 1 --json --write labels,semantickitti -o results");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string labels = textOf(folder_ / "results/labels.pcd");
+  EXPECT_NE(labels.find("FIELDS x y z ring label ground\n"), std::string::npos);
+  const std::string data = labels.substr(labels.find("DATA binary\n") + 12);
+  const std::string kitti = textOf(folder_ / "results/labels.label");
+  ASSERT_EQ(data.size(), count * 18);
+  ASSERT_EQ(kitti.size(), count * 4);
+  int ground = 0;
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    float z;
+    std::uint32_t label, of_kitti;
+    std::memcpy(&z, &data[18 * i + 8], sizeof z);
+    std::memcpy(&label, &data[18 * i + 13], sizeof label);
+    std::memcpy(&of_kitti, &kitti[4 * i], sizeof of_kitti);
+    const bool is_ground = data[18 * i + 17] == 1;
+    ground += is_ground ? 1 : 0;
+    wrong += is_ground && (z > -1.5F || label != 0) ? 1 : 0;
+    wrong += of_kitti != (label << 16 | (is_ground ? 49U : 0U)) ? 1 : 0;
+  }
+  EXPECT_EQ(wrong, 0U);
+  EXPECT_GT(ground, 10000);
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["ground"], ground);
+}
+
+TEST_F(LiscoCluster, RenamesAllFieldsOfAnAddedName) {
+  write("twice.pcd",
+        "VERSION 0.7\nFIELDS x y z label label\nSIZE 4 4 4 4 4\nTYPE F F F U U\nCOUNT 1 1 1 1 1\nWIDTH 1\nHEIGHT 1\n"
+        "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 1\nDATA ascii\n5 0 1 2 3\n");
+  ASSERT_EQ(run("twice.pcd --tolerance 0.3 --min-size 1 --ground none -o results").status, 0);
+  EXPECT_NE(textOf(folder_ / "results/labels.pcd").find("FIELDS x y z input_label input_label2 label\n"),
+            std::string::npos);
+}
+
+TEST_F(LiscoCluster, RenamesAGroundFieldOfTheInput) {
+  write("ground.pcd",
+        "VERSION 0.7\nFIELDS x y z ground\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"
+        "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ascii\n5 0 -2 0.5\n5 0 1 0.25\n");
+  for (const auto& [ground, fields] : {std::pair("none", "FIELDS x y z input_ground label\n"),
+                                       std::pair("slope", "FIELDS x y z input_ground label\n"),  // turns nowhere
+                                       std::pair("height:0", "FIELDS x y z input_ground label ground\n")}) {
+    ASSERT_EQ(run(std::string("ground.pcd --tolerance 0.3 --min-size 1 -o results --ground ") + ground).status, 0);
+    EXPECT_NE(textOf(folder_ / "results/labels.pcd").find(fields), std::string::npos) << ground;
+  }
+  const std::string pcd = textOf(folder_ / "results/labels.pcd");
+  EXPECT_EQ(pcd.substr(pcd.find("DATA binary\n") + 12), floats({5, 0, -2, 0.5F}) + std::string("\0\0\0\0\1", 5) +
+                                                            floats({5, 0, 1, 0.25F}) + std::string("\1\0\0\0\0", 5));
+}
+
+TEST_F(LiscoCluster, LeavesOutSemanticKittiLabelsOfTooManyClusters) {
+  const auto line = [](std::size_t points) {
+    std::vector<float> values;
+    for (std::size_t i = 0; i < points; ++i) values.insert(values.end(), {static_cast<float>(i + 1), 1, 0});
+    return values;
+  };
+  const auto pcd = [&](std::size_t points) {
+    const std::string count = std::to_string(points);
+    return "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " + count +
+           "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + count + "\nDATA binary\n" + floats(line(points));
+  };
+  const std::string options = " --tolerance 0.3 --min-size 1 --write semantickitti,labels -o results";
+  write("most.pcd", pcd(65535));
+  const Outcome most = run("most.pcd" + options);
+  ASSERT_EQ(most.status, 0) << most.err;
+  EXPECT_EQ(fs::file_size(folder_ / "results/labels.label"), 65535U * 4);
+
+  write("more.pcd", pcd(65536));
+  const Outcome more = run("more.pcd" + options);
+  EXPECT_EQ(more.status, 2);
+  EXPECT_EQ(more.err,
+            "lisco_cluster: results/labels.label is not written: SemanticKITTI's format has 16 bits for an instance, "
+            "65535 clusters at most; there are 65536 (a larger --min-size gives fewer)\n");
+  EXPECT_NE(more.out.find("clusters  65536 of"), std::string::npos) << more.out;
+  EXPECT_FALSE(fs::exists(folder_ / "results/labels.label"));  // of the run before
+  EXPECT_NE(textOf(folder_ / "results/labels.pcd").find("POINTS 65536\n"), std::string::npos);
+  EXPECT_GT(fs::file_size(folder_ / "results/labels.npy"), 65536U * 4);
 }
 
 TEST_F(LiscoCluster, KeepsAllFieldsOfTheInput) {
@@ -272,7 +378,7 @@ TEST_F(LiscoCluster, KeepsAllFieldsOfTheInput) {
         "VERSION 0.7\nFIELDS x y z ring _ pair label\nSIZE 8 4 4 1 1 2 4\nTYPE F F F U U U I\nCOUNT 1 1 1 1 1 2 1\n"
         "WIDTH 3\nHEIGHT 1\nVIEWPOINT 1 2 3 1 0 0 0\nPOINTS 3\nDATA binary\n" +
             point(5.125, 1, 2, 7, 300, -4) + point(5.25, 1, 2, 8, 301, -5) + point(9, 1, 2, 9, 302, -6));
-  ASSERT_EQ(run("rich.pcd --tolerance 0.3 --min-size 2 -o results").status, 0);
+  ASSERT_EQ(run("rich.pcd --tolerance 0.3 --min-size 2 -o results --write labels,clouds").status, 0);
   const std::string pcd = textOf(folder_ / "results/labels.pcd");
   for (const char* line : {"FIELDS x y z ring pair input_label label\n", "SIZE 8 4 4 1 2 4 4\n", "TYPE F F F U U I U\n",
                            "COUNT 1 1 1 1 2 1 1\n", "VIEWPOINT 1 2 3 1 0 0 0\n", "WIDTH 3\nHEIGHT 1\n"})
@@ -287,6 +393,13 @@ TEST_F(LiscoCluster, KeepsAllFieldsOfTheInput) {
     EXPECT_EQ(data.substr(29 * i + 17, 8), expected.substr(18, 8)) << i;
     EXPECT_EQ(data[29 * i + 25], i == 2 ? 0 : 1) << i;
   }
+  const std::string cluster = textOf(folder_ / "results/clusters/cluster_0001.pcd");
+  for (const char* line : {"FIELDS x y z ring pair label\n", "SIZE 8 4 4 1 2 4\n", "TYPE F F F U U I\n",
+                           "VIEWPOINT 1 2 3 1 0 0 0\n", "WIDTH 2\nHEIGHT 1\n"})
+    EXPECT_NE(cluster.find(line), std::string::npos) << line << cluster.substr(0, 300);
+  const std::string cluster_data = cluster.substr(cluster.find("DATA binary\n") + 12);
+  ASSERT_EQ(cluster_data.size(), 2U * 25);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(cluster_data.substr(25 * i, 25), data.substr(29 * i, 25)) << i;
   // Its own output is an input, too.
   fs::rename(folder_ / "results/labels.pcd", folder_ / "again.pcd");
   ASSERT_EQ(run("again.pcd --tolerance 0.3 --min-size 2 -o results").status, 0);
@@ -419,6 +532,8 @@ TEST_F(LiscoCluster, RefusesBadOptionsInOneLine) {
   expectRefusal("walls.pcd --tolerance 0.3 --ground height:low", {"--ground must be a number, not 'low'"});
   expectRefusal("walls.pcd --tolerance 0.3 --ground none --ground-z 1", {"the ground is given twice"});
   expectRefusal("walls.pcd --tolerance 0.3 --ground walls=none --ground-z walls=1", {"the ground is given twice"});
+  expectRefusal("walls.pcd --tolerance 0.3 --ground-z =1", {"--ground-z: NAME is empty in '=1'"});
+  expectRefusal("walls.pcd --tolerance 0.3 --ground =none", {"--ground: NAME is empty in '=none'"});
   expectRefusal("walls.pcd --tolerance 0.3 --min-range -1", {"--min-range must not be negative"});
   expectRefusal("walls.pcd --tolerance 0.3 --max-range far", {"--max-range must be a number, not 'far'"});
   expectRefusal("walls.pcd --tolerance 0.3 --min-range 5 --max-range 4", {"--max-range is smaller"});

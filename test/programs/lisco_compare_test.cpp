@@ -360,7 +360,7 @@ TEST_F(LiscoCompare, RemovesTheGroundOfAllOrOfOne) {
   EXPECT_EQ(returns("--ground-z b=-2.5 --ground-z -1.5"), std::vector<int>({180, 360, 180}));
   EXPECT_EQ(returns("--ground-z c=d=-1.5"), std::vector<int>({360, 360, 180}));
   EXPECT_EQ(returns("--ground-z e=-1.5"), std::vector<int>({360, 360, 360}));
-  EXPECT_NE(run("a.pcd -t 0.3 --check-only --ground-z e=-1.5").err.find("--ground names 'e', which is no input"),
+  EXPECT_NE(run("a.pcd -t 0.3 --check-only --ground-z e=-1.5").err.find("--ground-z names 'e', which is no input"),
             std::string::npos);
 }
 

@@ -347,10 +347,31 @@ TEST_F(LiscoSimulate, RefusesBadOptionsInOneLine) {
   expectRefusal("--scene 1 -o scan.pcd stray", {"'stray' is no option", "see --help"});
 }
 
+TEST_F(LiscoSimulate, MakesTheFoldersAboveItsOutput) {
+  for (const char* world : {"--scene 1", "--case sheets", "--terrain road"}) {
+    SCOPED_TRACE(world);
+    const Outcome outcome = run(std::string(world) + " --sensor vlp16 -o a/b/scan.pcd");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(fs::exists(folder_ / "a/b/scan.pcd"));
+    fs::remove_all(folder_ / "a");
+  }
+  expectRefusal("--scene 1 --sensor hdl65 -o a/b/scan.pcd", {"hdl65"});
+  expectRefusal("--terrain road --lasers 4096 --steps 65536 -o a/b/scan.pcd", {"cells"});
+}
+
+TEST_F(LiscoSimulate, SaysWhichSensorsHavePacketsOnly) {
+  for (const char* world : {"--scene 1", "--terrain road"})
+    expectRefusal(std::string(world) + " --sensor vlp32c -o scan.pcd",
+                  {"--sensor vlp32c is of --terrain with --pcap only"});
+  EXPECT_EQ(run("--terrain road --sensor vlp32c --steps 360 --pcap -o drive").status, 0);
+  EXPECT_NE(run("--help").out.find("vlp32c"), std::string::npos);
+}
+
 TEST_F(LiscoSimulate, OverwritesOnlyItsOwnFiles) {
   write("mine.pcd", "VERSION 0.7\nFIELDS x y z\n");
   expectRefusal("--scene 1 -o mine.pcd", {"mine.pcd", "not written by this program"});
-  expectRefusal("--scene 1 -o nowhere/scan.pcd", {"nowhere/scan.pcd", "cannot be written"});
+  expectRefusal("--scene 1 -o mine.pcd/scan.pcd", {"mine.pcd", "cannot be written"});
+  expectRefusal("--scene 1 -o mine.pcd/sub/scan.pcd", {"mine.pcd/sub", "cannot be written"});
   fs::create_directory(folder_ / "folder");
   expectRefusal("--scene 1 -o folder", {"folder"});
   EXPECT_EQ(textOf(folder_ / "mine.pcd"), "VERSION 0.7\nFIELDS x y z\n");

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <numeric>
 #include <ostream>
 #include <sstream>
 #include <string>
@@ -33,7 +34,7 @@ using lisco_test::Measured;
 using lisco_test::PacketEncoder;
 using Json = nlohmann::json;
 
-/// A binary PCD, its fields as 32 bits each.
+/// A binary PCD, its fields as 32 bits each, smaller ones extended by zeros.
 struct Pcd {
   std::size_t width = 0, height = 0;
   std::vector<std::string> fields;
@@ -52,6 +53,7 @@ struct Pcd {
 
 Pcd pcdOf(const std::string& content) {
   Pcd pcd;
+  std::vector<std::size_t> sizes;
   std::istringstream header(content);
   for (std::string line; std::getline(header, line) && line != "DATA binary";) {
     std::istringstream words(line);
@@ -61,12 +63,22 @@ Pcd pcdOf(const std::string& content) {
     if (key == "HEIGHT") words >> pcd.height;
     if (key == "FIELDS")
       for (std::string name; words >> name;) pcd.fields.push_back(name);
+    if (key == "SIZE")
+      for (std::size_t size; words >> size;) sizes.push_back(size);
   }
-  pcd.values.resize(pcd.cells() * pcd.fields.size());
-  const std::size_t bytes = pcd.values.size() * sizeof(std::uint32_t);
+  EXPECT_EQ(sizes.size(), pcd.fields.size());
+  const std::size_t bytes = pcd.cells() * std::accumulate(sizes.begin(), sizes.end(), std::size_t{0});
   const auto start = static_cast<std::size_t>(std::max<std::streamoff>(0, header.tellg()));
   EXPECT_EQ(content.size(), start + bytes);
-  if (bytes > 0 && content.size() == start + bytes) std::memcpy(pcd.values.data(), content.data() + start, bytes);
+  if (content.size() != start + bytes) return pcd;
+  const char* at = content.data() + start;
+  for (std::size_t cell = 0; cell < pcd.cells(); ++cell)
+    for (const std::size_t size : sizes) {
+      std::uint32_t value = 0;
+      std::memcpy(&value, at, std::min(size, sizeof value));
+      pcd.values.push_back(value);
+      at += size;
+    }
   return pcd;
 }
 
@@ -583,6 +595,42 @@ TEST_F(LiscoStream, CountsLostLateAndForeignPackets) {
     std::size_t lost = 0;
     for (const Json& line : lines) lost += line["lost_packets"].get<std::size_t>();
     EXPECT_EQ(lost, 30U + 180U + 1U);
+  }
+}
+
+TEST_F(LiscoStream, ClusterFilesKeepTheFieldsOfPackets) {
+  for (const bool is_dual : {false, true}) {
+    SCOPED_TRACE(is_dual);
+    PacketEncoder encoder("vlp16", is_dual);
+    encoder.time_us = 3599.95e6;  // the next hour begins within the rotation
+    const double firing_us = encoder.packetPeriodUs() / static_cast<double>(encoder.firingsPerPacket());
+    writeCapture("a.pcap", packetsOf(encoder, 3600 / encoder.firingsPerPacket()));
+    const std::string input = "a.pcap --sensor vlp16 -t 0.5 --ground none";
+    ASSERT_EQ(run(input + " -o clouds").status, 0);
+    fs::remove_all(folder_ / "batch");
+    const Outcome batch = runLine(std::string(LISCO_CLUSTER) + " " + input + " --write labels,clouds -o batch");
+    ASSERT_EQ(batch.status, 0) << batch.err;
+    std::vector<fs::path> rotations(fs::directory_iterator(folder_ / "batch"), {});
+    std::sort(rotations.begin(), rotations.end());
+    const Pcd streamed = cloud("clouds", 1), labelled = pcdOf(textOf(rotations.front() / "labels.pcd"));
+    EXPECT_EQ(labelled.fields, (std::vector<std::string>{"x", "y", "z", "intensity", "ring", "time", "label"}));
+    ASSERT_EQ(labelled.height, is_dual ? 32U : 16U);
+    ASSERT_GT(labelled.width, 1000U);
+    for (const char* field : {"x", "y", "z", "intensity", "label"})
+      EXPECT_TRUE(labelled.field(field) == streamed.field(field)) << field;
+    const std::vector<std::uint32_t> rings = labelled.field("ring"), times = labelled.field("time");
+    double largest_difference = 0;
+    for (std::size_t cell = 0; cell < labelled.cells(); ++cell) {
+      ASSERT_EQ(rings[cell], cell / labelled.width / (is_dual ? 2 : 1)) << cell;
+      float time;
+      std::memcpy(&time, &times[cell], sizeof time);
+      const double expected = 1e-6 * firing_us * static_cast<double>(cell % labelled.width);
+      largest_difference = std::max(largest_difference, std::fabs(static_cast<double>(time) - expected));
+    }
+    EXPECT_LT(largest_difference, 2e-6);
+    const std::string cluster = textOf(rotations.front() / "clusters/cluster_0001.pcd");
+    EXPECT_NE(cluster.find("FIELDS x y z intensity ring time\nSIZE 4 4 4 4 2 4\n"), std::string::npos)
+        << cluster.substr(0, 200);
   }
 }
 

@@ -317,6 +317,24 @@ TEST(CloudMessages, MayBeBigEndian) {
   }
 }
 
+TEST(CloudMessages, KeepTheirFieldsWithPaddedRows) {
+  const pcl::PCLPointCloud2 dense = mixedCloud(false);
+  pcl::PCLPointCloud2 padded = dense;
+  padded.row_step = 0;  // of no meaning to a single row
+  EXPECT_EQ(lisco_apps::scanOf(padded).fields.data, dense.data);
+  padded.width = 1;
+  padded.height = 3;
+  padded.row_step = 47;
+  padded.data.assign(std::size_t{3} * 47, 0xCD);
+  for (std::ptrdiff_t row = 0; row < 3; ++row)
+    std::copy_n(dense.data.begin() + 40 * row, 40, padded.data.begin() + 47 * row);
+  const Scan scan = lisco_apps::scanOf(padded);
+  EXPECT_EQ(scan.cloud->height, 3U);
+  EXPECT_EQ(scan.fields.row_step, 40U);
+  EXPECT_EQ(scan.fields.fields.size(), 5U);
+  EXPECT_EQ(scan.fields.data, dense.data);
+}
+
 TEST(CloudMessages, OfManyEmptyRowsTakeNoTime) {
   pcl::PCLPointCloud2 cloud = mixedCloud(true);
   cloud.height = 0xFFFFFFFF;
