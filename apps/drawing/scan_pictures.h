@@ -32,7 +32,7 @@ constexpr double kLabelSize = 13;
 struct ScanColors {
   std::vector<Color> of_cluster;
   std::vector<std::uint32_t> of_point;
-  std::vector<std::uint32_t> shaded;  ///< of points: distant ones darker, which gives a view from the sensor its depth
+  std::vector<std::uint32_t> shaded;  ///< of points: noise and ground darker at a distance, which gives depth
 };
 
 /// The ids of clusters at places of a picture, the larger ones first, where there is room.
