@@ -271,6 +271,71 @@ TEST(Palette, ColorsDifferClearly) {
       EXPECT_GE(labDistance(labOf(all[i]), labOf(all[k])), kClearlyDifferent) << i << " and " << k;
 }
 
+/// A wall of rows 2 to 9 and `columns` (modulo a turn), 10 m away.
+ClusteredScan wallAt(int first, int last) {
+  const std::shared_ptr<Cloud> cloud = emptyTurn(600, 16);
+  for (int column = 0; column < 600; ++column) measure(*cloud, 15, column, 20);
+  ClusteredScan scan;
+  scan.clusters.emplace_back();
+  for (int row = 2; row < 10; ++row)
+    for (int column = first; column <= last; ++column) {
+      measure(*cloud, row, column % 600, 10);
+      scan.clusters[0].indices.push_back(row * 600 + column % 600);
+    }
+  std::sort(scan.clusters[0].indices.begin(), scan.clusters[0].indices.end());
+  scan.returns.clustered = scan.clusters[0].indices;
+  complete(scan, cloud);
+  return scan;
+}
+
+/// Where the range image of wallAt () has lines of its box.
+class WallBox {
+ public:
+  WallBox(const fs::path& png, const ClusteredScan& scan)
+      : picture_(png), map_(rangeImageOf(scan)), left_((picture_.width() - map_.columns * cellWidth()) / 2) {}
+
+  /// Whether the row of pixels above the wall is a line at a column.
+  bool above(int column) const { return isLine(left_ + column * cellWidth() + 1, top() - 1); }
+  bool below(int column) const { return isLine(left_ + column * cellWidth() + 1, bottom()); }
+  bool leftOf(int column) const { return isLine(left_ + column * cellWidth() - 1, top() + 1); }
+  bool rightOf(int column) const { return isLine(left_ + (column + 1) * cellWidth(), top() + 1); }
+
+ private:
+  int cellWidth() const { return static_cast<int>(map_.cell_width); }
+  int top() const { return kHeaderHeight + 2 * static_cast<int>(map_.cell_height); }
+  int bottom() const { return kHeaderHeight + 10 * static_cast<int>(map_.cell_height); }
+  bool isLine(int x, int y) const {
+    return labDistance(labOf(picture_.at(x, y)), labOf(kPalette[0].brightened().argb())) < 10;
+  }
+
+  Picture picture_;
+  PointMap map_;
+  int left_;
+};
+
+TEST_F(ScanPictures, RangeImageHasBoxes) {
+  const ClusteredScan scan = wallAt(100, 220);
+  draw(scan);
+  const WallBox box(rangeImage(), scan);
+  for (const int column : {100, 160, 220}) EXPECT_TRUE(box.above(column) && box.below(column)) << column;
+  for (const int column : {98, 222, 400}) EXPECT_FALSE(box.above(column) || box.below(column)) << column;
+  EXPECT_TRUE(box.leftOf(100));
+  EXPECT_TRUE(box.rightOf(220));
+  for (const int column : {50, 150, 300}) EXPECT_FALSE(box.leftOf(column)) << column;
+}
+
+TEST_F(ScanPictures, BoxesAreDividedAtTheSeam) {
+  const ClusteredScan scan = wallAt(560, 640);
+  draw(scan);
+  const WallBox box(rangeImage(), scan);
+  for (const int column : {560, 599, 0, 40}) EXPECT_TRUE(box.above(column) && box.below(column)) << column;
+  for (const int column : {42, 300, 558}) EXPECT_FALSE(box.above(column) || box.below(column)) << column;
+  EXPECT_TRUE(box.leftOf(560));
+  EXPECT_TRUE(box.rightOf(40));
+  EXPECT_FALSE(box.leftOf(0));
+  EXPECT_FALSE(box.rightOf(599));
+}
+
 /// A real scan and its tolerance.
 struct ScanFile {
   const char* name;
