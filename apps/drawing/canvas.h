@@ -39,12 +39,16 @@ constexpr Color kGround{0.24, 0.22, 0.19};
 constexpr Color kNoise{0.52, 0.52, 0.52};
 constexpr Color kText{0.93, 0.93, 0.93};
 constexpr Color kLine{0.30, 0.32, 0.36};
-/// Colours of clusters on a dark background. The first kPrimaryColors differ clearly, also with red-green blindness
-/// (CIE76 distances of 33 or more as seen with protanopia and deuteranopia); the others are for clusters with so many
-/// neighbours that these do not suffice.
-constexpr Color kPalette[] = {{0.80, 0.80, 0.00}, {0.30, 0.70, 1.00}, {0.00, 0.90, 0.50}, {0.80, 0.10, 0.00},
-                              {0.60, 0.00, 1.00}, {0.20, 1.00, 1.00}, {0.80, 0.00, 0.60}, {1.00, 0.60, 0.10},
-                              {1.00, 0.80, 0.85}, {0.25, 0.55, 0.10}, {0.70, 0.55, 1.00}, {0.60, 0.40, 0.20}};
+/// Colours of clusters on a dark background, of which any two differ clearly, and each from noise and ground: by
+/// CIEDE2000 distances of 19.5 or more. The first kPrimaryColors differ also with red-green blindness (CIE76 distances
+/// of 36 or more as seen with protanopia and deuteranopia); the others are for clusters with so many neighbours that
+/// these do not suffice.
+constexpr Color kPalette[] = {{0.85, 0.80, 0.20}, {0.05, 0.60, 0.90}, {0.00, 1.00, 0.60}, {0.55, 0.35, 0.00},
+                              {0.40, 0.30, 1.00}, {0.00, 0.95, 1.00}, {0.80, 0.05, 0.40}, {1.00, 0.75, 0.95},
+                              {0.05, 0.55, 0.40}, {1.00, 0.25, 0.00}, {0.95, 0.75, 0.65}, {0.30, 0.70, 0.00},
+                              {1.00, 0.15, 0.85}, {0.90, 0.55, 0.00}, {1.00, 0.50, 0.55}, {0.95, 1.00, 0.80},
+                              {0.50, 0.35, 0.55}, {0.30, 0.45, 0.00}, {0.65, 0.55, 0.95}, {0.60, 0.35, 0.30},
+                              {0.70, 0.85, 1.00}};
 constexpr std::size_t kPrimaryColors = 7;
 
 /// A picture in memory, drawn by Cairo. Lengths in pixels, x to the right, y down; drawing starts from kBackground and

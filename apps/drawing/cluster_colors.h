@@ -27,10 +27,14 @@ struct ClusterPicture {
   const std::vector<std::uint32_t>& labels;  ///< of the points: 0 in no cluster, otherwise 1 + the index of the cluster
 };
 
-/// Clusters nearer to each other than this in a picture get different colours, pixels, along either axis.
+/// Clusters are neighbours where the gap between cells of them is less than this along both axes of a picture, pixels.
 inline constexpr double kNearPixels = 12;
+/// They touch where it is less than this; it is 0 between cells that share a side or a corner.
+inline constexpr double kTouchingPixels = 4;
 
-/// Colours of clusters, so that neighbours in any of the pictures differ: a greedy colouring, smallest degree last.
+/// Colours of clusters, so that neighbours in any of the pictures differ: a greedy colouring, improved by exchanges.
+/// Where the colours do not suffice, clusters that touch come before those that are near. They suffice for the touching
+/// ones if each group of clusters has one that touches fewer than `colors` others of the group.
 /// \param clusters their number
 /// \param primary, colors numbers of colours: those from `primary` on are given only where the others are taken
 /// \return a colour per cluster, 0..colors-1

@@ -32,8 +32,13 @@ ScanColors colorsOf(const ClusteredScan& scan, const std::vector<std::uint32_t>&
     colors.of_point[i] = plain.argb();
     colors.shaded[i] = plain.shaded(std::clamp(brightness, kMinBrightness, 1.0)).argb();
   };
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (isReturn(cloud[i])) color(i, labels[i] == 0 ? kGround : colors.of_cluster[labels[i] - 1]);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!isReturn(cloud[i])) continue;
+    if (labels[i] == 0)
+      color(i, kGround);
+    else
+      colors.of_point[i] = colors.shaded[i] = colors.of_cluster[labels[i] - 1].argb();
+  }
   for (const auto index : scan.returns.clustered)
     if (const auto i = static_cast<std::size_t>(index); labels[i] == 0) color(i, kNoise);
   return colors;

@@ -15,7 +15,8 @@ namespace lisco_apps {
 
 /// Draws both pictures of a scan, with the ids of its larger clusters, in the same colours:
 /// - the scan as the sensor sees it, one cell per laser and step (an unorganized scan is projected by azimuth and
-///   elevation): clusters in colours, noise grey, ground dark, no return black;
+///   elevation): clusters in colours, noise grey, ground dark, no return black; the rectangles around the cells of the
+///   larger clusters, divided where they cross the seam of a turn;
 /// - the scan from above, x (forward) up and y to the left, with the oriented boxes of the clusters, the sensor, rings
 ///   of equal range and a scale. A camera's cloud (all points ahead in +z) is shown with z up and x to the right, with
 ///   axis-aligned boxes.
@@ -32,7 +33,7 @@ constexpr double kLabelSize = 13;
 struct ScanColors {
   std::vector<Color> of_cluster;
   std::vector<std::uint32_t> of_point;
-  std::vector<std::uint32_t> shaded;  ///< of points: distant ones darker, which gives a view from the sensor its depth
+  std::vector<std::uint32_t> shaded;  ///< of points: noise and ground darker at a distance, which gives depth
 };
 
 /// The ids of clusters at places of a picture, the larger ones first, where there is room.

@@ -79,6 +79,9 @@ TEST(ClusterColors, TakeMoreNeighboursThanColors) {
   for (const std::size_t color : colors) EXPECT_LT(color, kColors);
   for (std::size_t color = 0; color < kColors; ++color)
     EXPECT_GE(std::count(colors.begin(), colors.end(), color), 1) << color;
+  for (std::size_t i = 0; i < colors.size(); ++i)
+    for (std::size_t k = i + 1; k <= std::min<std::size_t>(colors.size() - 1, i + 4); ++k)
+      EXPECT_NE(colors[i], colors[k]) << i << " and " << k << " touch";
 }
 
 TEST(ClusterColors, OfNothingAreNone) {
