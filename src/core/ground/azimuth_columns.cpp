@@ -42,7 +42,7 @@ AzimuthColumns::AzimuthColumns(const StridedPoints& points, std::size_t count, c
   std::size_t taken = 0;  // bins
   for (const std::uint32_t size : sizes_) taken += size > 0 ? 1 : 0;
   // Columns are about as long as bins are on average, so that few cells stay empty.
-  rows_ = std::max(kMinRows, 3 * items_.size() / (2 * std::max<std::size_t>(taken, 1)) + 1);
+  rows_ = std::max(kMinRows, 5 * items_.size() / (4 * std::max<std::size_t>(taken, 1)) + 1);
   std::vector<std::uint64_t> scratch(items_.size());
   radixSort(items_.data(), scratch.data(), items_.size(), kPointBits, kSlopeBits);
   std::vector<std::uint32_t> lowest(rows_);  // slopes of each row's returns
@@ -121,7 +121,7 @@ void AzimuthColumns::fill(const std::vector<std::uint32_t>& lowest) {
       std::size_t row = 0, free = 0;
       std::size_t left = (size - column + columns - 1) / columns;
       for (std::size_t i = column; i < size; i += columns) {
-        while (row + 1 < rows_ && lowest[row + 1] <= slopeOf(bin[i])) ++row;
+        while (row + 1 < rows_ && lowest[row + 1] <= slopeOf(bin[i]) && lowest[row] != slopeOf(bin[i])) ++row;
         free = std::min(std::max(free, row), rows_ - left--);
         cells[free++] = static_cast<std::uint32_t>(bin[i]);
       }
