@@ -22,7 +22,9 @@ using lisco::ground::AzimuthColumns;
 using Point = std::array<float, 3>;
 
 AzimuthColumns sorted(const std::vector<Point>& points, const Point& origin = {}) {
-  return {{reinterpret_cast<const unsigned char*>(points.data()), sizeof(Point)}, points.size(), origin};
+  AzimuthColumns columns;
+  columns.sort({reinterpret_cast<const unsigned char*>(points.data()), sizeof(Point)}, points.size(), origin);
+  return columns;
 }
 
 /// Returns of all azimuths about an origin, `lasers` at each, in random order.
@@ -80,7 +82,7 @@ TEST(AzimuthColumns, HaveOneAzimuthAndRisingRows) {
   const std::vector<Point> points = turn(900, 32, origin);
   const AzimuthColumns columns = sorted(points, origin);
   EXPECT_GE(columns.rows(), 32U);
-  EXPECT_LE(columns.rows(), 64U);
+  EXPECT_LE(columns.rows(), 80U);
   std::vector<double> lowest(columns.rows(), 1e9), highest(columns.rows(), -1e9);
   for (std::size_t column = 0; column < columns.columns(); ++column) {
     double below = -1e9;
@@ -100,6 +102,14 @@ TEST(AzimuthColumns, HaveOneAzimuthAndRisingRows) {
     }
   }
   for (std::size_t row = 0; row < columns.rows(); ++row) EXPECT_LT(highest[row] - lowest[row], 0.1) << "row " << row;
+}
+
+TEST(AzimuthColumns, ForgetThePointsBefore) {
+  const std::vector<Point> many = turn(900, 32, {}), few = turn(100, 7, {});
+  AzimuthColumns columns = sorted(many);
+  columns.sort({reinterpret_cast<const unsigned char*>(few.data()), sizeof(Point)}, few.size(), {});
+  const std::vector<int> counts = countCells(columns, few.size());
+  EXPECT_EQ(std::count(counts.begin(), counts.end(), 1), static_cast<std::ptrdiff_t>(few.size()));
 }
 
 TEST(AzimuthColumns, OfNoReturnsAreEmpty) {

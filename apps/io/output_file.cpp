@@ -169,9 +169,9 @@ void writeOwnFolder(const fs::path& folder, const std::vector<std::string>& name
     fail(path, "cannot be written: " + error.code().message());
   } catch (const std::runtime_error& error) {
     undo();
-    const std::string made = (aside / "").string();
+    const std::string partial = (aside / "").string();
     const std::string named = (folder / "").string();
-    throw std::runtime_error(boost::replace_all_copy(std::string(error.what()), made, named));  // likewise
+    throw std::runtime_error(boost::replace_all_copy(std::string(error.what()), partial, named));  // likewise
   } catch (...) {
     undo();
     throw;

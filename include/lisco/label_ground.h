@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 
 namespace lisco {
 
@@ -32,5 +33,23 @@ struct LabelGroundParameters {
 ///         pointer is null while count is not 0, or a parameter is as GroundFilter::begin rejects it
 LISCO_EXPORT void labelGround(const void* points, std::size_t count, std::size_t stride,
                               const LabelGroundParameters& parameters, std::uint8_t* ground);
+
+/// labelGround () for scan after scan: keeps its memory. Not thread safe; any number of instances may work side by
+/// side.
+class LISCO_EXPORT GroundLabeller {
+ public:
+  GroundLabeller();
+  ~GroundLabeller();
+  GroundLabeller(const GroundLabeller& other);             ///< a copy has memory of its own
+  GroundLabeller& operator=(const GroundLabeller& other);  ///< the same
+
+  /// Parameters and errors as those of labelGround.
+  void label(const void* points, std::size_t count, std::size_t stride, const LabelGroundParameters& parameters,
+             std::uint8_t* ground);
+
+ private:
+  class LISCO_HIDDEN State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace lisco

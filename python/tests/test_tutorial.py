@@ -19,7 +19,7 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "doc" / "examples"
 
 def street():
     """A ground 1.7 m below the sensor with a box of 4 x 2 x 1.5 m on it, as KITTI stores scans: (N, 4) float32."""
-    azimuths, ranges = np.meshgrid(np.radians(np.arange(0, 360, 0.5)), np.geomspace(3, 60, 60))
+    azimuths, ranges = np.meshgrid(np.radians(np.arange(0, 360, 0.5)), np.geomspace(3, 60, 70))
     ground = np.stack([ranges * np.cos(azimuths), ranges * np.sin(azimuths), np.full_like(ranges, -1.7)], axis=2)
     ground = ground.reshape(-1, 3)
     ground = ground[~((ground[:, 0] > 8) & (8 * abs(ground[:, 1]) < ground[:, 0]))]  # the box and its shadow

@@ -48,62 +48,87 @@ struct SortedPoints {
   }
 };
 
-/// \param parameters with the origin
-/// \param ground receives `count` bytes
-void labelUnorganized(const StridedPoints& points, std::size_t count, GroundParameters parameters,
-                      std::uint8_t* ground) {
+}  // namespace
+
+class GroundLabeller::State {
+ public:
+  void labelRows(const StridedPoints& points, std::size_t count, std::size_t lasers, GroundParameters parameters,
+                 const std::array<float, 3>& origin, std::uint8_t* ground);
+
+ private:
+  void labelUnorganized(const StridedPoints& points, std::size_t count, GroundParameters parameters,
+                        std::uint8_t* ground);
+
+  GroundFilter filter_;
+  AzimuthColumns columns_;
+  std::vector<std::uint8_t> decisions_;  // on its cells
+};
+
+/// \param parameters without the sensor
+void GroundLabeller::State::labelRows(const StridedPoints& points, std::size_t count, std::size_t lasers,
+                                      GroundParameters parameters, const std::array<float, 3>& origin,
+                                      std::uint8_t* ground) {
+  filter_.begin(parameters, 0);  // rejects bad parameters, even without points
+  if (count == 0) return;
+  const std::size_t width = count / lasers;
+  const auto cell_at = [&](std::size_t laser, std::size_t column) { return points.at(laser * width + column); };
+  if (lasers > 1) parameters.sensor = estimateSensor(width, lasers, origin, CellSource(cell_at));
+  if (parameters.sensor.steps_per_turn != 0) {
+    filter_.filterScan(parameters, width, lasers, cell_at, ground);
+    return;
+  }
+  parameters.sensor = SensorHints();
+  parameters.sensor.origin = origin;
+  labelUnorganized(points, count, parameters, ground);
+}
+
+void GroundLabeller::State::labelUnorganized(const StridedPoints& points, std::size_t count,
+                                             GroundParameters parameters, std::uint8_t* ground) {
   // Metres. Seen from a point on the ground, as is the origin of a vehicle's frame, rays to the ground do not rise with
   // the distance; seen from above it, they do. Of a scan in its sensor's frame, that point finds as much.
   constexpr float kLowOrigin = 0.5F, kRise = 1.5F;
   std::fill_n(ground, count, std::uint8_t{0});
-  AzimuthColumns columns(points, count, parameters.sensor.origin);
-  SortedPoints cells{columns, points};
+  SortedPoints cells{columns_, points};
   const auto estimated = [&] {
-    return estimateGroundPlane(columns.columns(), columns.rows(), parameters, CellSource(cells));
+    columns_.sort(points, count, parameters.sensor.origin);
+    return estimateGroundPlane(columns_.columns(), columns_.rows(), parameters, CellSource(cells));
   };
   GroundParameters plane = estimated();
   if (std::isnan(parameters.sensor_height) && plane.sensor_height < kLowOrigin) {
     parameters.sensor.origin[2] += kRise;
-    columns = AzimuthColumns(points, count, parameters.sensor.origin);
     plane = estimated();
   }
   if (std::isnan(plane.sensor_height)) return;
-  std::vector<std::uint8_t> decisions(columns.rows() * columns.columns());
-  GroundFilter().filter(plane, columns.columns(), columns.rows(), cells, decisions.data());
+  decisions_.resize(columns_.rows() * columns_.columns());
+  filter_.filter(plane, columns_.columns(), columns_.rows(), cells, decisions_.data());
   std::uint8_t of_none = 0;
-  for (std::size_t column = 0; column < columns.columns(); ++column)
-    for (std::size_t row = 0; row < columns.rows(); ++row) {
-      const std::uint32_t point = columns.pointAt(row, column);
-      *(point == AzimuthColumns::kNone ? &of_none : ground + point) = decisions[row * columns.columns() + column];
+  for (std::size_t column = 0; column < columns_.columns(); ++column)
+    for (std::size_t row = 0; row < columns_.rows(); ++row) {
+      const std::uint32_t point = columns_.pointAt(row, column);
+      *(point == AzimuthColumns::kNone ? &of_none : ground + point) = decisions_[row * columns_.columns() + column];
     }
 }
 
-}  // namespace
+GroundLabeller::GroundLabeller() : state_(std::make_unique<State>()) {}
+GroundLabeller::~GroundLabeller() = default;
+GroundLabeller::GroundLabeller(const GroundLabeller& /*other*/) : GroundLabeller() {}
+GroundLabeller& GroundLabeller::operator=(const GroundLabeller& /*other*/) {
+  return *this;
+}
 
-void labelGround(const void* points, std::size_t count, std::size_t stride, const LabelGroundParameters& parameters,
-                 std::uint8_t* ground) {
+void GroundLabeller::label(const void* points, std::size_t count, std::size_t stride,
+                           const LabelGroundParameters& parameters, std::uint8_t* ground) {
   check(points, count, stride, parameters, ground);
-  const StridedPoints all{static_cast<const unsigned char*>(points), stride};
   GroundParameters filter_parameters;
   filter_parameters.sensor_height = parameters.sensor_height;
   filter_parameters.max_slope = parameters.max_slope;
-  GroundFilter filter;
-  filter.begin(filter_parameters, 0);  // rejects bad parameters, even without points
-  if (count == 0) return;
+  state_->labelRows({static_cast<const unsigned char*>(points), stride}, count, parameters.lasers, filter_parameters,
+                    parameters.origin, ground);
+}
 
-  SensorHints& sensor = filter_parameters.sensor;
-  if (parameters.lasers > 1) {
-    const std::size_t width = count / parameters.lasers;
-    const auto cell_at = [=](std::size_t laser, std::size_t column) { return all.at(laser * width + column); };
-    sensor = estimateSensor(width, parameters.lasers, parameters.origin, CellSource(cell_at));
-    if (sensor.steps_per_turn != 0) {
-      filter.filterScan(filter_parameters, width, parameters.lasers, cell_at, ground);
-      return;
-    }
-  }
-  sensor = SensorHints();
-  sensor.origin = parameters.origin;
-  labelUnorganized(all, count, filter_parameters, ground);
+void labelGround(const void* points, std::size_t count, std::size_t stride, const LabelGroundParameters& parameters,
+                 std::uint8_t* ground) {
+  GroundLabeller().label(points, count, stride, parameters, ground);
 }
 
 }  // namespace lisco

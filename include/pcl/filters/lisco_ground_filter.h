@@ -4,11 +4,16 @@
 
 #include "lisco/export.h"
 
+#include <array>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 #include <pcl/filters/filter_indices.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
+
+#include "lisco/label_ground.h"
 
 namespace pcl {
 
@@ -70,6 +75,10 @@ class LiscoGroundFilter : public FilterIndices<PointT> {
  private:
   float sensor_height_ = std::numeric_limits<float>::quiet_NaN();  // metres
   float max_slope_ = 17.0F;                                        // degrees
+  // Memory, kept from cloud to cloud:
+  lisco::GroundLabeller labeller_;
+  std::vector<std::array<float, 3>> copy_;  // of the points
+  std::vector<std::uint8_t> ground_;        // their labels
 };
 
 }  // namespace pcl

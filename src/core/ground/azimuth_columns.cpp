@@ -36,20 +36,20 @@ float azimuthOf(float east, float north) {
 
 }  // namespace
 
-AzimuthColumns::AzimuthColumns(const StridedPoints& points, std::size_t count, const std::array<float, 3>& origin) {
+void AzimuthColumns::sort(const StridedPoints& points, std::size_t count, const std::array<float, 3>& origin) {
   measure(points, count, origin);
   const unsigned widened = widen();
   std::size_t taken = 0;  // bins
   for (const std::uint32_t size : sizes_) taken += size > 0 ? 1 : 0;
   // Columns are about as long as bins are on average, so that few cells stay empty.
   rows_ = std::max(kMinRows, 5 * items_.size() / (4 * std::max<std::size_t>(taken, 1)) + 1);
-  std::vector<std::uint64_t> scratch(items_.size());
-  radixSort(items_.data(), scratch.data(), items_.size(), kPointBits, kSlopeBits);
-  std::vector<std::uint32_t> lowest(rows_);  // slopes of each row's returns
+  scratch_.resize(std::max(scratch_.size(), items_.size()));
+  radixSort(items_.data(), scratch_.data(), items_.size(), kPointBits, kSlopeBits);
+  lowest_.resize(rows_);
   for (std::size_t row = 0; row < rows_ && !items_.empty(); ++row)
-    lowest[row] = slopeOf(items_[row * items_.size() / rows_]);
-  radixSort(items_.data(), scratch.data(), items_.size(), kPointBits + kSlopeBits + widened, kBinBits - widened);
-  fill(lowest);
+    lowest_[row] = slopeOf(items_[row * items_.size() / rows_]);
+  radixSort(items_.data(), scratch_.data(), items_.size(), kPointBits + kSlopeBits + widened, kBinBits - widened);
+  fill();
 }
 
 /// Measures the returns, in their order, and counts those of each bin.
@@ -109,8 +109,8 @@ unsigned AzimuthColumns::widen() {
 }
 
 /// Puts the returns, sorted by bin and slope, into cells.
-/// \param lowest the lowest slope of each row's returns
-void AzimuthColumns::fill(const std::vector<std::uint32_t>& lowest) {
+void AzimuthColumns::fill() {
+  cells_.clear();
   const std::uint64_t* bin = items_.data();
   for (const std::size_t size : sizes_) {
     // A bin of many returns makes several columns, each of them with rays of all elevations.
@@ -121,7 +121,7 @@ void AzimuthColumns::fill(const std::vector<std::uint32_t>& lowest) {
       std::size_t row = 0, free = 0;
       std::size_t left = (size - column + columns - 1) / columns;
       for (std::size_t i = column; i < size; i += columns) {
-        while (row + 1 < rows_ && lowest[row + 1] <= slopeOf(bin[i]) && lowest[row] != slopeOf(bin[i])) ++row;
+        while (row + 1 < rows_ && lowest_[row + 1] <= slopeOf(bin[i]) && lowest_[row] != slopeOf(bin[i])) ++row;
         free = std::min(std::max(free, row), rows_ - left--);
         cells[free++] = static_cast<std::uint32_t>(bin[i]);
       }

@@ -4,6 +4,7 @@
 
 #include "lisco/export.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +15,6 @@
 #include <pcl/filters/lisco_ground_filter.h>
 #include <pcl/filters/impl/filter_indices.hpp>
 
-#include "lisco/label_ground.h"
 #include "lisco/return.h"
 
 template <typename PointT>
@@ -23,26 +23,25 @@ void pcl::LiscoGroundFilter<PointT>::applyFilter(Indices& indices) {
   const Indices& selected = *this->indices_;  // may be the output, too
   Indices& removed = *this->removed_indices_;
   removed.clear();
-  for (const auto index : selected)
-    if (index < 0 || static_cast<std::size_t>(index) >= cloud.size()) {
-      PCL_ERROR("[pcl::%s::applyFilter] An index is not within the cloud!\n", this->getClassName().c_str());
-      indices.clear();
-      return;
-    }
+  const auto is_outside = [&](index_t index) { return index < 0 || static_cast<std::size_t>(index) >= cloud.size(); };
+  if (!this->fake_indices_ && std::any_of(selected.begin(), selected.end(), is_outside)) {
+    PCL_ERROR("[pcl::%s::applyFilter] An index is not within the cloud!\n", this->getClassName().c_str());
+    indices.clear();
+    return;
+  }
   // Coordinates that lie apart in PointT are copied; so are selected points, among no returns.
   const float* xyz = cloud.empty() ? nullptr : &cloud[0].x;
   std::size_t stride = sizeof(PointT);
-  std::vector<std::array<float, 3>> copy;
   if (xyz && (!this->fake_indices_ || &cloud[0].y != xyz + 1 || &cloud[0].z != xyz + 2)) {
-    copy.assign(cloud.size(), {0.0F, 0.0F, 0.0F});
+    copy_.assign(cloud.size(), {0.0F, 0.0F, 0.0F});
     for (const auto index : selected) {
       const PointT& point = cloud[static_cast<std::size_t>(index)];
-      copy[static_cast<std::size_t>(index)] = {point.x, point.y, point.z};
+      copy_[static_cast<std::size_t>(index)] = {point.x, point.y, point.z};
     }
-    xyz = copy[0].data();
-    stride = sizeof copy[0];
+    xyz = copy_[0].data();
+    stride = sizeof copy_[0];
   }
-  std::vector<std::uint8_t> ground(cloud.size());
+  ground_.resize(cloud.size());
   lisco::LabelGroundParameters parameters;
   parameters.sensor_height = sensor_height_;
   parameters.max_slope = max_slope_;
@@ -50,7 +49,7 @@ void pcl::LiscoGroundFilter<PointT>::applyFilter(Indices& indices) {
   parameters.lasers = is_organized ? cloud.height : 1;
   parameters.origin = {cloud.sensor_origin_[0], cloud.sensor_origin_[1], cloud.sensor_origin_[2]};
   try {
-    lisco::labelGround(xyz, cloud.size(), stride, parameters, ground.data());
+    labeller_.label(xyz, cloud.size(), stride, parameters, ground_.data());
   } catch (const std::exception& error) {
     PCL_ERROR("[pcl::%s::applyFilter] %s\n", this->getClassName().c_str(), error.what());
     indices.clear();
@@ -64,8 +63,8 @@ void pcl::LiscoGroundFilter<PointT>::applyFilter(Indices& indices) {
   const std::uint8_t is_kept = this->negative_ ? 1 : 0;
   for (const auto index : selected) {
     const PointT& point = cloud[static_cast<std::size_t>(index)];
-    const bool is_return = lisco::isReturn(point.x, point.y, point.z);
-    const std::size_t keep = is_return ? std::size_t{ground[static_cast<std::size_t>(index)] == is_kept} : 0;
+    const bool is_label_kept = ground_[static_cast<std::size_t>(index)] == is_kept;
+    const std::size_t keep = std::size_t{lisco::isReturn(point.x, point.y, point.z)} & std::size_t{is_label_kept};
     indices[kept] = index;
     removed[others] = index;
     kept += keep;

@@ -145,8 +145,8 @@ class LiscoColumnStore {
   std::vector<std::uint32_t> column_of_cell_;  ///< its lowest 32 bits
 };
 
-/** \brief The columns received by LiscoStreamExtraction, LiscoWindowExtraction and LiscoEndlessExtraction: base of their
- * states.
+/** \brief The columns received by LiscoStreamExtraction, LiscoWindowExtraction and LiscoEndlessExtraction: base of
+ * their states.
  */
 template <typename PointT>
 class LiscoReceivedColumns {
