@@ -100,9 +100,8 @@ void GroundFilter::State::add(const Return* cells, std::size_t lasers, const Vis
   if (!begun_) throw std::logic_error("lisco::GroundFilter: addColumn before begin");
   if (lasers > lasers_) throw std::invalid_argument("lisco::GroundFilter: more cells than lasers");
   if (waiting_ == Block::kColumns) measureWaiting();  // an exception of `visit` has prevented it
-  for (std::size_t laser = 0; laser < lasers_; ++laser) {
+  for (std::size_t laser = 0; laser < lasers_; ++laser)
     received_.set(laser, waiting_, laser < lasers ? cells[laser] : kNoReturn);
-  }
   cell_counts_[waiting_++] = lasers;
   if (stage_ == Stage::kMeasured)
     decideMeasured();
@@ -218,9 +217,7 @@ GroundParameters estimateGroundPlane(std::size_t columns, std::size_t lasers, Gr
   for (std::size_t sample = 0; sample < samples; ++sample) {
     const std::size_t to = sample % Block::kColumns;
     const std::size_t column = (2 * sample + 1) * columns / (2 * samples);
-    for (std::size_t laser = 0; laser < lasers; ++laser) {
-      sampled.set(laser, to, cells.at(laser, column));
-    }
+    for (std::size_t laser = 0; laser < lasers; ++laser) sampled.set(laser, to, cells.at(laser, column));
     if (to + 1 < Block::kColumns && sample + 1 < samples) continue;
     block.measure(sampled, 0, parameters.sensor);
     for (std::size_t i = 0; i <= to; ++i) estimator.add(block, sampled, 0, i);

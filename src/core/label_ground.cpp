@@ -52,8 +52,8 @@ struct SortedPoints {
 
 class GroundLabeller::State {
  public:
-  void labelRows(const StridedPoints& points, std::size_t count, std::size_t lasers, GroundParameters parameters,
-                 const std::array<float, 3>& origin, std::uint8_t* ground);
+  void label(const StridedPoints& points, std::size_t count, std::size_t lasers, GroundParameters parameters,
+             const std::array<float, 3>& origin, std::uint8_t* ground);
 
  private:
   void labelUnorganized(const StridedPoints& points, std::size_t count, GroundParameters parameters,
@@ -65,9 +65,9 @@ class GroundLabeller::State {
 };
 
 /// \param parameters without the sensor
-void GroundLabeller::State::labelRows(const StridedPoints& points, std::size_t count, std::size_t lasers,
-                                      GroundParameters parameters, const std::array<float, 3>& origin,
-                                      std::uint8_t* ground) {
+void GroundLabeller::State::label(const StridedPoints& points, std::size_t count, std::size_t lasers,
+                                  GroundParameters parameters, const std::array<float, 3>& origin,
+                                  std::uint8_t* ground) {
   filter_.begin(parameters, 0);  // rejects bad parameters, even without points
   if (count == 0) return;
   const std::size_t width = count / lasers;
@@ -122,8 +122,8 @@ void GroundLabeller::label(const void* points, std::size_t count, std::size_t st
   GroundParameters filter_parameters;
   filter_parameters.sensor_height = parameters.sensor_height;
   filter_parameters.max_slope = parameters.max_slope;
-  state_->labelRows({static_cast<const unsigned char*>(points), stride}, count, parameters.lasers, filter_parameters,
-                    parameters.origin, ground);
+  state_->label({static_cast<const unsigned char*>(points), stride}, count, parameters.lasers, filter_parameters,
+                parameters.origin, ground);
 }
 
 void labelGround(const void* points, std::size_t count, std::size_t stride, const LabelGroundParameters& parameters,

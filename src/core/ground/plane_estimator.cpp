@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/bits.h"
 #include "core/ground/column_profile.h"
 
 namespace lisco::ground {
@@ -58,9 +59,8 @@ void PlaneEstimator::begin(const GroundParameters& parameters, float max_slope, 
 
 bool PlaneEstimator::isKnown() const {
   if (height_state_ == Height::kGiven) return true;
-  const auto shown = static_cast<std::uint32_t>(__builtin_popcountll(showed_));
   const std::uint32_t looks_per_one = plane_.height > -kTable ? kLooksPerLowGround : kLooksPerGround;
-  return height_state_ == Height::kFound && looks_per_one * shown >= std::min(looks_, 64U);
+  return height_state_ == Height::kFound && looks_per_one * countBits(showed_) >= looks_;
 }
 
 void PlaneEstimator::add(const Block& block, const Columns& columns, std::size_t first, std::size_t column) {
@@ -184,7 +184,7 @@ PlaneEstimator::Agreed PlaneEstimator::lowestOf(const Line* lines, std::size_t s
 }
 
 void PlaneEstimator::update() {
-  ++looks_;
+  looks_ = std::min(looks_ + 1, kLooks);
   showed_ = showed_ << 1 | static_cast<std::uint64_t>(count_ != seen_);
   seen_ = count_;
   if (height_state_ == Height::kFound) return refine();

@@ -67,9 +67,10 @@ class PlaneEstimator {
   std::size_t count_ = 0;  // ever added
   Plane plane_;
   enum class Height { kUnknown, kGiven, kFound } height_state_ = Height::kUnknown;
-  std::uint32_t looks_ = 0;
+  static constexpr std::uint32_t kLooks = 64;
+  std::uint32_t looks_ = 0;   // up to kLooks
   std::size_t seen_ = 0;      // of count_, by the latest look
-  std::uint64_t showed_ = 0;  // bit i: whether the look i looks ago showed ground
+  std::uint64_t showed_ = 0;  // bit i: whether the look i looks ago showed ground, of kLooks
   float highest_ = 0.0F;      // metres
   float max_slope_ = 0.0F;
   std::array<float, 3> origin_{};  // of the sensor
