@@ -333,8 +333,6 @@ HWY_INLINE Found followRow(const FollowedRow& row, Floats steepest) {
   bool are_objects = true;
   for (std::size_t i = 0; i < kParts; ++i) {
     const Column column = columns[i] = columnOf(row, i * kStep, steepest);
-    hn::StoreU(hn::Max(hn::LoadU(kLanes, before.reach.data() + i * kStep), column.rho), kLanes,
-               passed.reach.data() + i * kStep);
     are_objects = are_objects && hn::AllFalse(kLanes, hn::AndNot(areTooHigh(column), column.valid));
   }
   bool are_ground = false;

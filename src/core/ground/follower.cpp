@@ -67,15 +67,15 @@ void Follower::followOtherRows(const Block& block, const RowOrder& order, const 
     with_ground_[count] = static_cast<std::int32_t>(i);
     count += static_cast<std::size_t>(found[i].ground != 0);
   }
+  with_ground_count_ = count;
   dropScattered(rows.data(), found, with_ground_, count, scattered_);
-  write(rows.data(), count, ground, columns, stride);
+  write(rows.data(), ground, columns, stride);
 }
 
-void Follower::write(const RowOrder::Row* rows, std::size_t count, std::uint8_t* ground, std::size_t columns,
-                     std::size_t stride) const {
+void Follower::write(const RowOrder::Row* rows, std::uint8_t* ground, std::size_t columns, std::size_t stride) const {
   const std::int32_t* const with_ground = with_ground_.data();
   const Found* const found = found_.data() + 1;
-  for (std::size_t k = 0; k < count; ++k) {
+  for (std::size_t k = 0; k < with_ground_count_; ++k) {
     const std::int32_t i = with_ground[k];
     const std::array<std::uint8_t, 8> decisions = bytesOf(found[i].ground);
     std::uint8_t* const to = ground + static_cast<std::size_t>(rows[i].row) * stride;
@@ -87,7 +87,9 @@ void Follower::write(const RowOrder::Row* rows, std::size_t count, std::uint8_t*
 }
 
 void Follower::enterIntoMap(const Block& block, const RowOrder& order, const Plane& plane, GroundMap& map) {
-  reports_.enter({settingOf(block, order, map), result(), plane.height, order.turnsLeft()}, map.sectors());
+  reports_.enter({settingOf(block, order, map), result(), plane.height, order.turnsLeft(), with_ground_.data(),
+                  with_ground_count_},
+                 map.sectors());
 }
 
 void Follower::prepare(const RowOrder& order, const Plane& plane, GroundMap& map, std::uint32_t number) {
@@ -98,7 +100,7 @@ void Follower::prepare(const RowOrder& order, const Plane& plane, GroundMap& map
   std::int32_t prepared = -1;
   for (std::size_t i = 0; i < size; ++i) {
     if (rows[i].down == RowOrder::kNone) {
-      starts_[i] = {{}, {}, starts_.size() + i, 0};
+      starts_[i] = {{}, starts_.size() + i, 0};
       starts_[i].limit.fill(plane.height + kStartLimit);
       setStart(plane, plane.slopeTowards(order.directionOf(rows[i].row)), followed_[starts_[i].followed]);
     }

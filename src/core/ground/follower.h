@@ -36,8 +36,7 @@ class Follower {
  private:
   void prepare(const RowOrder& order, const Plane& plane, GroundMap& map, std::uint32_t number);
 
-  void write(const RowOrder::Row* rows, std::size_t count, std::uint8_t* ground, std::size_t columns,
-             std::size_t stride) const;
+  void write(const RowOrder::Row* rows, std::uint8_t* ground, std::size_t columns, std::size_t stride) const;
   FollowSetting settingOf(const Block& block, const RowOrder& order, const GroundMap& map) const;
   FollowResult result() { return {passed_.data(), followed_.data(), found_.data() + 1}; }
 
@@ -48,6 +47,7 @@ class Follower {
   std::vector<Passed> passed_;
   std::vector<Found> found_;  // element i + 1: of row i; element 0: none
   std::vector<std::int32_t> with_ground_, scattered_;
+  std::size_t with_ground_count_ = 0;
 
   MapReports reports_;
   float max_slope_ = 0.0F;

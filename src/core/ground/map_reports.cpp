@@ -21,6 +21,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using ground::Block;
 using ground::Followed;
+using ground::FollowResult;
 using ground::FollowSetting;
 using ground::Found;
 using ground::GroundMap;
@@ -45,7 +46,6 @@ constexpr float kStep = 0.25F;         // metres; higher ones are no ground, eve
 constexpr float kTrendGain = 0.3F;
 constexpr float kMaxTrend = 0.005F;     // metres per metre of distance
 constexpr float kMarginSame = 0.01F;    // metres
-constexpr float kMarginRay = 0.1F;      // metres
 constexpr float kMarginHidden = 0.05F;  // metres
 constexpr float kDoubt = 0.01F;         // metres
 
@@ -99,79 +99,39 @@ HWY_INLINE hn::Vec<BinInts> binsOf(BinVector rho) {
   return hn::Min(hn::Max(bin, hn::Zero(kBinInts)), int32(static_cast<std::int32_t>(GroundMap::kBins) - 1));
 }
 
-/// Collects what the rays have shown: written always, counted where they show something. \return number of rays
-std::size_t collectRays(const Shown& shown, MapReports& reports, std::size_t& stretch_count) {
+/// Collects the ground that the rows have shown. \return number of stretches
+std::size_t collectStretches(const Shown& shown, MapReports& reports) {
   const FollowSetting setting = shown.setting;
-  const Passed* const passed = shown.result.passed;
-  const Found* const found = shown.result.found;
-  const std::uint32_t* const last = setting.block->last.data();
-  const float* const last_rho = setting.block->last_rho.data();
-  const float* const last_height = setting.block->last_height.data();
-  float* const from_rho = reports.rays.from.data();
-  float* const to_rho = reports.rays.to.data();
-  float* const to_height = reports.rays.height.data();
-  std::uint32_t* const sector = reports.rays.sector.data();
-  std::uint32_t* const with_ground = reports.rays.has_ground.data();
-  std::uint32_t* const stretch_rows = reports.stretch_rows.data();
-  std::uint32_t* const latest = reports.latest.data() + 1;
-  latest[RowOrder::kNone] = 0;
-  std::uint32_t ray = 0, stretch = 0;
-  for (std::size_t i = 0; i < setting.size; ++i) {
-    const RowOrder::Row& row = setting.rows[i];
-    const Passed& before = row.down == RowOrder::kNone ? setting.starts[i] : passed[row.down];
-    const std::uint32_t has_ground = found[i].reached != 0 ? 1 : 0;
-    const float from = before.reach[last[row.row]], to = last_rho[row.row];
-    from_rho[ray] = from;
-    to_rho[ray] = to;
-    to_height[ray] = last_height[row.row];
-    sector[ray] = setting.sectors[i];
-    with_ground[ray] = has_ground;
-    ray += static_cast<std::uint32_t>(to > from) | has_ground;
-    stretch_rows[stretch] = static_cast<std::uint32_t>(i);
-    stretch += has_ground;
-    const std::uint32_t below = latest[row.down];
-    latest[i] = below ^ ((below ^ stretch) & (0U - has_ground));  // a choice that is no branch
-  }
-  stretch_count = stretch;
-  return ray;
-}
-
-/// Collects the ground that the rows have shown.
-void collectStretches(const Shown& shown, MapReports& reports, std::size_t count) {
-  const auto& [setting, result, start_height, turns_left] = shown;
+  const FollowResult result = shown.result;
   MapReports::Stretches& stretches = reports.stretches;
-  const std::uint32_t* const latest = reports.latest.data() + 1;
+  std::uint32_t* const latest = reports.latest.data();
   stretches.is_last[0] = 0;
-  for (std::size_t stretch = 0; stretch < count; ++stretch) {
-    const std::size_t i = reports.stretch_rows[stretch];
+  std::uint32_t count = 0;
+  for (std::size_t k = 0; k < shown.with_ground_count; ++k) {
+    const auto i = static_cast<std::size_t>(shown.with_ground[k]);
+    if (result.passed[i].followed != i) continue;  // nothing was reached
     const RowOrder::Row& row = setting.rows[i];
     const bool is_first = row.down == RowOrder::kNone;
     const Passed& before = is_first ? setting.starts[i] : result.passed[row.down];
+    const std::uint32_t below = before.followed < setting.size ? latest[before.followed] : 0;
+    latest[i] = below;
     const Found found = result.found[i];
+    if (found.reached == 0) continue;
     const std::size_t last = lastOf(found.reached);
-    const Followed& now = result.followed[result.passed[i].followed];
+    const Followed& now = result.followed[i];
     const Followed& inwards = result.followed[before.followed];
-    stretches.from_rho[stretch] = inwards.rho[last];
-    stretches.from_height[stretch] = is_first ? start_height : inwards.height[last];
-    stretches.rho[stretch] = now.rho[last];
-    stretches.height[stretch] = now.height[last];
-    stretches.long_slope[stretch] = now.slope[last];
-    stretches.sector[stretch] = setting.sectors[i];
-    stretches.is_doubted[stretch] = ~static_cast<std::uint32_t>(found.confirmed) >> last & 1;
-    stretches.is_last[latest[row.down]] = 0;
-    stretches.is_last[stretch + 1] = 1;
+    stretches.from_rho[count] = inwards.rho[last];
+    stretches.from_height[count] = is_first ? shown.start_height : inwards.height[last];
+    stretches.rho[count] = now.rho[last];
+    stretches.height[count] = now.height[last];
+    stretches.long_slope[count] = now.slope[last];
+    stretches.sector[count] = setting.sectors[i];
+    stretches.is_doubted[count] = ~static_cast<std::uint32_t>(found.confirmed) >> last & 1;
+    stretches.is_last[below] = 0;
+    latest[i] = ++count;
+    stretches.is_last[count] = 1;
   }
-}
-
-/// Computes the bins of the rays, and their slopes.
-HWY_INLINE void measureRays(MapReports::Rays& rays, std::size_t count) {
-  for (std::size_t i = 0; i < count; i += hn::MaxLanes(kBinFloats)) {
-    const auto to = hn::LoadU(kBinFloats, &rays.to[i]);
-    const auto first = hn::Add(binsOf(hn::LoadU(kBinFloats, &rays.from[i])), hn::Set(kBinInts, 1));
-    hn::StoreU(first, kBinInts, &rays.first[i]);
-    hn::StoreU(binsOf(to), kBinInts, &rays.end[i]);
-    hn::StoreU(hn::Div(hn::LoadU(kBinFloats, &rays.height[i]), to), kBinFloats, &rays.slope[i]);
-  }
+  return count;
 }
 
 /// Computes the bins of the stretches, and the lines that are entered.
@@ -193,17 +153,6 @@ HWY_INLINE void measureStretches(MapReports::Stretches& stretches, std::size_t c
     const auto last = hn::IfThenElse(hn::RebindMask(kBinInts, is_none), hn::Set(kBinInts, -1), binsOf(rho));
     hn::StoreU(last, kBinInts, &stretches.last[i]);
   }
-}
-
-/// Forgets what is above a ray.
-HWY_INLINE void seeThrough(GroundMap::Sector& sector, const MapReports::Rays& rays, std::size_t i, Middles middles) {
-  const auto slope = set(rays.slope[i]);
-  forBins(rays.first[i], rays.end[i] - 1, [&](std::size_t bin, BinMask mask, BinMask /*is_last*/) HWY_ATTR {
-    const Cells cells{sector, bin};
-    const auto middle = cells.load(middles);
-    const auto ray = hn::Add(hn::Mul(slope, middle), set(kMarginRay));
-    cells.store(hn::And(mask, hn::Gt(cells.heightAt(middle), ray)), set(GroundMap::kUnknown), sector.slack);
-  });
 }
 
 /// Enters a stretch, and updates the trend in the bin of its end.
@@ -267,25 +216,13 @@ HWY_INLINE void extend(GroundMap::Sector& sector, const MapReports::Stretches& s
 
 void enterReports(const Shown& shown, MapReports& reports, GroundMap::Sector* sectors) {
   Middles middles = GroundMap::middles();
-  MapReports::Rays& rays = reports.rays;
   MapReports::Stretches& stretches = reports.stretches;
-  std::size_t stretch_count = 0;
-  const std::size_t ray_count = collectRays(shown, reports, stretch_count);
-  collectStretches(shown, reports, stretch_count);
-  measureRays(rays, ray_count);
-  measureStretches(stretches, stretch_count, shown.setting.max_slope);
+  const std::size_t count = collectStretches(shown, reports);
+  measureStretches(stretches, count, shown.setting.max_slope);
   const float trend_gain = shown.turns_left ? kTrendGain : -kTrendGain;
-  std::size_t stretch = 0;
-  for (std::size_t i = 0; i < ray_count; ++i) {
-    GroundMap::Sector& sector = sectors[rays.sector[i]];
-    if (rays.first[i] < rays.end[i]) seeThrough(sector, rays, i, middles);
-    if (rays.has_ground[i] == 0) continue;
-    if (stretches.last[stretch] >= 0) {
-      addStretch(sector, stretches, stretch, trend_gain, middles);
-    }
-    ++stretch;
-  }
-  for (std::size_t i = 0; i < stretch_count; ++i)
+  for (std::size_t i = 0; i < count; ++i)
+    if (stretches.last[i] >= 0) addStretch(sectors[stretches.sector[i]], stretches, i, trend_gain, middles);
+  for (std::size_t i = 0; i < count; ++i)
     if (stretches.is_last[i + 1] != 0) extend(sectors[stretches.sector[i]], stretches, i, middles);
 }
 
@@ -303,14 +240,11 @@ namespace ground {
 void MapReports::begin(std::size_t lasers) {
   const std::size_t size = lasers + Block::kColumns;
   if (latest.size() >= size) return;
-  for (auto* values :
-       {&rays.from, &rays.to, &rays.height, &rays.slope, &stretches.from_rho, &stretches.from_height, &stretches.rho,
-        &stretches.height, &stretches.long_slope, &stretches.slope, &stretches.offset, &stretches.ray})
+  for (auto* values : {&stretches.from_rho, &stretches.from_height, &stretches.rho, &stretches.height,
+                       &stretches.long_slope, &stretches.slope, &stretches.offset, &stretches.ray})
     values->resize(size);
-  for (auto* values : {&rays.first, &rays.end, &stretches.first, &stretches.last}) values->resize(size);
-  for (auto* values : {&rays.sector, &rays.has_ground, &stretches.sector, &stretches.is_doubted, &stretches.is_last,
-                       &stretch_rows, &latest})
-    values->resize(size);
+  for (auto* values : {&stretches.first, &stretches.last}) values->resize(size);
+  for (auto* values : {&stretches.sector, &stretches.is_doubted, &stretches.is_last, &latest}) values->resize(size);
 }
 
 void MapReports::enter(const Shown& shown, GroundMap::Sector* sectors) {

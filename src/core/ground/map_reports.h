@@ -16,21 +16,15 @@ namespace lisco::ground {
 struct Shown {
   FollowSetting setting;
   FollowResult result;
-  float start_height;  ///< of the ground beneath the sensor, metres
-  bool turns_left;     ///< sense of rotation
+  float start_height;               ///< of the ground beneath the sensor, metres
+  bool turns_left;                  ///< sense of rotation
+  const std::int32_t* with_ground;  ///< the rows with ground, and with ground dropped as scattered
+  std::size_t with_ground_count;
 };
 
 /// What a block shows of the map, as arrays that are longer than needed. Distances and heights are metres. Flags are
 /// words, since stores of bytes may be to any pointer.
 struct MapReports {
-  /// Rays of the latest column of the rows: each passes above the ground from one distance to another.
-  struct Rays {
-    AlignedVector<float> from, to, height;   ///< height where it ends
-    AlignedVector<float> slope;              ///< of the ray
-    AlignedVector<std::int32_t> first, end;  ///< the bins in between
-    std::vector<std::uint32_t> sector;       ///< of the map
-    std::vector<std::uint32_t> has_ground;   ///< 1 if the next stretch ends with this ray, else 0
-  };
   /// Ground found from one distance to another.
   struct Stretches {
     AlignedVector<float> from_rho, from_height, rho, height;
@@ -42,11 +36,8 @@ struct MapReports {
     std::vector<std::uint32_t>
         is_last;  ///< element s + 1: 1 if no stretch lies beyond stretch s, else 0; element 0: unused
   };
-  Rays rays;
   Stretches stretches;
-  std::vector<std::uint32_t> stretch_rows;  ///< of each stretch, the position of its row
-  std::vector<std::uint32_t>
-      latest;  ///< element i + 1, of row i: 1 + its outermost stretch, 0 if none; element 0: none
+  std::vector<std::uint32_t> latest;  ///< of each row that has reached ground: 1 + its outermost stretch, or 0
 
   /// Allocates only if there are more lasers than ever before.
   void begin(std::size_t lasers);
