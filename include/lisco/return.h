@@ -64,6 +64,18 @@ class CellSource {
   }
 
  private:
+  // Destinations do not overlap with what the cells are read from: compilers make vectors of this loop.
+  template <typename Cells>
+  static void readEach(Cells& cells, std::size_t laser, std::size_t first, std::size_t count, float* __restrict x,
+                       float* __restrict y, float* __restrict z, std::uint32_t* __restrict source_index) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const Return cell = cells(laser, first + i);
+      x[i] = cell.x;
+      y[i] = cell.y;
+      z[i] = cell.z;
+      source_index[i] = cell.source_index;
+    }
+  }
   template <typename Cells>
   static void readFrom(const void* context, std::size_t laser, std::size_t first, std::size_t count,
                        const Destination& to) {
@@ -71,13 +83,7 @@ class CellSource {
     if constexpr (std::is_invocable_v<Cells&, std::size_t, std::size_t, std::size_t, const Destination&>) {
       cells(laser, first, count, to);
     } else {
-      for (std::size_t i = 0; i < count; ++i) {
-        const Return cell = cells(laser, first + i);
-        to.x[i] = cell.x;
-        to.y[i] = cell.y;
-        to.z[i] = cell.z;
-        to.source_index[i] = cell.source_index;
-      }
+      readEach(cells, laser, first, count, to.x, to.y, to.z, to.source_index);
     }
   }
 

@@ -72,9 +72,11 @@ std::size_t labelClusters(const void* points, std::size_t count, std::size_t str
   if (count > 0 && points == nullptr) throw std::invalid_argument("lisco::labelClusters: points must not be null");
   const std::size_t columns = count / parameters.lasers;
   const StridedPoints all{static_cast<const unsigned char*>(points), stride};
-  const auto cell_at = [=](std::size_t laser, std::size_t column) { return all.at(laser * columns + column); };
+  const auto cells = [=](std::size_t laser, std::size_t first, std::size_t number, const CellSource::Destination& to) {
+    all.read(laser * columns + first, number, to);
+  };
   ClusterLabeller labeller;
-  return labeller.label(count, cell_at, parameters, labels);
+  return labeller.label(count, cells, parameters, labels);
 }
 
 }  // namespace lisco

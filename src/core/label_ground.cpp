@@ -71,10 +71,12 @@ void GroundLabeller::State::label(const StridedPoints& points, std::size_t count
   filter_.begin(parameters, 0);  // rejects bad parameters, even without points
   if (count == 0) return;
   const std::size_t width = count / lasers;
-  const auto cell_at = [&](std::size_t laser, std::size_t column) { return points.at(laser * width + column); };
-  if (lasers > 1) parameters.sensor = estimateSensor(width, lasers, origin, CellSource(cell_at));
+  const auto cells = [&](std::size_t laser, std::size_t first, std::size_t number, const CellSource::Destination& to) {
+    points.read(laser * width + first, number, to);
+  };
+  if (lasers > 1) parameters.sensor = estimateSensor(width, lasers, origin, CellSource(cells));
   if (parameters.sensor.steps_per_turn != 0) {
-    filter_.filterScan(parameters, width, lasers, cell_at, ground);
+    filter_.filterScan(parameters, width, lasers, cells, ground);
     return;
   }
   parameters.sensor = SensorHints();

@@ -37,10 +37,9 @@ constexpr float kAtColumn = 0.16F, kAtColumnGrowth = 0.03F, kAtColumnMost = 0.15
 constexpr float kLevel = 0.15F, kLevelGrowth = 0.11F, kLevelMost = 0.8F;            // is, where it seems to go on
 constexpr float kFirst = 0.1F, kFirstGrowth = 0.04F, kFirstLevelGrowth = 0.12F;     // before any ground is reached
 constexpr float kFirstMost = 10.0F;                                                 // distance up to which these grow
-constexpr float kFirstHighest = 0.2F, kFirstHighestGrowth = 0.3F;  // the first returns above are objects
-constexpr float kAgrees = 0.1F, kAgreesGrowth = 0.03F;             // with kSure: may be as rough as leaves
-constexpr float kObstacle = 0.3F;                                  // hides the ground beyond
-constexpr float kHigher = 0.1F;                                    // counts as Found::higher
+constexpr float kAgrees = 0.1F, kAgreesGrowth = 0.03F;  // with kSure: may be as rough as leaves
+constexpr float kObstacle = 0.3F;                       // hides the ground beyond
+constexpr float kHigher = 0.1F;                         // counts as Found::higher
 constexpr float kNearBelow = 0.1F, kReflection = 0.5F;  // in between, returns below are ground that is not followed
 // Differences of slopes.
 constexpr float kSameSlope = 0.2F;                  // the ground seems to go on
@@ -158,14 +157,10 @@ HWY_INLINE void lowerLimit(const FollowedRow& row, std::size_t k, const Column& 
   hn::StoreU(select(limits, lower, limit), kLanes, row.passed->limit.data() + k);
 }
 
-/// Returns clearly above the continuation of the ground reached.
-HWY_INLINE Mask areOver(const Column& column) {
-  return hn::AndNot(column.first, hn::Gt(column.above, set(kObstacle)));
-}
-
-/// Whether the rows above show an object, or the ground further inwards does.
-HWY_INLINE Mask rises(const Column& column, const Above& above) {
-  return hn::Or(hn::Or(above.wall, above.steep), areOver(column));
+/// Returns that hide the ground beyond: the rows above show an object, or the ground further inwards does.
+HWY_INLINE Mask areObstacles(const Column& column, const Above& above) {
+  const auto over = hn::AndNot(column.first, hn::Gt(column.above, set(kObstacle)));
+  return hn::Or(hn::Or(above.wall, above.steep), over);
 }
 
 /// Moves the ground reached to the returns of `reached`.
@@ -206,15 +201,12 @@ HWY_INLINE Mask lanesOf(std::uint8_t bits, std::size_t k) {
   return hn::LoadMaskBits(kLanes, bytes);
 }
 
-/// What is found of a part of a row without ground.
-HWY_INLINE Found passObjects(const FollowedRow& row, std::size_t k, const Column& column, Floats steepest) {
-  std::uint8_t& obstacles = row.passed->obstacles;
-  obstacles |= bitsOf(hn::And(areOver(column), column.valid), k);
-  if ((bitsOf(column.valid, k) & ~obstacles) != 0)
-    obstacles |= bitsOf(hn::And(rises(column, lookUp(row, k, column.rho, column.height, steepest)), column.valid), k);
+/// What is found of a part of a row, all of whose returns are objects.
+HWY_INLINE Found passObjects(const FollowedRow& row, std::size_t k, const Column& column) {
+  row.passed->obstacles = static_cast<std::uint8_t>(row.passed->obstacles | bitsOf(column.valid, k));
   lowerLimit(row, k, column, hn::Lt(column.rho, hn::Zero(kLanes)));
   const auto higher = hn::And(column.valid, hn::Gt(column.above, set(kHigher)));
-  return {0, 0, 0, 0, bitsOf(higher, k)};
+  return {0, 0, 0, bitsOf(higher, k)};
 }
 
 /// What is found of a part of a row, all of whose returns are on the ground.
@@ -223,7 +215,7 @@ HWY_INLINE Found passGround(const FollowedRow& row, std::size_t k, const Column&
   lowerLimit(row, k, column, column.valid);
   const std::uint8_t ground = bitsOf(column.valid, k), reached_bits = bitsOf(reached, k);
   row.passed->obstacles = static_cast<std::uint8_t>(row.passed->obstacles & ~reached_bits);
-  return {ground, reached_bits, ground, ground, 0};
+  return {ground, reached_bits, ground, 0};
 }
 
 /// The ground seems to go on along a slope beyond a return.
@@ -291,31 +283,27 @@ HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const Column&
   found = hn::And(found, hn::And(valid, hn::Le(height, hn::Add(column.limit, set(kStepUp)))));
   lowerLimit(row, k, column, found);
 
-  // But no ground: first returns that are too high, walls above their feet, rough surfaces where ground is unsure.
-  const auto first_too_high =
-      hn::And(column.first, hn::Gt(column.above, grown(kFirstHighest, kFirstHighestGrowth, distance)));
+  // But no ground: walls above their feet, rough surfaces where ground is unsure.
   const auto foot = areWhereExpected(column, map);
-  found = hn::AndNot(hn::Or(first_too_high, hn::AndNot(foot, above.wall)), found);
+  found = hn::AndNot(hn::AndNot(foot, above.wall), found);
   const auto unsure = hn::AndNot(hn::And(sure, agrees), found);
   if (!hn::AllFalse(kLanes, unsure)) found = hn::AndNot(hn::And(unsure, isRough(row, k, rho, height)), found);
 
   reached = hn::And(found, hn::Ge(column.way, set(kAdvance)));
-  const auto object = hn::And(hn::AndNot(found, rises(column, above)), valid);
+  const auto object = hn::And(hn::AndNot(found, areObstacles(column, above)), valid);
   const auto below = hn::And(hn::And(hn::Lt(column.above, set(-kNearBelow)), hn::Gt(column.above, set(-kReflection))),
                              hn::And(hn::AndNot(hn::Or(found, object), valid),
                                      hn::Or(hn::Ge(map.slack, set(kKnown)), hn::Lt(map.above, hn::Zero(kLanes)))));
-  const auto confirmed = hn::Lt(off_column, grown(kLevel, kLevelGrowth, distance));
   const auto known = hn::And(hn::Lt(map.slack, set(kWellKnown)), hn::Lt(off_map, set(kKnownHeight)));
   const auto higher = hn::And(hn::AndNot(found, valid), hn::Gt(column.above, set(kHigher)));
   const std::uint8_t reached_bits = bitsOf(reached, k);
   row.passed->obstacles = static_cast<std::uint8_t>((row.passed->obstacles & ~reached_bits) | bitsOf(object, k));
-  return {bitsOf(hn::Or(found, below), k), reached_bits, bitsOf(confirmed, k), bitsOf(known, k), bitsOf(higher, k)};
+  return {bitsOf(hn::Or(found, below), k), reached_bits, bitsOf(known, k), bitsOf(higher, k)};
 }
 
 HWY_INLINE void add(const Found& part, Found& found) {
   found.ground = static_cast<std::uint8_t>(found.ground | part.ground);
   found.reached = static_cast<std::uint8_t>(found.reached | part.reached);
-  found.confirmed = static_cast<std::uint8_t>(found.confirmed | part.confirmed);
   found.known = static_cast<std::uint8_t>(found.known | part.known);
   found.higher = static_cast<std::uint8_t>(found.higher | part.higher);
 }
@@ -350,7 +338,7 @@ HWY_INLINE Found followRow(const FollowedRow& row, Floats steepest) {
   }
   for (std::size_t i = 0; i < kParts; ++i) {
     const std::size_t k = i * kStep;
-    add(are_objects  ? passObjects(row, k, columns[i], steepest)
+    add(are_objects  ? passObjects(row, k, columns[i])
         : are_ground ? passGround(row, k, columns[i], reached[i])
                      : followPart(row, k, columns[i], maps[i], steepest, reached[i]),
         found);

@@ -43,11 +43,12 @@ constexpr float kBeyond = 0.1F;        // metres per metre, the same beyond the 
 constexpr float kBeyondStart = 0.02F;  // metres, the same
 constexpr float kMaxBeyond = 1.5F;     // metres
 constexpr float kStep = 0.25F;         // metres; higher ones are no ground, even if they were found to be
+constexpr std::size_t kRowsPerRay = 4;
 constexpr float kTrendGain = 0.3F;
 constexpr float kMaxTrend = 0.005F;     // metres per metre of distance
 constexpr float kMarginSame = 0.01F;    // metres
+constexpr float kMarginRay = 0.1F;      // metres
 constexpr float kMarginHidden = 0.05F;  // metres
-constexpr float kDoubt = 0.01F;         // metres
 
 /// The highest of the bits that are set; the lowest if none is.
 HWY_INLINE std::size_t lastOf(std::uint8_t bits) {
@@ -126,7 +127,6 @@ std::size_t collectStretches(const Shown& shown, MapReports& reports) {
     stretches.height[count] = now.height[last];
     stretches.long_slope[count] = now.slope[last];
     stretches.sector[count] = setting.sectors[i];
-    stretches.is_doubted[count] = ~static_cast<std::uint32_t>(found.confirmed) >> last & 1;
     stretches.is_last[below] = 0;
     latest[i] = ++count;
     stretches.is_last[count] = 1;
@@ -155,15 +155,35 @@ HWY_INLINE void measureStretches(MapReports::Stretches& stretches, std::size_t c
   }
 }
 
+/// Forgets ground above the rays of the rows' latest returns, beyond the ground that their columns have shown. Rays of
+/// neighbouring rows show nearly the same: each block has those of some of its rows.
+void seeThrough(const Shown& shown, std::uint32_t block_number, GroundMap::Sector* sectors, Middles middles) {
+  const FollowSetting& setting = shown.setting;
+  const Block& block = *setting.block;
+  for (std::size_t i = block_number % kRowsPerRay; i < setting.size; i += kRowsPerRay) {
+    const auto row = static_cast<std::size_t>(setting.rows[i].row);
+    const float to = block.last_rho[row];
+    const Followed& ground = shown.result.followed[shown.result.passed[i].followed];
+    const auto first = static_cast<std::int32_t>(GroundMap::binOf(ground.rho[block.last[row]])) + 1;
+    const auto end = static_cast<std::int32_t>(GroundMap::binOf(to));
+    if (first >= end) continue;
+    GroundMap::Sector& sector = sectors[setting.sectors[i]];
+    const auto slope = set(block.last_height[row] / to);
+    forBins(first, end - 1, [&](std::size_t bin, BinMask mask, BinMask /*is_last*/) HWY_ATTR {
+      const Cells cells{sector, bin};
+      const auto middle = cells.load(middles);
+      const auto ray = hn::Add(hn::Mul(slope, middle), set(kMarginRay));
+      cells.store(hn::And(mask, hn::Gt(cells.heightAt(middle), ray)), set(GroundMap::kUnknown), sector.slack);
+    });
+  }
+}
+
 /// Enters a stretch, and updates the trend in the bin of its end.
 HWY_INLINE void addStretch(GroundMap::Sector& sector, const MapReports::Stretches& stretches, std::size_t i,
                            float trend_gain, Middles middles) {
   const auto ray = set(stretches.ray[i]), from_rho = set(stretches.from_rho[i]), rho = set(stretches.rho[i]);
   const auto offset = set(stretches.offset[i]), slope = set(stretches.slope[i]);
   const auto most = hn::Mul(set(kMaxTrend), rho), gain = set(trend_gain);
-  // Where ground is doubted that was there before, its slack is at least this, and more than before.
-  const auto no_doubt = hn::Set(kBinInts, static_cast<std::int32_t>(stretches.is_doubted[i]) - 1);
-  const auto doubt = hn::MaskFromVec(hn::BitCast(kBinFloats, hn::Not(no_doubt)));
   forBins(stretches.first[i], stretches.last[i], [&](std::size_t bin, BinMask mask, BinMask is_end) HWY_ATTR {
     const Cells cells{sector, bin};
     const auto at = cells.load(middles);
@@ -173,7 +193,6 @@ HWY_INLINE void addStretch(GroundMap::Sector& sector, const MapReports::Stretche
     // The return would have been hidden.
     const auto is_hidden = hn::Gt(height, hn::Add(hn::Mul(ray, at), set(kMarginHidden)));
     const auto is_better = hn::Le(slack, hn::Add(before, set(kMarginSame)));
-    const auto doubted = hn::Min(hn::Add(hn::Max(slack, before), set(kDoubt)), set(GroundMap::kUnknown));
     const auto entered = hn::And(mask, hn::Or(is_hidden, is_better));
 
     const auto age = cells.load(sector.age), trend = cells.load(sector.trend);
@@ -184,7 +203,7 @@ HWY_INLINE void addStretch(GroundMap::Sector& sector, const MapReports::Stretche
     const auto updated = hn::Min(hn::Max(hn::Add(trend, update), hn::Neg(most)), most);
     const auto kept = hn::IfThenElse(updates, updated, trend);
     cells.store(hn::IfThenElse(hn::And(mask, is_hidden), hn::Zero(kBinFloats), kept), sector.trend);
-    cells.store(entered, hn::IfThenElse(hn::AndNot(is_hidden, doubt), doubted, slack), sector.slack);
+    cells.store(entered, slack, sector.slack);
     cells.store(entered, offset, sector.offset);
     cells.store(entered, slope, sector.slope);
     cells.store(hn::IfThenElse(entered, hn::Zero(kBinFloats), age), sector.age);
@@ -217,6 +236,7 @@ HWY_INLINE void extend(GroundMap::Sector& sector, const MapReports::Stretches& s
 void enterReports(const Shown& shown, MapReports& reports, GroundMap::Sector* sectors) {
   Middles middles = GroundMap::middles();
   MapReports::Stretches& stretches = reports.stretches;
+  seeThrough(shown, reports.block_number++, sectors, middles);
   const std::size_t count = collectStretches(shown, reports);
   measureStretches(stretches, count, shown.setting.max_slope);
   const float trend_gain = shown.turns_left ? kTrendGain : -kTrendGain;
@@ -238,13 +258,14 @@ HWY_EXPORT(enterReports);
 namespace ground {
 
 void MapReports::begin(std::size_t lasers) {
+  block_number = 0;
   const std::size_t size = lasers + Block::kColumns;
   if (latest.size() >= size) return;
   for (auto* values : {&stretches.from_rho, &stretches.from_height, &stretches.rho, &stretches.height,
                        &stretches.long_slope, &stretches.slope, &stretches.offset, &stretches.ray})
     values->resize(size);
   for (auto* values : {&stretches.first, &stretches.last}) values->resize(size);
-  for (auto* values : {&stretches.sector, &stretches.is_doubted, &stretches.is_last, &latest}) values->resize(size);
+  for (auto* values : {&stretches.sector, &stretches.is_last, &latest}) values->resize(size);
 }
 
 void MapReports::enter(const Shown& shown, GroundMap::Sector* sectors) {
