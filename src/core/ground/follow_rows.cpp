@@ -38,7 +38,7 @@ constexpr float kLevel = 0.15F, kLevelGrowth = 0.11F, kLevelMost = 0.8F;        
 constexpr float kFirst = 0.1F, kFirstGrowth = 0.04F, kFirstLevelGrowth = 0.12F;     // before any ground is reached
 constexpr float kFirstMost = 10.0F;                                                 // distance up to which these grow
 constexpr float kAgrees = 0.1F, kAgreesGrowth = 0.03F;  // with kSure: may be as rough as leaves
-constexpr float kObstacle = 0.3F;                       // hides the ground beyond
+constexpr float kObstacle = 0.25F;                      // hides the ground beyond
 constexpr float kHigher = 0.1F;                         // counts as Found::higher
 constexpr float kNearBelow = 0.1F, kReflection = 0.5F;  // in between, returns below are ground that is not followed
 // Differences of slopes.
@@ -206,7 +206,7 @@ HWY_INLINE Found passObjects(const FollowedRow& row, std::size_t k, const Column
   row.passed->obstacles = static_cast<std::uint8_t>(row.passed->obstacles | bitsOf(column.valid, k));
   lowerLimit(row, k, column, hn::Lt(column.rho, hn::Zero(kLanes)));
   const auto higher = hn::And(column.valid, hn::Gt(column.above, set(kHigher)));
-  return {0, 0, 0, bitsOf(higher, k)};
+  return {0, 0, 0, 0, bitsOf(higher, k)};
 }
 
 /// What is found of a part of a row, all of whose returns are on the ground.
@@ -215,7 +215,7 @@ HWY_INLINE Found passGround(const FollowedRow& row, std::size_t k, const Column&
   lowerLimit(row, k, column, column.valid);
   const std::uint8_t ground = bitsOf(column.valid, k), reached_bits = bitsOf(reached, k);
   row.passed->obstacles = static_cast<std::uint8_t>(row.passed->obstacles & ~reached_bits);
-  return {ground, reached_bits, ground, 0};
+  return {ground, reached_bits, ground, ground, 0};
 }
 
 /// The ground seems to go on along a slope beyond a return.
@@ -294,16 +294,18 @@ HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const Column&
   const auto below = hn::And(hn::And(hn::Lt(column.above, set(-kNearBelow)), hn::Gt(column.above, set(-kReflection))),
                              hn::And(hn::AndNot(hn::Or(found, object), valid),
                                      hn::Or(hn::Ge(map.slack, set(kKnown)), hn::Lt(map.above, hn::Zero(kLanes)))));
+  const auto confirmed = hn::Lt(off_column, grown(kLevel, kLevelGrowth, distance));
   const auto known = hn::And(hn::Lt(map.slack, set(kWellKnown)), hn::Lt(off_map, set(kKnownHeight)));
   const auto higher = hn::And(hn::AndNot(found, valid), hn::Gt(column.above, set(kHigher)));
   const std::uint8_t reached_bits = bitsOf(reached, k);
   row.passed->obstacles = static_cast<std::uint8_t>((row.passed->obstacles & ~reached_bits) | bitsOf(object, k));
-  return {bitsOf(hn::Or(found, below), k), reached_bits, bitsOf(known, k), bitsOf(higher, k)};
+  return {bitsOf(hn::Or(found, below), k), reached_bits, bitsOf(confirmed, k), bitsOf(known, k), bitsOf(higher, k)};
 }
 
 HWY_INLINE void add(const Found& part, Found& found) {
   found.ground = static_cast<std::uint8_t>(found.ground | part.ground);
   found.reached = static_cast<std::uint8_t>(found.reached | part.reached);
+  found.confirmed = static_cast<std::uint8_t>(found.confirmed | part.confirmed);
   found.known = static_cast<std::uint8_t>(found.known | part.known);
   found.higher = static_cast<std::uint8_t>(found.higher | part.higher);
 }

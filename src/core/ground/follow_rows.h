@@ -26,8 +26,8 @@ struct alignas(sizeof(Lanes)) Followed {
 
 /// What the rows up to one of them have shown, per column of the block.
 struct alignas(sizeof(Lanes)) Passed {
-  Lanes limit;           ///< metres: at a distance rho, no ground is higher than limit + max_slope * rho
-  std::size_t followed;  ///< number of the Followed, in FollowResult
+  Lanes limit;             ///< metres: at a distance rho, no ground is higher than limit + max_slope * rho
+  std::size_t followed;    ///< number of the Followed, in FollowResult
   std::uint8_t obstacles;  ///< columns in which objects hide the ground beyond the ground reached, as bits
 };
 

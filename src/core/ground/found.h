@@ -11,10 +11,11 @@ namespace lisco::ground {
 
 /// Decisions on the returns of a row of a block: bit i for column i.
 struct Found {
-  std::uint8_t ground;   ///< on the ground
-  std::uint8_t reached;  ///< of these, those from which the ground is followed further outwards
-  std::uint8_t known;    ///< at the height of the map, where that is well known
-  std::uint8_t higher;   ///< no ground, and above that continuation
+  std::uint8_t ground;     ///< on the ground
+  std::uint8_t reached;    ///< of these, those from which the ground is followed further outwards
+  std::uint8_t confirmed;  ///< near the straight continuation of the ground further inwards
+  std::uint8_t known;      ///< at the height of the map, where that is well known
+  std::uint8_t higher;     ///< no ground, and above that continuation
 };
 
 /// Removes ground from rows where most returns around are `higher`, as single leaves of a hedge may be in line with the

@@ -49,6 +49,7 @@ constexpr float kMaxTrend = 0.005F;     // metres per metre of distance
 constexpr float kMarginSame = 0.01F;    // metres
 constexpr float kMarginRay = 0.1F;      // metres
 constexpr float kMarginHidden = 0.05F;  // metres
+constexpr float kDoubt = 0.01F;         // metres
 
 /// The highest of the bits that are set; the lowest if none is.
 HWY_INLINE std::size_t lastOf(std::uint8_t bits) {
@@ -127,6 +128,7 @@ std::size_t collectStretches(const Shown& shown, MapReports& reports) {
     stretches.height[count] = now.height[last];
     stretches.long_slope[count] = now.slope[last];
     stretches.sector[count] = setting.sectors[i];
+    stretches.is_doubted[count] = ~static_cast<std::uint32_t>(found.confirmed) >> last & 1;
     stretches.is_last[below] = 0;
     latest[i] = ++count;
     stretches.is_last[count] = 1;
@@ -184,6 +186,9 @@ HWY_INLINE void addStretch(GroundMap::Sector& sector, const MapReports::Stretche
   const auto ray = set(stretches.ray[i]), from_rho = set(stretches.from_rho[i]), rho = set(stretches.rho[i]);
   const auto offset = set(stretches.offset[i]), slope = set(stretches.slope[i]);
   const auto most = hn::Mul(set(kMaxTrend), rho), gain = set(trend_gain);
+  // Where ground is doubted that was there before, its slack is at least this, and more than before.
+  const auto no_doubt = hn::Set(kBinInts, static_cast<std::int32_t>(stretches.is_doubted[i]) - 1);
+  const auto doubt = hn::MaskFromVec(hn::BitCast(kBinFloats, hn::Not(no_doubt)));
   forBins(stretches.first[i], stretches.last[i], [&](std::size_t bin, BinMask mask, BinMask is_end) HWY_ATTR {
     const Cells cells{sector, bin};
     const auto at = cells.load(middles);
@@ -193,6 +198,7 @@ HWY_INLINE void addStretch(GroundMap::Sector& sector, const MapReports::Stretche
     // The return would have been hidden.
     const auto is_hidden = hn::Gt(height, hn::Add(hn::Mul(ray, at), set(kMarginHidden)));
     const auto is_better = hn::Le(slack, hn::Add(before, set(kMarginSame)));
+    const auto doubted = hn::Min(hn::Add(hn::Max(slack, before), set(kDoubt)), set(GroundMap::kUnknown));
     const auto entered = hn::And(mask, hn::Or(is_hidden, is_better));
 
     const auto age = cells.load(sector.age), trend = cells.load(sector.trend);
@@ -203,7 +209,7 @@ HWY_INLINE void addStretch(GroundMap::Sector& sector, const MapReports::Stretche
     const auto updated = hn::Min(hn::Max(hn::Add(trend, update), hn::Neg(most)), most);
     const auto kept = hn::IfThenElse(updates, updated, trend);
     cells.store(hn::IfThenElse(hn::And(mask, is_hidden), hn::Zero(kBinFloats), kept), sector.trend);
-    cells.store(entered, slack, sector.slack);
+    cells.store(entered, hn::IfThenElse(hn::AndNot(is_hidden, doubt), doubted, slack), sector.slack);
     cells.store(entered, offset, sector.offset);
     cells.store(entered, slope, sector.slope);
     cells.store(hn::IfThenElse(entered, hn::Zero(kBinFloats), age), sector.age);
@@ -265,7 +271,7 @@ void MapReports::begin(std::size_t lasers) {
                        &stretches.long_slope, &stretches.slope, &stretches.offset, &stretches.ray})
     values->resize(size);
   for (auto* values : {&stretches.first, &stretches.last}) values->resize(size);
-  for (auto* values : {&stretches.sector, &stretches.is_last, &latest}) values->resize(size);
+  for (auto* values : {&stretches.sector, &stretches.is_doubted, &stretches.is_last, &latest}) values->resize(size);
 }
 
 void MapReports::enter(const Shown& shown, GroundMap::Sector* sectors) {

@@ -32,6 +32,7 @@ struct MapReports {
     AlignedVector<float> slope, offset, ray;  ///< of the line that is entered, and of the ray to its end
     AlignedVector<std::int32_t> first, last;  ///< bins; last is -1 for a stretch that is not entered
     std::vector<std::uint32_t> sector;        ///< of the map
+    std::vector<std::uint32_t> is_doubted;    ///< 1 if it is off the ground of the blocks before, else 0
     std::vector<std::uint32_t>
         is_last;  ///< element s + 1: 1 if no stretch lies beyond stretch s, else 0; element 0: unused
   };
