@@ -28,7 +28,7 @@ HWY_INLINE FloatMask areInBins(const RangeImage& image, std::int64_t bin, FloatV
   const FloatVector sine = hn::LoadU(kFloats, &image.sine[index]);
   const FloatVector across = hn::Abs(hn::Sub(hn::Mul(u, sine), hn::Mul(v, cosine)));
   const FloatVector along = hn::Add(hn::Mul(u, cosine), hn::Mul(v, sine));
-  const FloatVector deviation = hn::Set(kFloats, std::sin(image.deviation * image.radians_per_bin));
+  const FloatVector deviation = hn::Set(kFloats, image.deviation_sine);
   return hn::And(hn::Le(across, hn::Mul(rho, deviation)), hn::Gt(along, hn::Zero(kFloats)));
 }
 
@@ -182,18 +182,36 @@ class Placement {
   /// Sets the expected bins from the azimuth of a return. \return false if that return is outside the image: unplaced
   bool realignTo(std::size_t i) {
     ++image_.realigned;
-    const std::int64_t measured = image_.binOf({u_[i], v_[i]});
     const std::int64_t expected = first_bin_ + static_cast<std::int64_t>(i);
-    const auto turn = static_cast<std::int64_t>(image_.steps);
-    std::int64_t bin =
-        measured + turn * std::llround(static_cast<double>(expected - measured) / static_cast<double>(turn));
-    // A scan of more than a turn goes on at the beginning of the image.
-    if (bin >= bins()) bin -= turn * ((bin - bins()) / turn + 1);
+    std::int64_t bin = binBeside(expected, i);
+    if (bin < 0 || bin >= bins()) bin = binOf(expected, i);
     first_bin_ = bin - static_cast<std::int64_t>(i);
     if (bin >= 0 && bin < bins()) return true;
     unplaced_ |= ColumnBits{1} << i;
     expectAfter(i);
     return false;
+  }
+
+  /// The bin of a return whose azimuth is near that of a bin of the image; -1 if it is not.
+  std::int64_t binBeside(std::int64_t expected, std::size_t i) const {
+    constexpr float kSmall = 0.05F;  // tangent, of which two terms of the series give the angle within 1e-7 radians
+    if (expected < 0 || expected >= bins()) return -1;
+    const auto index = static_cast<std::size_t>(expected) + RangeImage::kMargin;
+    const float cosine = image_.cosine[index], sine = image_.sine[index];
+    const float across = v_[i] * cosine - u_[i] * sine, along = u_[i] * cosine + v_[i] * sine;
+    if (!(std::fabs(across) < kSmall * along)) return -1;
+    const float tangent = across / along;
+    return expected + std::lrint((tangent - tangent * tangent * tangent / 3.0F) / image_.radians_per_bin);
+  }
+
+  /// The bin of a return in the turn of an expected one, or in the turn before if that is not in the image.
+  std::int64_t binOf(std::int64_t expected, std::size_t i) const {
+    const std::int64_t measured = image_.binOf({u_[i], v_[i]});
+    const auto turn = static_cast<std::int64_t>(image_.steps);
+    const std::int64_t bin =
+        measured + turn * std::llround(static_cast<double>(expected - measured) / static_cast<double>(turn));
+    // A scan of more than a turn goes on at the beginning of the image.
+    return bin < bins() ? bin : bin - turn * ((bin - bins()) / turn + 1);
   }
 
   RangeImage& image_;

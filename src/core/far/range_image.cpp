@@ -49,6 +49,7 @@ void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hint
   }
   steps = new_steps;
   radians_per_bin = static_cast<float>(2 * kPi / static_cast<double>(steps));
+  deviation_sine = std::sin(deviation * radians_per_bin);
   setBins(columns);
   begin = std::numeric_limits<std::size_t>::max();
   const std::size_t lasers_before = laserCount();
