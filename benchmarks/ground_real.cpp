@@ -39,9 +39,11 @@ double threadSeconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
+constexpr int kRuns = 25;
+
 struct Filtered {
   std::vector<std::uint8_t> ground;
-  double ns_per_cell;  ///< least of five runs
+  double ns_per_cell;  ///< least of kRuns
 };
 
 Filtered filterCloud(const Cloud& cloud, lisco::GroundParameters parameters) {
@@ -59,7 +61,7 @@ Filtered filterCloud(const Cloud& cloud, lisco::GroundParameters parameters) {
     }
   };
   lisco::GroundFilter filter;
-  for (int run = 0; run < 5; ++run) {
+  for (int run = 0; run < kRuns; ++run) {
     if (cloud.height == 1) {
       const double begin = threadSeconds();
       lisco::LabelGroundParameters unorganized;

@@ -359,6 +359,44 @@ TEST(GroundScenes, RemembersTheGroundThatAVanHid) {
   EXPECT_GT(share(scan, ground, isBeyond), 0.95);
 }
 
+TEST(GroundScenes, FindsTheContinuationOfASlopeBehindAFence) {
+  // Up to 88 degrees, the ground begins to rise 4 m away, and is seen up to 10 m. Then a fence 5 m away hides it, over
+  // which two lasers see where it goes on.
+  const auto surface = [](double x, double y) { return 0.08 * std::max(0.0, std::hypot(x, y) - 4.0) - kHeight; };
+  const auto isFence = [](double degrees) { return degrees > 88.0 && degrees < 100.0; };
+  const Scan scan = scanOf(64, kColumns, [&](double azimuth, double slope) {
+    const double degrees = azimuth * 180.0 / M_PI;
+    if (degrees < 60.0 || degrees > 100.0) return meetsPlane(azimuth, slope, kHeight);
+    const double rho = meetsSurface(azimuth, slope, surface);
+    if (!isFence(degrees)) return rho < 10.0 ? rho : -1.0;
+    if (rho > 5.0 && rho < 11.5) return 5.0;
+    return rho < 13.9 ? rho : -1.0;
+  });
+  const std::vector<std::uint8_t> ground = filterAll(scan);
+  const auto isBehindFence = [&](const lisco::Return& cell) {
+    const double degrees = std::atan2(static_cast<double>(cell.y), static_cast<double>(cell.x)) * 180.0 / M_PI;
+    return isFence(degrees) && distanceOf(cell) > 11.0;
+  };
+  EXPECT_GT(share(scan, ground, isBehindFence), 0.9);
+}
+
+TEST(GroundScenes, LeavesAPlatformBehindAWall) {
+  // The ground is seen up to 7 m. From 90 to 150 degrees a wall, 0.6 m high, begins there, over which lasers see a
+  // platform 0.7 m high, 18 m away.
+  constexpr double kWallTop = 0.6 - kHeight, kPlatform = 0.7 - kHeight;
+  const auto isBehindWall = [](double azimuth) { return azimuth > 0.5 * M_PI && azimuth < 5.0 * M_PI / 6.0; };
+  const Scan scan = scanOf(128, kColumns, [&](double azimuth, double slope) {
+    const double rho = meetsPlane(azimuth, slope, kHeight);
+    if (rho > 0.0 && rho < 7.0) return rho;
+    if (!isBehindWall(azimuth)) return -1.0;
+    if (slope * 7.0 < kWallTop) return 7.0;
+    return slope * 18.0 > kPlatform && slope * 22.0 < kPlatform ? kPlatform / slope : -1.0;
+  });
+  const std::vector<std::uint8_t> ground = filterAll(scan);
+  EXPECT_EQ(share(scan, ground, [](const lisco::Return& cell) { return distanceOf(cell) > 17.0; }), 0.0);
+  EXPECT_GT(share(scan, ground, [](const lisco::Return& cell) { return distanceOf(cell) < 6.9; }), 0.98);
+}
+
 TEST(GroundScenes, ForgetATerraceThatRaysPassBeneath) {
   // Up to 85 degrees, the ground rises to a terrace 1.2 m high, 18 m away. Then a wet road begins, which is seen up to
   // 9 m only: first with a wall 32 m away, from 88 degrees on with the bed of a trailer, as high as the terrace.
