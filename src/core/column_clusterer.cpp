@@ -427,9 +427,10 @@ void ColumnClusterer::Rotation::numberSubclusters() {
   if (is_unordered_) return;  // numbered when they were linked
   SetNumbering numbering(subclusters_, sizes_);
   for (std::size_t i = 0; i < partition_count_; ++i)
-    numbering.addRoots(partitions_[i].first_element, runsOf(i).runs.size());
+    numbering.addRoots(partitions_[i].first_element, runsOf(i).run_count);
   for (std::size_t i = 0; i < partition_count_; ++i) {
-    std::vector<Run>& runs = partitions_[i].runs.runs;
+    Run* const runs = partitions_[i].runs.runs.data();
+    const std::size_t count = partitions_[i].runs.run_count;
     const std::uint32_t first = partitions_[i].first_element;
     const auto subclusterOf = [&](std::uint32_t parent) {
       if (parent >= first) return runs[parent - first].subcluster;
@@ -437,8 +438,8 @@ void ColumnClusterer::Rotation::numberSubclusters() {
       while (parent < partitions_[owner].first_element) --owner;
       return runsOf(owner).runs[parent - partitions_[owner].first_element].subcluster;
     };
-    std::uint32_t element = first;
-    for (Run& run : runs) run.subcluster = numbering.numberOf(element++, run.count, subclusterOf);
+    for (std::uint32_t run = 0; run < count; ++run)
+      runs[run].subcluster = numbering.numberOf(first + run, runs[run].count, subclusterOf);
   }
 }
 

@@ -84,7 +84,7 @@ bool Partition::isFarWorthwhile() const {
 }
 
 std::size_t Partition::workDone() const {
-  return kWorkOfLinking * segments_.workDone() + kWorkOfRun * runs.runs.size();
+  return kWorkOfLinking * segments_.workDone() + kWorkOfRun * runs.run_count;
 }
 
 }  // namespace lisco

@@ -6,25 +6,23 @@
 #include <numeric>
 
 #include "core/bits.h"
-#include "core/growing_array.h"
 
 namespace lisco {
 
 void Runs::clear() {
   source_index.clear();
-  runs.clear();
+  run_count = 0;
   blocks.clear();
   returns = 0;
 }
 
 void Runs::add(const RingBlock& block, RingBlockInfo& info, std::size_t laser, std::uint32_t first_column,
                std::size_t columns, std::uint32_t first_element, DisjointSets& subclusters) {
-  const auto first_run = static_cast<std::uint32_t>(runs.size());
+  const auto first_run = static_cast<std::uint32_t>(run_count);
   const auto first_cell = static_cast<std::uint32_t>(source_index.size());
   const std::uint32_t end_run = first_run + countBits(info.starts);
   subclusters.grow(first_element + end_run);
-  reserveInSteps(runs, end_run);
-  runs.resize(end_run);
+  runs.growInSteps(end_run);
   source_index.insert(source_index.end(), block.source_index, block.source_index + columns);
   returns += countBits(info.returns);
   std::uint32_t number = first_run;
@@ -48,16 +46,17 @@ void Runs::add(const RingBlock& block, RingBlockInfo& info, std::size_t laser, s
       runs[number++] = {first_cell + static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin), 0};
     });
   }
-  blocks.push_back({static_cast<std::uint32_t>(laser), first_column, first_cell, first_run, number - first_run});
+  run_count = end_run;
+  blocks.push_back({static_cast<std::uint32_t>(laser), first_column, first_cell, first_run, end_run - first_run});
 }
 
 std::uint32_t Runs::runAt(const Block& block, std::uint32_t column) const {
   const std::uint32_t cell = block.first_cell + column;
-  const auto begin = runs.begin() + block.first_run;
-  const auto after = std::upper_bound(begin, begin + block.count, cell,
-                                      [](std::uint32_t wanted, const Run& run) { return wanted < run.first_cell; });
+  const Run* const begin = runs.data() + block.first_run;
+  const Run* const after = std::upper_bound(
+      begin, begin + block.count, cell, [](std::uint32_t wanted, const Run& run) { return wanted < run.first_cell; });
   if (after == begin || cell >= (after - 1)->first_cell + (after - 1)->count) return kNone;
-  return static_cast<std::uint32_t>(after - 1 - runs.begin());
+  return static_cast<std::uint32_t>(after - 1 - runs.data());
 }
 
 }  // namespace lisco

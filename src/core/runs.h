@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/disjoint_sets.h"
+#include "core/growing_array.h"
 #include "core/parallel.h"
 #include "core/ring_block.h"
 #include "lisco/return.h"
@@ -27,7 +28,8 @@ struct Runs {
   };
 
   std::vector<std::uint32_t> source_index;  ///< of each cell of the blocks with returns
-  std::vector<Run> runs;                    ///< Run::first_cell counts in source_index
+  GrowingArray<Run> runs;                   ///< Run::first_cell counts in source_index; the first run_count are used
+  std::size_t run_count = 0;
   std::vector<Block> blocks;
   std::size_t returns = 0;
 

@@ -129,11 +129,12 @@ void WindowClusterer::Window::finishPane() {
 
 /// Numbers the subclusters of a pane.
 void WindowClusterer::Window::numberWithin(Pane& pane) {
-  const std::vector<Run>& runs = pane.runs.runs;
-  pane.subcluster.resize(runs.size());
+  const GrowingArray<Run>& runs = pane.runs.runs;
+  const std::size_t count = pane.runs.run_count;
+  pane.subcluster.resize(count);
   SetNumbering numbering(pane.subclusters, pane.sizes);
-  numbering.addRoots(0, runs.size());
-  for (std::uint32_t run = 0; run < runs.size(); ++run)
+  numbering.addRoots(0, count);
+  for (std::uint32_t run = 0; run < count; ++run)
     pane.subcluster[run] =
         numbering.numberOf(run, runs[run].count, [&](std::uint32_t parent) { return pane.subcluster[parent]; });
 }
