@@ -63,8 +63,8 @@ struct FollowedRow {
   const GroundMap::Sector* sector;
   const Passed* before;  ///< of the rows below
   Passed* passed;
-  const ground::Followed* inwards;  ///< the ground that these have reached
-  ground::Followed* followed;
+  const ground::GroundReached* inwards;  ///< the ground that these have reached
+  ground::GroundReached* followed;
   std::size_t number;  ///< of `followed`
 };
 

@@ -104,7 +104,7 @@ struct Column {
 };
 
 HWY_INLINE Column columnOf(const FollowedRow& row, std::size_t k, Floats steepest) {
-  const ground::Followed& before = *row.inwards;
+  const ground::GroundReached& before = *row.inwards;
   const auto load = [k](const ground::Lanes& lanes) { return hn::LoadU(kLanes, lanes.data() + k); };
   Column column;
   column.rho = hn::LoadU(kLanes, row.rho + k);
@@ -166,8 +166,8 @@ HWY_INLINE Mask areObstacles(const Column& column, const Above& above) {
 /// Moves the ground reached to the returns of `reached`.
 HWY_INLINE void advance(const FollowedRow& row, std::size_t k, Mask reached, Floats rho, Floats height,
                         Floats max_slope) {
-  const ground::Followed& before = *row.inwards;
-  ground::Followed& now = *row.followed;
+  const ground::GroundReached& before = *row.inwards;
+  ground::GroundReached& now = *row.followed;
   const auto load = [k](const ground::Lanes& lanes) { return hn::LoadU(kLanes, lanes.data() + k); };
   const auto store = [k](Floats value, ground::Lanes& lanes) { hn::StoreU(value, kLanes, lanes.data() + k); };
   auto back_rho = load(before.back_rho), back_height = load(before.back_height);
@@ -364,7 +364,7 @@ void followRows(const FollowSetting& setting, std::size_t first, std::size_t end
   const std::uint32_t* const sectors = setting.sectors;
   const Passed* const starts = setting.starts;
   Passed* const passed = result.passed;
-  ground::Followed* const reached = result.followed;
+  ground::GroundReached* const reached = result.followed;
   Found* const found = result.found;
   for (std::size_t i = first; i < end; ++i) {
     const RowOrder::Row& row = rows[i];

@@ -17,7 +17,7 @@ namespace lisco::ground {
 using Lanes = std::array<float, Block::kColumns>;
 
 /// The ground that the rows of a block up to one of them have shown, per column.
-struct alignas(sizeof(Lanes)) Followed {
+struct alignas(sizeof(Lanes)) GroundReached {
   Lanes rho, height;            ///< of the ground reached; rho is 0 before the first return on it
   Lanes slope;                  ///< of the ground up to there
   Lanes back_rho, back_height;  ///< ground further inwards, from which the slope is measured
@@ -27,7 +27,7 @@ struct alignas(sizeof(Lanes)) Followed {
 /// What the rows up to one of them have shown, per column of the block.
 struct alignas(sizeof(Lanes)) Passed {
   Lanes limit;             ///< metres: at a distance rho, no ground is higher than limit + max_slope * rho
-  std::size_t followed;    ///< number of the Followed, in FollowResult
+  std::size_t followed;    ///< number of the GroundReached, in FollowResult
   std::uint8_t obstacles;  ///< columns in which objects hide the ground beyond the ground reached, as bits
 };
 
@@ -45,7 +45,7 @@ struct FollowSetting {
 /// What they show, for each row.
 struct FollowResult {
   Passed* passed;
-  Followed* followed;  ///< of the rows that change what the rows below have shown; those of `starts` lie behind
+  GroundReached* followed;  ///< of the rows that change what the rows below have shown; those of `starts` lie behind
   Found* found;
 };
 

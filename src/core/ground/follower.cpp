@@ -28,7 +28,7 @@ std::array<std::uint8_t, 8> bytesOf(std::uint8_t bits) {
 }
 
 /// Ground as far as it is known before the first row of a chain.
-void setStart(const Plane& plane, float slope, Followed& start) {
+void setStart(const Plane& plane, float slope, GroundReached& start) {
   for (Lanes* lanes : {&start.rho, &start.back_rho, &start.next_rho}) lanes->fill(0.0F);
   for (Lanes* lanes : {&start.height, &start.back_height, &start.next_height}) lanes->fill(plane.height);
   start.slope.fill(slope);

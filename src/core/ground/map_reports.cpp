@@ -20,11 +20,11 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using ground::Block;
-using ground::Followed;
 using ground::FollowResult;
 using ground::FollowSetting;
 using ground::Found;
 using ground::GroundMap;
+using ground::GroundReached;
 using ground::MapReports;
 using ground::Passed;
 using ground::RowOrder;
@@ -38,12 +38,12 @@ constexpr BinFloats kBinFloats{};
 constexpr BinInts kBinInts{};
 
 // Least loss of objects and of ground in the tables of benchmarks/suite.sh ground ground_real.
-constexpr float kAlong = 0.05F;        // metres per metre, by which the ground may rise unseen between two returns
-constexpr float kBeyond = 0.1F;        // metres per metre, the same beyond the last one
-constexpr float kBeyondStart = 0.02F;  // metres, the same
-constexpr float kMaxBeyond = 1.5F;     // metres
-constexpr float kStep = 0.25F;         // metres; higher ones are no ground, even if they were found to be
-constexpr std::size_t kRowsPerRay = 4;
+constexpr float kAlong = 0.05F;         // metres per metre, by which the ground may rise unseen between two returns
+constexpr float kBeyond = 0.1F;         // metres per metre, the same beyond the last one
+constexpr float kBeyondStart = 0.02F;   // metres, the same
+constexpr float kMaxBeyond = 1.5F;      // metres
+constexpr float kStep = 0.25F;          // metres; higher ones are no ground, even if they were found to be
+constexpr std::size_t kRowsPerRay = 4;  // rows, of which a block has one's rays
 constexpr float kTrendGain = 0.3F;
 constexpr float kMaxTrend = 0.005F;     // metres per metre of distance
 constexpr float kMarginSame = 0.01F;    // metres
@@ -120,8 +120,8 @@ std::size_t collectStretches(const Shown& shown, MapReports& reports) {
     const Found found = result.found[i];
     if (found.reached == 0) continue;
     const std::size_t last = lastOf(found.reached);
-    const Followed& now = result.followed[i];
-    const Followed& inwards = result.followed[before.followed];
+    const GroundReached& now = result.followed[i];
+    const GroundReached& inwards = result.followed[before.followed];
     stretches.from_rho[count] = inwards.rho[last];
     stretches.from_height[count] = is_first ? shown.start_height : inwards.height[last];
     stretches.rho[count] = now.rho[last];
@@ -165,7 +165,7 @@ void seeThrough(const Shown& shown, std::uint32_t block_number, GroundMap::Secto
   for (std::size_t i = block_number % kRowsPerRay; i < setting.size; i += kRowsPerRay) {
     const auto row = static_cast<std::size_t>(setting.rows[i].row);
     const float to = block.last_rho[row];
-    const Followed& ground = shown.result.followed[shown.result.passed[i].followed];
+    const GroundReached& ground = shown.result.followed[shown.result.passed[i].followed];
     const auto first = static_cast<std::int32_t>(GroundMap::binOf(ground.rho[block.last[row]])) + 1;
     const auto end = static_cast<std::int32_t>(GroundMap::binOf(to));
     if (first >= end) continue;

@@ -18,7 +18,7 @@ struct Shown {
   FollowResult result;
   float start_height;               ///< of the ground beneath the sensor, metres
   bool turns_left;                  ///< sense of rotation
-  const std::int32_t* with_ground;  ///< the rows with ground, and with ground dropped as scattered
+  const std::int32_t* with_ground;  ///< positions of the rows with ground, even if all was dropped as scattered
   std::size_t with_ground_count;
 };
 
@@ -37,7 +37,7 @@ struct MapReports {
         is_last;  ///< element s + 1: 1 if no stretch lies beyond stretch s, else 0; element 0: unused
   };
   Stretches stretches;
-  std::uint32_t block_number = 0;
+  std::uint32_t block_number = 0;     ///< from begin () on
   std::vector<std::uint32_t> latest;  ///< of each row that has reached ground: 1 + its outermost stretch, or 0
 
   /// Allocates only if there are more lasers than ever before.
