@@ -91,8 +91,8 @@ HWY_INLINE Mapped lookDown(const GroundMap::Sector& sector, Floats rho, Floats h
   return mapped;
 }
 
-/// Returns of a row, as seen from the ground that the rows below have shown in their columns.
-struct Column {
+/// Returns of a row, as many as a vector has lanes, as seen from the ground that the rows below show in their columns.
+struct RowPart {
   Floats rho, height;
   Mask valid;
   Mask first;            ///< no ground has been reached yet
@@ -103,25 +103,25 @@ struct Column {
   Floats climb, limit;   ///< height by which the steepest ground rises up to there, and its highest height there
 };
 
-HWY_INLINE Column columnOf(const FollowedRow& row, std::size_t k, Floats steepest) {
+HWY_INLINE RowPart partOf(const FollowedRow& row, std::size_t k, Floats steepest) {
   const ground::GroundReached& before = *row.inwards;
   const auto load = [k](const ground::Lanes& lanes) { return hn::LoadU(kLanes, lanes.data() + k); };
-  Column column;
-  column.rho = hn::LoadU(kLanes, row.rho + k);
-  column.height = hn::LoadU(kLanes, row.height + k);
-  column.valid = hn::Gt(column.rho, set(Block::kMinRho));
+  RowPart part;
+  part.rho = hn::LoadU(kLanes, row.rho + k);
+  part.height = hn::LoadU(kLanes, row.height + k);
+  part.valid = hn::Gt(part.rho, set(Block::kMinRho));
   const auto ground_rho = load(before.rho);
-  column.first = hn::Eq(ground_rho, hn::Zero(kLanes));
-  column.slope = load(before.slope);
-  column.way = hn::Sub(column.rho, ground_rho);
-  column.distance = hn::Max(column.way, hn::Zero(kLanes));
-  const auto baseline = select(column.first, column.rho, hn::Sub(ground_rho, load(before.back_rho)));
-  const auto straight_on = hn::Min(column.distance, hn::Add(baseline, baseline));
-  column.from_ground = hn::Sub(column.height, load(before.height));
-  column.above = hn::Sub(column.from_ground, hn::Mul(column.slope, straight_on));
-  column.climb = hn::Mul(steepest, column.rho);
-  column.limit = hn::Add(load(row.before->limit), column.climb);
-  return column;
+  part.first = hn::Eq(ground_rho, hn::Zero(kLanes));
+  part.slope = load(before.slope);
+  part.way = hn::Sub(part.rho, ground_rho);
+  part.distance = hn::Max(part.way, hn::Zero(kLanes));
+  const auto baseline = select(part.first, part.rho, hn::Sub(ground_rho, load(before.back_rho)));
+  const auto straight_on = hn::Min(part.distance, hn::Add(baseline, baseline));
+  part.from_ground = hn::Sub(part.height, load(before.height));
+  part.above = hn::Sub(part.from_ground, hn::Mul(part.slope, straight_on));
+  part.climb = hn::Mul(steepest, part.rho);
+  part.limit = hn::Add(load(row.before->limit), part.climb);
+  return part;
 }
 
 /// The most height of ground above the map's. \param smooth whether the surface is smooth, or may be
@@ -132,34 +132,34 @@ HWY_INLINE Floats mostAboveMap(const Mapped& map, Floats rho, Mask smooth) {
 
 /// Returns that are too high for ground, whatever the rows above show: it cannot rise so steeply from lower and nearer
 /// returns.
-HWY_INLINE Mask areTooHigh(const Column& column) {
-  return hn::AndNot(hn::Lt(column.above, set(-kNearBelow)), hn::Gt(column.height, hn::Add(column.limit, set(kStepUp))));
+HWY_INLINE Mask areTooHigh(const RowPart& part) {
+  return hn::AndNot(hn::Lt(part.above, set(-kNearBelow)), hn::Gt(part.height, hn::Add(part.limit, set(kStepUp))));
 }
 
 /// Likewise: the map has the ground clearly lower.
-HWY_INLINE Mask areAboveMap(const Column& column, const Mapped& map) {
-  return hn::And(hn::Le(map.slack, set(kLineKnown)), hn::Ge(map.above, mostAboveMap(map, column.rho, column.valid)));
+HWY_INLINE Mask areAboveMap(const RowPart& part, const Mapped& map) {
+  return hn::And(hn::Le(map.slack, set(kLineKnown)), hn::Ge(map.above, mostAboveMap(map, part.rho, part.valid)));
 }
 
 /// Returns on the ground, whatever the rows above show: both the map and the column have it there.
-HWY_INLINE Mask areWhereExpected(const Column& column, const Mapped& map) {
+HWY_INLINE Mask areWhereExpected(const RowPart& part, const Mapped& map) {
   const auto on_map = hn::And(hn::Lt(map.slack, set(kSure)), hn::Lt(hn::Abs(map.above), set(kFoot)));
-  return hn::And(on_map, hn::Lt(hn::Abs(column.above), set(kSure)));
+  return hn::And(on_map, hn::Lt(hn::Abs(part.above), set(kSure)));
 }
 
 /// Lowers the highest possible ground to that of the steepest slope from these returns on, but for reflections.
-HWY_INLINE void lowerLimit(const FollowedRow& row, std::size_t k, const Column& column, Mask found) {
-  const auto is_reflection = hn::And(hn::Lt(column.height, hn::Sub(column.limit, set(kReflectedFrom))),
-                                     hn::Lt(column.above, set(-kReflection)));
-  const auto limits = hn::And(column.valid, hn::Or(found, hn::Not(is_reflection)));
+HWY_INLINE void lowerLimit(const FollowedRow& row, std::size_t k, const RowPart& part, Mask found) {
+  const auto is_reflection =
+      hn::And(hn::Lt(part.height, hn::Sub(part.limit, set(kReflectedFrom))), hn::Lt(part.above, set(-kReflection)));
+  const auto limits = hn::And(part.valid, hn::Or(found, hn::Not(is_reflection)));
   const auto limit = hn::LoadU(kLanes, row.before->limit.data() + k);
-  const auto lower = hn::Min(limit, hn::Sub(column.height, column.climb));
+  const auto lower = hn::Min(limit, hn::Sub(part.height, part.climb));
   hn::StoreU(select(limits, lower, limit), kLanes, row.passed->limit.data() + k);
 }
 
 /// Returns that hide the ground beyond: the rows above show an object, or the ground further inwards does.
-HWY_INLINE Mask areObstacles(const Column& column, const Above& above) {
-  const auto over = hn::AndNot(column.first, hn::Gt(column.above, set(kObstacle)));
+HWY_INLINE Mask areObstacles(const RowPart& part, const Above& above) {
+  const auto over = hn::AndNot(part.first, hn::Gt(part.above, set(kObstacle)));
   return hn::Or(hn::Or(above.wall, above.steep), over);
 }
 
@@ -202,18 +202,18 @@ HWY_INLINE Mask lanesOf(std::uint8_t bits, std::size_t k) {
 }
 
 /// What is found of a part of a row, all of whose returns are objects.
-HWY_INLINE Found passObjects(const FollowedRow& row, std::size_t k, const Column& column) {
-  row.passed->obstacles = static_cast<std::uint8_t>(row.passed->obstacles | bitsOf(column.valid, k));
-  lowerLimit(row, k, column, hn::Lt(column.rho, hn::Zero(kLanes)));
-  const auto higher = hn::And(column.valid, hn::Gt(column.above, set(kHigher)));
+HWY_INLINE Found passObjects(const FollowedRow& row, std::size_t k, const RowPart& part) {
+  row.passed->obstacles = static_cast<std::uint8_t>(row.passed->obstacles | bitsOf(part.valid, k));
+  lowerLimit(row, k, part, hn::Lt(part.rho, hn::Zero(kLanes)));
+  const auto higher = hn::And(part.valid, hn::Gt(part.above, set(kHigher)));
   return {0, 0, 0, 0, bitsOf(higher, k)};
 }
 
 /// What is found of a part of a row, all of whose returns are on the ground.
-HWY_INLINE Found passGround(const FollowedRow& row, std::size_t k, const Column& column, Mask& reached) {
-  reached = hn::And(column.valid, hn::Ge(column.way, set(kAdvance)));
-  lowerLimit(row, k, column, column.valid);
-  const std::uint8_t ground = bitsOf(column.valid, k), reached_bits = bitsOf(reached, k);
+HWY_INLINE Found passGround(const FollowedRow& row, std::size_t k, const RowPart& part, Mask& reached) {
+  reached = hn::And(part.valid, hn::Ge(part.way, set(kAdvance)));
+  lowerLimit(row, k, part, part.valid);
+  const std::uint8_t ground = bitsOf(part.valid, k), reached_bits = bitsOf(reached, k);
   row.passed->obstacles = static_cast<std::uint8_t>(row.passed->obstacles & ~reached_bits);
   return {ground, reached_bits, ground, ground, 0};
 }
@@ -234,12 +234,12 @@ HWY_INLINE Mask foundByMap(const Mapped& map, const Above& above, Mask flat, Mas
 }
 
 /// Ground that continues the column's.
-HWY_INLINE Mask foundByColumn(const Column& column, const Mapped& map, const Above& above, Mask flat, Mask obstacle,
+HWY_INLINE Mask foundByColumn(const RowPart& part, const Mapped& map, const Above& above, Mask flat, Mask obstacle,
                               Floats steepest) {
-  const Mask first = column.first;
-  const Mask smooth = hn::AndNot(above.surface, hn::And(hn::And(flat, above.seen), goesOn(above, column.slope)));
-  const Mask fits_map = hn::Lt(map.above, mostAboveMap(map, column.rho, smooth));
-  const auto distance = column.distance, near = hn::Min(distance, set(kFirstMost)), off = hn::Abs(column.above);
+  const Mask first = part.first;
+  const Mask smooth = hn::AndNot(above.surface, hn::And(hn::And(flat, above.seen), goesOn(above, part.slope)));
+  const Mask fits_map = hn::Lt(map.above, mostAboveMap(map, part.rho, smooth));
+  const auto distance = part.distance, near = hn::Min(distance, set(kFirstMost)), off = hn::Abs(part.above);
   // At its height.
   const auto at_column =
       select(first, grown(kFirst, kFirstGrowth, near),
@@ -248,17 +248,17 @@ HWY_INLINE Mask foundByColumn(const Column& column, const Mapped& map, const Abo
   const auto level = select(first, grown(kFirst, kFirstLevelGrowth, near),
                             hn::Add(set(kLevel), hn::Min(hn::Mul(set(kLevelGrowth), distance), set(kLevelMost))));
   const auto flat_free = hn::AndNot(obstacle, flat);
-  continued = hn::Or(continued, hn::And(hn::And(flat_free, goesOn(above, column.slope)), hn::Lt(off, level)));
+  continued = hn::Or(continued, hn::And(hn::And(flat_free, goesOn(above, part.slope)), hn::Lt(off, level)));
   // Where the ground changes its slope: beyond, it has that slope.
-  const auto here = hn::Div(column.from_ground, hn::Max(column.way, set(0.5F)));
+  const auto here = hn::Div(part.from_ground, hn::Max(part.way, set(0.5F)));
   const auto possible = hn::AndNot(first, hn::Lt(hn::Abs(here), steepest));
   const auto bend = hn::Add(set(kBend), hn::Div(set(kBendGrowth), hn::Max(above.step, set(0.5F))));
   continued = hn::Or(continued, hn::And(hn::And(hn::And(flat_free, above.seen), possible),
                                         hn::Lt(hn::Abs(hn::Sub(above.slope, here)), bend)));
   // Downwards, where no object can be.
   const auto lowest = hn::Sub(set(-kStepDown), hn::Mul(steepest, distance));
-  continued = hn::Or(continued, hn::And(hn::And(hn::AndNot(above.nearer, flat), hn::Lt(column.above, hn::Zero(kLanes))),
-                                        hn::Gt(column.from_ground, lowest)));
+  continued = hn::Or(continued, hn::And(hn::And(hn::AndNot(above.nearer, flat), hn::Lt(part.above, hn::Zero(kLanes))),
+                                        hn::Gt(part.from_ground, lowest)));
   const auto found = hn::And(continued, hn::Or(hn::Ge(map.slack, set(kKnown)), fits_map));
   // Beyond objects.
   const auto on_line =
@@ -267,36 +267,36 @@ HWY_INLINE Mask foundByColumn(const Column& column, const Mapped& map, const Abo
 }
 
 /// What is found of any part of a row.
-HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const Column& column, const Mapped& map,
+HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const RowPart& part, const Mapped& map,
                             Floats steepest, Mask& reached) {
-  const Floats rho = column.rho, height = column.height, distance = column.distance;
-  const Mask valid = column.valid;
+  const Floats rho = part.rho, height = part.height, distance = part.distance;
+  const Mask valid = part.valid;
   const Above above = lookUp(row, k, rho, height, steepest);
-  const auto off_map = hn::Abs(map.above), off_column = hn::Abs(column.above);
+  const auto off_map = hn::Abs(map.above), off_column = hn::Abs(part.above);
   const auto flat = hn::AndNot(above.steep, hn::Or(hn::Not(above.seen), hn::Lt(hn::Abs(above.slope), steepest)));
   const auto agrees = hn::Lt(off_column, grown(kAgrees, kAgreesGrowth, distance));
   const auto sure = hn::And(hn::Lt(map.slack, set(kSure)), hn::Lt(off_map, set(kSure)));
 
   auto found = foundByMap(map, above, flat, hn::Or(agrees, sure));
   if (!hn::AllFalse(kLanes, hn::AndNot(found, valid)))
-    found = hn::Or(found, foundByColumn(column, map, above, flat, lanesOf(row.before->obstacles, k), steepest));
-  found = hn::And(found, hn::And(valid, hn::Le(height, hn::Add(column.limit, set(kStepUp)))));
-  lowerLimit(row, k, column, found);
+    found = hn::Or(found, foundByColumn(part, map, above, flat, lanesOf(row.before->obstacles, k), steepest));
+  found = hn::And(found, hn::And(valid, hn::Le(height, hn::Add(part.limit, set(kStepUp)))));
+  lowerLimit(row, k, part, found);
 
   // But no ground: walls above their feet, rough surfaces where ground is unsure.
-  const auto foot = areWhereExpected(column, map);
+  const auto foot = areWhereExpected(part, map);
   found = hn::AndNot(hn::AndNot(foot, above.wall), found);
   const auto unsure = hn::AndNot(hn::And(sure, agrees), found);
   if (!hn::AllFalse(kLanes, unsure)) found = hn::AndNot(hn::And(unsure, isRough(row, k, rho, height)), found);
 
-  reached = hn::And(found, hn::Ge(column.way, set(kAdvance)));
-  const auto object = hn::And(hn::AndNot(found, areObstacles(column, above)), valid);
-  const auto below = hn::And(hn::And(hn::Lt(column.above, set(-kNearBelow)), hn::Gt(column.above, set(-kReflection))),
+  reached = hn::And(found, hn::Ge(part.way, set(kAdvance)));
+  const auto object = hn::And(hn::AndNot(found, areObstacles(part, above)), valid);
+  const auto below = hn::And(hn::And(hn::Lt(part.above, set(-kNearBelow)), hn::Gt(part.above, set(-kReflection))),
                              hn::And(hn::AndNot(hn::Or(found, object), valid),
                                      hn::Or(hn::Ge(map.slack, set(kKnown)), hn::Lt(map.above, hn::Zero(kLanes)))));
   const auto confirmed = hn::Lt(off_column, grown(kLevel, kLevelGrowth, distance));
   const auto known = hn::And(hn::Lt(map.slack, set(kWellKnown)), hn::Lt(off_map, set(kKnownHeight)));
-  const auto higher = hn::And(hn::AndNot(found, valid), hn::Gt(column.above, set(kHigher)));
+  const auto higher = hn::And(hn::AndNot(found, valid), hn::Gt(part.above, set(kHigher)));
   const std::uint8_t reached_bits = bitsOf(reached, k);
   row.passed->obstacles = static_cast<std::uint8_t>((row.passed->obstacles & ~reached_bits) | bitsOf(object, k));
   return {bitsOf(hn::Or(found, below), k), reached_bits, bitsOf(confirmed, k), bitsOf(known, k), bitsOf(higher, k)};
@@ -317,38 +317,38 @@ HWY_INLINE Found followRow(const FollowedRow& row, Floats steepest) {
   Passed& passed = *row.passed;
   passed.followed = before.followed;
   passed.obstacles = before.obstacles;
-  Column columns[kParts];
+  RowPart parts[kParts];
   Mapped maps[kParts];
   Mask reached[kParts];  // unless all are objects
   bool are_objects = true;
   for (std::size_t i = 0; i < kParts; ++i) {
-    const Column column = columns[i] = columnOf(row, i * kStep, steepest);
-    are_objects = are_objects && hn::AllFalse(kLanes, hn::AndNot(areTooHigh(column), column.valid));
+    const RowPart part = parts[i] = partOf(row, i * kStep, steepest);
+    are_objects = are_objects && hn::AllFalse(kLanes, hn::AndNot(areTooHigh(part), part.valid));
   }
   bool are_ground = false;
   if (!are_objects) {
     are_objects = are_ground = true;
     for (std::size_t i = 0; i < kParts; ++i) {
-      const Column& column = columns[i];
-      const Mapped map = maps[i] = lookDown(*row.sector, column.rho, column.height, column.valid);
-      const auto too_high = areTooHigh(column);
+      const RowPart& part = parts[i];
+      const Mapped map = maps[i] = lookDown(*row.sector, part.rho, part.height, part.valid);
+      const auto too_high = areTooHigh(part);
       are_objects =
-          are_objects && hn::AllFalse(kLanes, hn::AndNot(hn::Or(too_high, areAboveMap(column, map)), column.valid));
-      are_ground = are_ground &&
-                   hn::AllFalse(kLanes, hn::AndNot(hn::AndNot(too_high, areWhereExpected(column, map)), column.valid));
+          are_objects && hn::AllFalse(kLanes, hn::AndNot(hn::Or(too_high, areAboveMap(part, map)), part.valid));
+      are_ground =
+          are_ground && hn::AllFalse(kLanes, hn::AndNot(hn::AndNot(too_high, areWhereExpected(part, map)), part.valid));
     }
   }
   for (std::size_t i = 0; i < kParts; ++i) {
     const std::size_t k = i * kStep;
-    add(are_objects  ? passObjects(row, k, columns[i])
-        : are_ground ? passGround(row, k, columns[i], reached[i])
-                     : followPart(row, k, columns[i], maps[i], steepest, reached[i]),
+    add(are_objects  ? passObjects(row, k, parts[i])
+        : are_ground ? passGround(row, k, parts[i], reached[i])
+                     : followPart(row, k, parts[i], maps[i], steepest, reached[i]),
         found);
   }
   if (found.reached != 0) {
     passed.followed = row.number;
     for (std::size_t i = 0; i < kParts; ++i)
-      advance(row, i * kStep, reached[i], columns[i].rho, columns[i].height, steepest);
+      advance(row, i * kStep, reached[i], parts[i].rho, parts[i].height, steepest);
   }
   return found;
 }
