@@ -37,7 +37,8 @@ inline bool isReturn(float x, float y, float z) {
 /// it is made of.
 class CellSource {
  public:
-  /// Coordinates (metres) and source indices of consecutive cells of one laser.
+  /// Coordinates and source indices of consecutive cells of one laser: arrays that overlap neither each other nor what
+  /// the cells are read from.
   struct Destination {
     float* x;                     ///< metres
     float* y;                     ///< the same
@@ -64,7 +65,7 @@ class CellSource {
   }
 
  private:
-  // Destinations do not overlap with what the cells are read from: compilers make vectors of this loop.
+  // Without overlaps, compilers vectorize this loop.
   template <typename Cells>
   static void readEach(Cells& cells, std::size_t laser, std::size_t first, std::size_t count, float* __restrict x,
                        float* __restrict y, float* __restrict z, std::uint32_t* __restrict source_index) {

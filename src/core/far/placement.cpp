@@ -192,7 +192,7 @@ class Placement {
     return false;
   }
 
-  /// The bin of a return whose azimuth is near that of a bin of the image; -1 if it is not.
+  /// The bin of a return within 0.05 radians of the expected one, perhaps outside the image; -1 if it is further off.
   std::int64_t binBeside(std::int64_t expected, std::size_t i) const {
     constexpr float kSmall = 0.05F;  // tangent, of which two terms of the series give the angle within 1e-7 radians
     if (expected < 0 || expected >= bins()) return -1;

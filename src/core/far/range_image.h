@@ -146,7 +146,7 @@ struct RangeImage {
   Tolerance tolerance;
   FarRange range;
   float deviation = 0;       ///< bins between that of a return and that of its azimuth, at most
-  float deviation_sine = 0;  ///< of that angle
+  float deviation_sine = 0;  ///< sine of as many bins
   float reach = 0;
   float slope_reach = 0;   ///< the same where heights are measured from the tilted horizon
   std::size_t steps = 0;   ///< bins of a turn

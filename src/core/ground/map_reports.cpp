@@ -38,12 +38,14 @@ constexpr BinFloats kBinFloats{};
 constexpr BinInts kBinInts{};
 
 // Least loss of objects and of ground in the tables of benchmarks/suite.sh ground ground_real.
-constexpr float kAlong = 0.05F;         // metres per metre, by which the ground may rise unseen between two returns
-constexpr float kBeyond = 0.1F;         // metres per metre, the same beyond the last one
-constexpr float kBeyondStart = 0.02F;   // metres, the same
-constexpr float kMaxBeyond = 1.5F;      // metres
-constexpr float kStep = 0.25F;          // metres; higher ones are no ground, even if they were found to be
-constexpr std::size_t kRowsPerRay = 4;  // rows, of which a block has one's rays
+constexpr float kAlong = 0.05F;        // metres per metre, by which the ground may rise unseen between two returns
+constexpr float kBeyond = 0.1F;        // metres per metre, the same beyond the last one
+constexpr float kBeyondStart = 0.02F;  // metres, the same
+constexpr float kMaxBeyond = 1.5F;     // metres
+constexpr float kStep = 0.25F;         // metres; higher ones are no ground, even if they were found to be
+/// A block uses every fifth row's ray: odd, so that all rows of staggered lasers have their turns. More: faster, but
+/// ground that rays disprove stays longer.
+constexpr std::size_t kRowsPerRay = 5;
 constexpr float kTrendGain = 0.3F;
 constexpr float kMaxTrend = 0.005F;     // metres per metre of distance
 constexpr float kMarginSame = 0.01F;    // metres

@@ -37,13 +37,14 @@ struct MapReports {
         is_last;  ///< element s + 1: 1 if no stretch lies beyond stretch s, else 0; element 0: unused
   };
   Stretches stretches;
-  std::uint32_t block_number = 0;     ///< from begin () on
-  std::vector<std::uint32_t> latest;  ///< of each row that has reached ground: 1 + its outermost stretch, or 0
+  std::uint32_t block_number = 0;  ///< blocks entered since begin ()
+  /// By position in the order, of rows that have reached ground: 1 + the outermost stretch up to there, or 0.
+  std::vector<std::uint32_t> latest;
 
   /// Allocates only if there are more lasers than ever before.
   void begin(std::size_t lasers);
-  /// Enters what the latest column of each row has shown into the map; then, beyond the last ground, that it is
-  /// expected to go on.
+  /// Erases the map's ground above the rays of some rows; enters what the latest column of each row has shown; then,
+  /// beyond the last ground, that it is expected to go on.
   void enter(const Shown& shown, GroundMap::Sector* sectors);
 };
 
