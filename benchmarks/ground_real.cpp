@@ -50,15 +50,9 @@ Filtered filterCloud(const Cloud& cloud, lisco::GroundParameters parameters) {
   Filtered filtered{std::vector<std::uint8_t>(cloud.size()), std::numeric_limits<double>::infinity()};
   const pcl::PointXYZ* const points = cloud.points.data();
   const std::size_t width = cloud.width;
-  const auto cells = [points, width](std::size_t laser, std::size_t first, std::size_t count,
-                                     const lisco::CellSource::Destination& to) {
-    const pcl::PointXYZ* const from = points + laser * width + first;
-    for (std::size_t i = 0; i < count; ++i) {
-      to.x[i] = from[i].x;
-      to.y[i] = from[i].y;
-      to.z[i] = from[i].z;
-      to.source_index[i] = 0;
-    }
+  const auto cells = [points, width](std::size_t laser, std::size_t column) {
+    const pcl::PointXYZ& point = points[laser * width + column];
+    return lisco::Return{point.x, point.y, point.z, 0};
   };
   lisco::GroundFilter filter;
   for (int run = 0; run < kRuns; ++run) {
