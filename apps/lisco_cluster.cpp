@@ -81,8 +81,8 @@ bool parse(int argc, char** argv, Options& options) {
      "folder for the results; with several inputs, a folder in it for each; of a recording, a folder in it for each "
      "message or rotation, of its number and time; then DIR/view.html shows them all as a timeline (up to 64 MB)")
     ("bag", pathOption("FILE.mcap", "--bag", options.bag),
-     "write the labelled clouds (sensor_msgs/PointCloud2) and boxes (visualization_msgs/MarkerArray) as a recording of "
-     "ROS 2; scans without a time are 0.1 s apart")
+     "write the labelled clouds (sensor_msgs/PointCloud2) and oriented boxes (visualization_msgs/MarkerArray) as a "
+     "recording of ROS 2; scans without a time are 0.1 s apart")
     ("write", po::value<std::string>(&write)->value_name("A,B,..."),
      "the results to write (default labels,table,pictures,view): labels (labels.pcd: the input's fields, `label`, the "
      "cluster's id or 0, and, if --ground leaves out any, `ground`, 1 for its returns; an input's own become "
@@ -179,8 +179,9 @@ LabelledScan labelledScanOf(const ClusteredScan& scan, std::int64_t time_ns, std
   labelled.columns = cloud.width;
   for (const pcl::PointXYZ& point : cloud) labelled.points.push_back({point.x, point.y, point.z});
   labelled.labels = labelsOf(scan.clusters, cloud.size());
+  if (scan.isGroundKnown()) labelled.ground = groundOf(scan);
   for (const lisco::ClusterFeatures& features : scan.features)
-    labelled.boxes.push_back({static_cast<std::uint32_t>(labelled.boxes.size() + 1), features.min, features.max});
+    labelled.boxes.push_back({static_cast<std::uint32_t>(labelled.boxes.size() + 1), features.box});
   return labelled;
 }
 

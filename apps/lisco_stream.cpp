@@ -132,11 +132,12 @@ bool parse(int argc, char** argv, Options& options) {
      "possible)")
     ("output,o", pathOption("DIR", "--output", options.output),
      "folder for rotation_000001.pcd and so on: each rotation (or window) as an organized cloud of x y z intensity "
-     "label, where the label is the cluster's id, 0 for none; in mode endless, written once all its clusters have been "
-     "delivered. Removes those of an earlier run")
+     "label ground, where the label is the cluster's id, 0 for none, and ground is 1 for returns left out as ground (no "
+     "such field with --ground none); in mode endless, written once all its clusters have been delivered. Removes those "
+     "of an earlier run")
     ("bag", pathOption("FILE.mcap", "--bag", options.bag),
-     "write each rotation or window as a recording of ROS 2: the labelled cloud (sensor_msgs/PointCloud2) and boxes "
-     "(visualization_msgs/MarkerArray)")
+     "write each rotation or window as a recording of ROS 2: the labelled cloud (sensor_msgs/PointCloud2) and oriented "
+     "boxes (visualization_msgs/MarkerArray)")
     ("json", po::bool_switch(&options.json), "print JSON lines instead of text")
     ("http", textOption("[ADDRESS:]PORT", [&](const std::string& text) { options.http = httpAddressOf(text); }),
      "serve a page that shows the stream to any number of browsers, at http://ADDRESS:PORT/ (default ADDRESS "
@@ -336,7 +337,7 @@ void takePackets(const Input& input, Decoder& decoder, OtherSensors& others, Str
 }
 
 /// A rotation or window as a recording has it: a row for each laser.
-LabelledScan labelledScanOf(const Turn& turn, const std::vector<FoundCluster>& clusters) {
+LabelledScan labelledScanOf(const Turn& turn, const std::vector<FoundCluster>& clusters, bool has_ground) {
   LabelledScan scan;
   scan.time_ns = 1000 * turn.time_us;
   scan.frame = "lidar";
@@ -347,9 +348,9 @@ LabelledScan labelledScanOf(const Turn& turn, const std::vector<FoundCluster>& c
       const std::size_t cell = column * turn.lasers + row;
       scan.points.push_back({turn.cells[cell].x, turn.cells[cell].y, turn.cells[cell].z});
       scan.labels.push_back(turn.labels[cell]);
+      if (has_ground) scan.ground.push_back(turn.isGround(cell) ? 1 : 0);
     }
-  for (const FoundCluster& cluster : clusters)
-    scan.boxes.push_back({cluster.id, cluster.features.min, cluster.features.max});
+  for (const FoundCluster& cluster : clusters) scan.boxes.push_back({cluster.id, cluster.features.box});
   return scan;
 }
 
@@ -366,15 +367,16 @@ int run(const Options& options) {
   Report report(options.json ? Report::Format::kJson : Report::Format::kText);
   const Input input = open(options, report);
   Decoder& decoder = *input.decoder;
+  const bool has_ground = options.stream.ground.method != GroundChoice::Method::kNone;
   if (!options.output.empty()) {
-    clouds.emplace(options.output);
+    clouds.emplace(options.output, has_ground);
     report.writeTo(*clouds);
   }
   std::optional<ResultBag> bag;
   if (!options.bag.empty()) {
     bag.emplace(options.bag, "lisco_stream");
-    report.callWith([&bag](const Turn& turn, const std::vector<FoundCluster>& clusters) {
-      bag->write(labelledScanOf(turn, clusters));
+    report.callWith([&bag, has_ground](const Turn& turn, const std::vector<FoundCluster>& clusters) {
+      bag->write(labelledScanOf(turn, clusters, has_ground));
     });
   }
   std::unique_ptr<LiveView> live;

@@ -111,8 +111,8 @@ TEST_P(SimulatedCars, HaveTheirYawAndSizes) {
 // Columns 0.35 degrees apart are 12 cm apart at 20 m, and up to half a metre on a side seen at 15 degrees: up to so
 // much of the car is not hit at all.
 INSTANTIATE_TEST_SUITE_P(OfSensors, SimulatedCars,
-                         testing::Values(SensorCase{"hdl64e", 2250, 0.12, 3}, SensorCase{"vls128", 0, 0.12, 2},
-                                         SensorCase{"os1-128", 2048, 0.12, 2}, SensorCase{"hdl64e", 0, 0.36, 8},
+                         testing::Values(SensorCase{"hdl64e", 2250, 0.1, 0}, SensorCase{"vls128", 0, 0.1, 0},
+                                         SensorCase{"os1-128", 2048, 0.1, 0}, SensorCase{"hdl64e", 0, 0.36, 8},
                                          SensorCase{"os1-128", 0, 0.36, 12}),
                          [](const auto& of) {
                            std::string name = of.param.name;

@@ -35,6 +35,9 @@ struct ClusteredScan {
   /// The same in a row for each ring, as it was clustered, with the same clusters in the same order; nullptr if that is
   /// the cloud itself.
   std::shared_ptr<const ClusteredScan> arranged;
+
+  /// Whether ground has been looked for.
+  bool isGroundKnown() const { return ground.method != GroundChoice::Method::kNone && returns.is_rotating; }
 };
 
 /// Per point of a cloud: 0 = in no cluster, otherwise 1 + the index of its cluster.
@@ -45,6 +48,13 @@ inline std::vector<std::uint32_t> labelsOf(const Clusters& clusters, std::size_t
     for (const auto index : clusters[i].indices)
       labels[static_cast<std::size_t>(index)] = static_cast<std::uint32_t>(i + 1);
   return labels;
+}
+
+/// Per point of a scan's cloud: 1 = left out as ground, otherwise 0.
+inline std::vector<std::uint8_t> groundOf(const ClusteredScan& scan) {
+  std::vector<std::uint8_t> ground(scan.cloud->size(), 0);
+  for (const auto index : scan.returns.ground) ground[static_cast<std::size_t>(index)] = 1;
+  return ground;
 }
 
 }  // namespace lisco_apps

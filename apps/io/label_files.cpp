@@ -17,11 +17,6 @@ namespace {
 
 constexpr std::uint32_t kOtherGround = 49;  ///< a class of SemanticKITTI
 
-/// Whether ground has been looked for.
-bool isGroundKnown(const ClusteredScan& scan) {
-  return scan.ground.method != GroundChoice::Method::kNone && scan.returns.is_rotating;
-}
-
 /// Makes way for a field that is added: fields of this name become `input_NAME`, numbered if there is such a one.
 /// \param inputs number of fields that are the input's
 void renameInputFields(const std::string& name, std::size_t inputs, std::vector<pcl::PCLPointField>& fields) {
@@ -41,16 +36,12 @@ void renameInputFields(const std::string& name, std::size_t inputs, std::vector<
 
 void writeLabelledPcd(const ClusteredScan& scan, const fs::path& file) {
   std::vector<NewField> added{{"label", pcl::PCLPointField::UINT32}};
-  if (isGroundKnown(scan)) added.push_back({"ground", pcl::PCLPointField::UINT8});
+  if (scan.isGroundKnown()) added.push_back({"ground", pcl::PCLPointField::UINT8});
   pcl::PCLPointCloud2 output = inputFieldsOf(scan, added);
   const std::size_t inputs = output.fields.size() - added.size();
   for (const char* const name : {"label", "ground"}) renameInputFields(name, inputs, output.fields);
   setField(output.fields[inputs], labelsOf(scan.clusters, scan.cloud->size()), output);
-  if (isGroundKnown(scan)) {
-    std::vector<std::uint8_t> ground(scan.cloud->size(), 0);
-    for (const auto index : scan.returns.ground) ground[static_cast<std::size_t>(index)] = 1;
-    setField(output.fields[inputs + 1], ground, output);
-  }
+  if (scan.isGroundKnown()) setField(output.fields[inputs + 1], groundOf(scan), output);
   writePcd(output, scan, file);
 }
 

@@ -186,18 +186,18 @@ std::vector<fs::path> filesIn(const fs::path& folder, const std::string& prefix,
   return files;
 }
 
-std::string pcdHeader(const std::string& comment, const std::string& fields, const std::string& types,
-                      std::size_t columns, std::size_t rows) {
-  const auto per_field = [&](char value) {
-    std::string line = types;
-    std::replace_if(
-        line.begin(), line.end(), [](char c) { return c != ' '; }, value);
-    return line;
-  };
-  return comment + "\n# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS " + fields + "\nSIZE " +
-         per_field('4') + "\nTYPE " + types + "\nCOUNT " + per_field('1') + "\nWIDTH " + std::to_string(columns) +
-         "\nHEIGHT " + std::to_string(rows) + "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(columns * rows) +
-         "\nDATA binary\n";
+std::string pcdHeader(const std::string& comment, const std::vector<PcdField>& fields, std::size_t columns,
+                      std::size_t rows) {
+  std::string names = "\nFIELDS", sizes = "\nSIZE", types = "\nTYPE", counts = "\nCOUNT";
+  for (const PcdField& field : fields) {
+    names += std::string(" ") + field.name;
+    sizes += " " + std::to_string(field.bytes);
+    types += std::string(" ") + field.type;
+    counts += " 1";
+  }
+  return comment + "\n# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7" + names + sizes + types + counts +
+         "\nWIDTH " + std::to_string(columns) + "\nHEIGHT " + std::to_string(rows) +
+         "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(columns * rows) + "\nDATA binary\n";
 }
 
 }  // namespace lisco_apps

@@ -81,10 +81,16 @@ void writeOwnFolder(
 /// \throws fs::filesystem_error if it cannot be read
 std::vector<fs::path> filesIn(const fs::path& folder, const std::string& prefix, const std::string& ending);
 
-/// The header of an organized binary PCD whose fields hold one value of four bytes each.
+/// A field of a PCD that holds one value.
+struct PcdField {
+  const char* name;
+  char type;  ///< F, U or I
+  int bytes;
+};
+
+/// The header of an organized binary PCD.
 /// \param comment first line, begins with '#'
-/// \param fields, types such as "x y z label" and "F F F U"
-std::string pcdHeader(const std::string& comment, const std::string& fields, const std::string& types,
-                      std::size_t columns, std::size_t rows);
+std::string pcdHeader(const std::string& comment, const std::vector<PcdField>& fields, std::size_t columns,
+                      std::size_t rows);
 
 }  // namespace lisco_apps

@@ -3,6 +3,7 @@
 #include "recordings/result_bag.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "io/little_endian.h"
 #include "recordings/cdr_text.h"
@@ -14,28 +15,33 @@ namespace {
 constexpr std::size_t kPoints = 0, kBoxes = 1;  // channels
 
 std::string pointsOf(const LabelledScan& scan) {
-  constexpr std::uint8_t kFloat32 = 7, kUint32 = 6;  // of sensor_msgs/PointField
-  constexpr std::uint32_t kStep = 16;
+  constexpr std::uint8_t kFloat32 = 7, kUint32 = 6, kUint8 = 2;  // of sensor_msgs/PointField
+  const bool has_ground = !scan.ground.empty();
+  const std::uint32_t step = has_ground ? 17 : 16;  // bytes
   CdrText message;
   message.header(scan.time_ns, scan.frame);
   message.number(static_cast<std::uint32_t>(scan.rows));
   message.number(static_cast<std::uint32_t>(scan.columns));
-  message.number(std::uint32_t{4});
-  std::uint32_t offset = 0;
-  for (const char* const name : {"x", "y", "z", "label"}) {
+  message.number(std::uint32_t{has_ground ? 5U : 4U});
+  const auto field = [&](const char* name, std::uint32_t offset, std::uint8_t type) {
     message.text(name);
     message.number(offset);
-    message.number(offset < 12 ? kFloat32 : kUint32);
+    message.number(type);
     message.number(std::uint32_t{1});
-    offset += 4;
-  }
+  };
+  field("x", 0, kFloat32);
+  field("y", 4, kFloat32);
+  field("z", 8, kFloat32);
+  field("label", 12, kUint32);
+  if (has_ground) field("ground", 16, kUint8);
   message.number(std::uint8_t{0});  // little-endian
-  message.number(kStep);
-  message.number(static_cast<std::uint32_t>(kStep * scan.columns));
-  message.number(static_cast<std::uint32_t>(kStep * scan.points.size()));
+  message.number(step);
+  message.number(static_cast<std::uint32_t>(step * scan.columns));
+  message.number(static_cast<std::uint32_t>(step * scan.points.size()));
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     for (const float value : scan.points[i]) putNumber(message.bytes(), value);
     putNumber(message.bytes(), scan.labels[i]);
+    if (has_ground) putNumber(message.bytes(), scan.ground[i]);
   }
   message.number(std::uint8_t{0});  // may hold NaN
   return message.done();
@@ -55,20 +61,20 @@ std::array<float, 3> colorOf(std::uint32_t id) {
 }
 
 void putMarker(CdrText& message, const LabelledScan& scan, std::int32_t id, std::int32_t action,
-               const LabelledScan::Box& box) {
+               const LabelledScan::Box& marked) {
   constexpr std::int32_t kCube = 1;
   message.header(scan.time_ns, scan.frame);
   message.text("clusters");
   message.number(id);
   message.number(kCube);
   message.number(action);
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    message.number((static_cast<double>(box.min[axis]) + static_cast<double>(box.max[axis])) / 2);
-  for (const double value : {0., 0., 0., 1.}) message.number(value);  // orientation
-  constexpr double kMinEdge = 0.01;                                   // metres: a flat cluster is shown, too
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    message.number(std::max(kMinEdge, static_cast<double>(box.max[axis]) - static_cast<double>(box.min[axis])));
-  for (const float value : colorOf(box.id)) message.number(value);
+  const lisco::OrientedBox& box = marked.box;
+  for (const double value : box.center) message.number(value);
+  for (const double value : {0., 0., std::sin(box.yaw / 2), std::cos(box.yaw / 2)})
+    message.number(value);           // quaternion
+  constexpr double kMinEdge = 0.01;  // metres: a flat cluster is shown, too
+  for (const double edge : {box.length, box.width, box.height}) message.number(std::max(kMinEdge, edge));
+  for (const float value : colorOf(marked.id)) message.number(value);
   message.number(0.4F);              // opacity
   message.time(0);                   // lives until it is replaced
   message.number(std::uint8_t{0});   // frame_locked

@@ -51,7 +51,8 @@ std::string objectsOf(const World& world) {
 
 std::string pcdOf(const SimulatedScan& scan, const std::string& comment) {
   static_assert(sizeof(SimulatedCell) == 16, "cells are written as they are");
-  std::string content = pcdHeader(comment, "x y z label", "F F F U", scan.steps, scan.lasers);
+  std::string content =
+      pcdHeader(comment, {{"x", 'F', 4}, {"y", 'F', 4}, {"z", 'F', 4}, {"label", 'U', 4}}, scan.steps, scan.lasers);
   content.append(reinterpret_cast<const char*>(scan.cells.data()), scan.cells.size() * sizeof(SimulatedCell));
   return content;
 }

@@ -34,6 +34,7 @@ struct Turn {
   bool is_window = false;
 
   std::size_t columns() const { return lasers == 0 ? 0 : cells.size() / lasers; }
+  bool isGround(std::size_t cell) const { return uses[cell] == CellUse::kGround; }
 
   /// Starts an empty turn; keeps its memory.
   void begin(std::uint64_t new_number, std::size_t new_lasers, double new_azimuth) {

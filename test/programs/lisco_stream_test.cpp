@@ -156,6 +156,8 @@ class LiscoStream : public ProgramTest {
       for (const std::uint32_t label : pcd.field("label")) ++sizes[label];
       sizes.erase(0);
       EXPECT_EQ(sizes.size(), line["clusters"].size());
+      const std::vector<std::uint32_t> ground = pcd.field("ground");  // empty with --ground none
+      EXPECT_EQ(std::accumulate(ground.begin(), ground.end(), std::size_t{0}), line["ground"].get<std::size_t>());
       for (std::size_t k = 0; k < line["clusters"].size(); ++k) {
         const Json& cluster = line["clusters"][k];
         EXPECT_EQ(cluster["id"], k + 1);
@@ -268,7 +270,9 @@ TEST_P(StreamOfCapture, GivesTheScansAndTheirClusters) {
     }
     EXPECT_EQ(unlike, 0U) << field;
   }
-  EXPECT_EQ(streamed.field("label"), pcdOf(textOf(folder_ / "batch/labels.pcd")).field("label"));
+  const Pcd batch = pcdOf(textOf(folder_ / "batch/labels.pcd"));
+  EXPECT_EQ(streamed.field("label"), batch.field("label"));
+  EXPECT_EQ(streamed.field("ground"), batch.field("ground"));
 }
 
 TEST_P(StreamOfCapture, LeavesOutTheGroundUnlessToldOtherwise) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // others.mjs write FOLDER: recordings of the same five clouds, in chunks without compression, by lz4 and zstd, and
 // without chunks. Each cloud is an unorganized PointCloud2 in firing order with fields in an unusual order.
-// others.mjs read FILE: prints the clusters in a recording of results: id, size, box; and a line for each cloud.
+// others.mjs read FILE: prints the clusters in a recording of results: id, size, ground returns of the cloud, oriented
+// box; and a line for each cloud.
 import fs from 'node:fs';
 import {McapWriter, McapIndexedReader} from '@mcap/core';
 import {parse} from '@foxglove/rosmsg';
@@ -111,22 +112,28 @@ async function read(path) {
       const sizes = new Map();
       const view = new DataView(value.data.buffer, value.data.byteOffset, value.data.byteLength);
       const at = value.fields.find((field) => field.name === 'label').offset;
+      const groundAt = value.fields.find((field) => field.name === 'ground').offset;
+      let ground = 0;
       for (let i = 0; i < value.width * value.height; ++i) {
+        ground += view.getUint8(i * value.point_step + groundAt);
         const label = view.getUint32(i * value.point_step + at, true);
         sizes.set(label, (sizes.get(label) ?? 0) + 1);
       }
-      points.set(message.logTime, sizes);
+      points.set(message.logTime, {sizes, ground});
       console.log(`# ${schema.name} ${value.header.frame_id} ${value.width * value.height} points`);
     } else {
       if (schema.name !== 'visualization_msgs/msg/MarkerArray') throw new Error(schema.name);
       if (value.markers[0].action !== 3) throw new Error('the markers of the last scan are not deleted');
       for (const marker of value.markers.slice(1)) {
         const {position, orientation} = marker.pose;
-        if (marker.type !== 1 || marker.action !== 0 || orientation.w !== 1 || !(marker.color.a > 0))
-          throw new Error('a marker that is no box');
-        const lo = ['x', 'y', 'z'].map((axis) => (position[axis] - marker.scale[axis] / 2).toFixed(3));
-        const hi = ['x', 'y', 'z'].map((axis) => (position[axis] + marker.scale[axis] / 2).toFixed(3));
-        console.log([marker.id, points.get(message.logTime).get(marker.id), ...lo, ...hi].join(' '));
+        if (marker.type !== 1 || marker.action !== 0 || orientation.x !== 0 || orientation.y !== 0 ||
+            Math.abs(Math.hypot(orientation.z, orientation.w) - 1) > 1e-9 || !(marker.color.a > 0))
+          throw new Error('a marker that is no upright box');
+        const {sizes, ground} = points.get(message.logTime);
+        const box = [...['x', 'y', 'z'].map((axis) => position[axis]),
+                     360 / Math.PI * Math.atan2(orientation.z, orientation.w),
+                     ...['x', 'y', 'z'].map((axis) => marker.scale[axis])];
+        console.log([marker.id, sizes.get(marker.id), ground, ...box.map((value) => value.toFixed(4))].join(' '));
       }
     }
   }
