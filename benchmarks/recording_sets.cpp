@@ -115,7 +115,10 @@ struct Mount {
   }
 };
 
-constexpr Mount kMounts[] = {{"vehicle", 2, 4, 30, 1.2, -0.4, 1.9}, {"UTM", 1, -2, 140, 512345.6, 5403210.4, 312.7}};
+/// The resolution of floats is 3 cm in UTM's x and in both of the British National Grid's, half a metre in UTM's y.
+constexpr Mount kMounts[] = {{"vehicle", 2, 4, 30, 1.2, -0.4, 1.9},
+                             {"UTM", 1, -2, 140, 512345.6, 5403210.4, 312.7},
+                             {"OSGB", 1, -2, 140, 512345.6, 403210.4, 312.7}};
 
 CloudPtr moved(const ComparedCloud& cloud, const Mount& mount, bool origin_known) {
   auto result = std::make_shared<ComparedCloud>(cloud);

@@ -32,8 +32,8 @@ const char* titleOf(int set);
 /// 1 organized: the rotating scans, a row per laser
 /// 2 ring and firing order: their returns, unorganized, laser by laser and firing by firing
 /// 3 shuffled, and filtered by PCL's VoxelGrid and a crop
-/// 4 moved: organized, ring and firing order in a tilted vehicle's frame and in UTM coordinates, with and without
-///   sensor_origin_
+/// 4 moved: organized, ring and firing order in a tilted vehicle's frame and in map coordinates (UTM and the
+///   British National Grid, OSGB), with and without sensor_origin_
 /// 5 deskewed: scans of a moving sensor in the frame of its first column, organized by firing and by ring (each ring's
 ///   returns in their azimuth bins, the next free one if it is taken), and unorganized; captures of more than a turn;
 ///   two returns per firing, interleaved

@@ -76,7 +76,7 @@ bool parse(int argc, char** argv, Options& options) {
       "  1  organized scans\n"
       "  2  unorganized in ring order and in firing order\n"
       "  3  shuffled, and voxel-filtered and cropped\n"
-      "  4  moved into a vehicle's frame and into UTM coordinates\n"
+      "  4  moved into a vehicle's frame and into map coordinates (UTM, OSGB)\n"
       "  5  of a moving sensor, deskewed; over one turn; dual returns\n"
       "  6  RGB-D, airborne, from several stations, worst cases\n"
       "Clusters are compared first, then the grid and Lisco run in turn; medians, milliseconds.\n\n"
