@@ -256,6 +256,7 @@ TEST(EndlessClusterer, RejectsWrongArguments) {
     turned.start_azimuth = azimuth;
     EXPECT_THROW(clusterer.begin(turned, ignore), std::invalid_argument) << azimuth;
   }
+  EXPECT_THROW(clusterer.begin(parameters, {}), std::invalid_argument);
   parameters.lasers = 1;
   clusterer.begin(parameters, ignore);
   EXPECT_THROW(clusterer.addColumn(cells, 1), std::logic_error);

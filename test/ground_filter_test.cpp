@@ -374,6 +374,15 @@ TEST(GroundFilter, RejectsBadCallsAndParameters) {
   const auto cell_at = [](std::size_t, std::size_t) { return lisco::kNoReturn; };
   std::uint8_t ground = 7;
   EXPECT_THROW(filter.filterScan(parameters, 1, 1, cell_at, &ground), std::invalid_argument);
+  for (const float slope : {10.1F, -1e30F, std::numeric_limits<float>::quiet_NaN()})
+    for (const std::size_t axis : {0, 1}) {
+      lisco::GroundParameters sloping, tilted;
+      sloping.slope[axis] = tilted.sensor.tilt[axis] = slope;
+      for (const lisco::GroundParameters& steep : {sloping, tilted}) {
+        EXPECT_THROW(filter.begin(steep, 4), std::invalid_argument) << slope;
+        EXPECT_THROW(estimateGroundPlane(1, 1, steep, lisco::CellSource(cell_at)), std::invalid_argument) << slope;
+      }
+    }
 }
 
 TEST(LabelGround, SortsUnorganizedPoints) {

@@ -61,6 +61,17 @@ TEST(PclClusterFeatures, DescribesEachCluster) {
   EXPECT_NEAR(slanting.box.yaw, M_PI / 4, 1e-5);
 }
 
+TEST(LiscoClusterFeatures, CountsTheNearestRangeFromTheSensor) {
+  auto cloud = twoWalls();
+  cloud->sensor_origin_ << 7, 0, 0, 0;
+  pcl::LiscoClusterFeatures<pcl::PointXYZI> estimation;
+  estimation.setInputCloud(cloud);
+  estimation.compute();
+  lisco::ClusterFeatures features;
+  ASSERT_TRUE(estimation.getFeatures(features));
+  EXPECT_DOUBLE_EQ(features.nearest_range, 3);
+}
+
 TEST(PclClusterFeatures, GivesBoxesAsMomentOfInertiaEstimationDoes) {
   const Cloud::Ptr cloud = twoWalls();
   auto indices = std::make_shared<pcl::Indices>();

@@ -167,6 +167,10 @@ TEST(Stream, RejectsWrongCalls) {
   clusterer.begin(parameters);
   EXPECT_THROW(clusterer.addColumn(cells, 2), std::invalid_argument);
   clusterer.addColumn(cells, 1);
+  const auto none = [](std::size_t, std::size_t) { return lisco::kNoReturn; };
+  for (const std::size_t columns : {lisco::ColumnClusterer::kMaxCells, ~std::size_t{0}})
+    EXPECT_THROW(clusterer.addColumns(columns, 1, none), std::invalid_argument);
+  clusterer.addColumns(2, 1, none);
   clusterer.update();
   EXPECT_EQ(clusterer.returnCount(), 1U);
 }

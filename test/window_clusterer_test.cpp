@@ -78,6 +78,10 @@ TEST(WindowClusterer, RejectsWrongCalls) {
   EXPECT_THROW(clusterer.addColumn(cells, 3), std::invalid_argument);
   EXPECT_TRUE(clusterer.addColumn(cells, 2));
   EXPECT_EQ(clusterer.subclusterCount(), 2U);
+  constexpr std::size_t kMany = std::size_t{1} << 30;
+  clusterer.begin({0.4F, kMany, kMany});
+  EXPECT_THROW(clusterer.addColumn(cells, 2), std::invalid_argument);
+  EXPECT_FALSE(clusterer.addColumn(cells, 1));
 }
 
 }  // namespace

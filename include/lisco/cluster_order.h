@@ -22,7 +22,7 @@ class LISCO_EXPORT ClusterOrder {
   ClusterOrder& operator=(const ClusterOrder&) = delete;
 
   /// Numbers the subclusters of min_size to max_size returns.
-  /// \param clusterer ColumnClusterer or WindowClusterer, after update ()
+  /// \param clusterer ColumnClusterer after update (), or WindowClusterer after a window has ended
   template <typename Clusterer>
   void assign(Clusterer& clusterer, std::size_t min_size, std::size_t max_size) {
     start(clusterer.subclusterCount());
@@ -37,7 +37,7 @@ class LISCO_EXPORT ClusterOrder {
 
   std::size_t count() const { return count_; }  ///< of clusters
   /// Of a subcluster, 0..subclusterCount()-1: 0 if it is the largest cluster and so on, kNoCluster if its size is not
-  /// accepted.
+  /// accepted. After assign ().
   std::int32_t labelOf(std::uint32_t subcluster) const { return label_of_[subcluster]; }
 
  private:

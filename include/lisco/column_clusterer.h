@@ -37,15 +37,15 @@ class LISCO_EXPORT ColumnClusterer {
   ColumnClusterer(const ColumnClusterer& other);             ///< a copy goes on from the same column
   ColumnClusterer& operator=(const ColumnClusterer& other);  ///< the same
 
-  /// Starts a new rotation and forgets the last one. After an exception other than std::logic_error and
-  /// std::invalid_argument (refused memory, a throwing callable), every other call either throws std::logic_error or
-  /// does nothing.
+  /// Starts a new rotation and forgets the last one. After an exception that is not listed at the function (refused
+  /// memory, a throwing callable), every other call either throws std::logic_error or does nothing.
   void begin(const Parameters& parameters);
 
   /// Event "reception of step s".
   /// \param cells cells[l] is what laser l measured; those that are no returns are skipped
   /// \param lasers number of cells, may differ from column to column; in any order, for speed the same in each column
-  /// \throws std::logic_error before begin(); std::invalid_argument if there are more cells than Parameters::lasers
+  /// \throws std::logic_error before begin(); std::invalid_argument if there are more cells than Parameters::lasers,
+  ///         or more than kMaxCells since begin()
   void addColumn(const Return* cells, std::size_t lasers);
 
   /// Adds several columns at once, read laser by laser as an organized cloud lies in memory. The result is that of
@@ -59,7 +59,7 @@ class LISCO_EXPORT ColumnClusterer {
     receive(columns, lasers, CellSource(cells));
   }
 
-  /// Event "all steps processed", or a look in between: brings the subclusters up to date with all columns added.
+  /// Event "all steps processed", or at any time before: brings the subclusters up to date with all columns added.
   void update();
 
   std::size_t subclusterCount() const;  ///< after update()
@@ -67,7 +67,8 @@ class LISCO_EXPORT ColumnClusterer {
   std::uint32_t sizeOf(std::uint32_t subcluster) const { return sizes()[subcluster]; }
   const std::uint32_t* sizes() const;  ///< of all subclusters; after update(), until the next call of another function
 
-  static constexpr std::uint32_t kNone = ~std::uint32_t{0};  ///< no subcluster
+  static constexpr std::size_t kMaxCells = (std::size_t{1} << 31) - 1;  ///< of a rotation
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};             ///< no subcluster
   /// The subcluster of what a laser measured in a column, kNone if that was no return; after update().
   /// \param column counted from begin()
   std::uint32_t subclusterAt(std::size_t laser, std::size_t column);
@@ -88,7 +89,7 @@ class LISCO_EXPORT ColumnClusterer {
     visitRuns(RunVisitor(visit), true);
   }
 
-  /// Threads that the columns of the last rotation are the work of, 1 if they were few.
+  /// Number of threads that share the columns of the last rotation; 1 if there are few columns.
   std::size_t threadCount() const;
 
   std::size_t returnCount() const;  ///< read so far; of all columns added, after update()

@@ -50,11 +50,11 @@ class LISCO_EXPORT EndlessClusterer {
   EndlessClusterer(const EndlessClusterer& other);             ///< a copy goes on from the same column
   EndlessClusterer& operator=(const EndlessClusterer& other);  ///< the same
 
-  /// Starts a new stream; of the last one, nothing more is delivered. After an exception other than std::logic_error
-  /// and std::invalid_argument (refused memory, a throwing callback), every other call either throws std::logic_error
-  /// or does nothing.
-  /// \throws std::invalid_argument if the stagger is not within 0..kMaxStagger, the origin is not finite, or the start
-  ///         azimuth is not within +-kMaxAzimuth; the stream before goes on then
+  /// Starts a new stream; of the last one, nothing more is delivered. After an exception that is not listed at the
+  /// function (refused memory, a throwing callback, std::length_error for more than 2^28 runs in an eighth of a turn),
+  /// every other call either throws std::logic_error or does nothing.
+  /// \throws std::invalid_argument if the stagger is not within 0..kMaxStagger, the origin is not finite, the start
+  ///         azimuth is not within +-kMaxAzimuth, or the callback is empty; the stream before goes on then
   void begin(const EndlessParameters& parameters, Callback callback);
 
   /// Takes the next column.

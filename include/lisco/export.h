@@ -12,8 +12,9 @@
 /// does not offer it to others, who may use another version.
 #if defined(LISCO_STATIC)
 #define LISCO_EXPORT
+#define LISCO_HIDDEN
 #else
 #define LISCO_EXPORT __attribute__((visibility("default")))
-#endif
 /// Not exported, though nested in a class that is.
 #define LISCO_HIDDEN __attribute__((visibility("hidden")))
+#endif

@@ -53,7 +53,8 @@ class LISCO_EXPORT GroundFilter {
 
   /// Starts anew and forgets all columns.
   /// \param lasers largest number of cells of a column
-  /// \throws std::invalid_argument if the sensor height is infinite, or max_slope is not within 1 to 60
+  /// \throws std::invalid_argument if the sensor height is infinite, max_slope is not within 1 to 60, or the slope or
+  ///         the sensor's tilt is not within -10 to 10
   void begin(const GroundParameters& parameters, std::size_t lasers);
 
   /// Adds a column, and visits those whose decisions are final, in their order.
@@ -119,6 +120,7 @@ LISCO_EXPORT GroundParameters estimateGround(std::size_t columns, std::size_t la
 
 /// The same for a known sensor.
 /// \param parameters those returned, but for the slope, and for the height if it is NaN
+/// \throws std::invalid_argument as GroundFilter::begin ()
 LISCO_EXPORT GroundParameters estimateGroundPlane(std::size_t columns, std::size_t lasers, GroundParameters parameters,
                                                   const CellSource& cells);
 

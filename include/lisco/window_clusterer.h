@@ -42,15 +42,16 @@ class LISCO_EXPORT WindowClusterer {
   WindowClusterer(const WindowClusterer& other);             ///< a copy goes on from the same column
   WindowClusterer& operator=(const WindowClusterer& other);  ///< the same
 
-  /// Starts a new stream and forgets the last one. After an exception other than std::logic_error and
-  /// std::invalid_argument, every other call either throws std::logic_error or does nothing.
+  /// Starts a new stream and forgets the last one. After an exception that is not listed at the function
+  /// (refused memory), every other call either throws std::logic_error or does nothing.
   /// \throws std::invalid_argument if the window is no multiple, 1 or more, of the hop
   void begin(const WindowParameters& parameters);
 
   /// Takes the next column.
   /// \param cells cells[l] is what laser l measured; those that are no returns are skipped
   /// \return whether a window ends with it. The first windows are shorter: all columns so far.
-  /// \throws std::logic_error before begin (), std::invalid_argument if there are more cells than lasers
+  /// \throws std::logic_error before begin (), std::invalid_argument if there are more cells than lasers,
+  ///         or 2^31 or more in W such columns
   bool addColumn(const Return* cells, std::size_t lasers);
 
   std::size_t columnCount() const;      ///< of the last window

@@ -70,6 +70,7 @@ class ColumnClusterer::Rotation {
   Parameters parameters_;
   Tolerance tolerance_;
   bool usable_ = false;       ///< begun, and left by no exception since
+  std::size_t cells_ = 0;     ///< received since begin ()
   DisjointSets subclusters_;  ///< of runs
   std::vector<Partition> partitions_;
   std::size_t partition_count_ = 0;        ///< in use; 0: not divided yet
@@ -132,7 +133,7 @@ void ColumnClusterer::Rotation::begin(const Parameters& parameters) {
   parameters_.block_columns = std::clamp<std::size_t>(parameters.block_columns, 1, RingBlock::kColumns);
   parameters_.threads = std::min(parameters.threads == 0 ? allThreads() : parameters.threads, Parameters::kMaxThreads);
   tolerance_ = Tolerance(parameters.tolerance);
-  partition_count_ = 0;
+  cells_ = partition_count_ = 0;
   parts_.clear();
   are_linked_ = is_sorted_ = is_unordered_ = false;
   near_ = Near::kInVoxels;
@@ -150,8 +151,11 @@ void ColumnClusterer::Rotation::receive(std::size_t columns, std::size_t lasers,
                                         const Return* column) {
   if (parameters_.lasers != 0 && lasers > parameters_.lasers)
     throw std::invalid_argument("lisco::ColumnClusterer: a column of more cells than lasers were declared");
+  if (columns > kMaxCells || lasers > kMaxCells || columns * lasers > kMaxCells - cells_)
+    throw std::invalid_argument("lisco::ColumnClusterer: more than 2^31 - 1 cells since begin ()");
   if (columns == 0) return;
   usable_ = false;
+  cells_ += columns * lasers;
   if (partition_count_ == 0) divide(columns, lasers, cells);
   comes_at_once_ = !scheduler_.hasColumns() && (columns >= kWorthSorting || partition_count_ > 1);
   if (comes_at_once_) {

@@ -20,13 +20,14 @@ namespace lisco {
 
 namespace {
 
-void check(const EndlessParameters& parameters) {
+void check(const EndlessParameters& parameters, const EndlessClusterer::Callback& callback) {
   if (!(parameters.stagger >= 0 && parameters.stagger <= EndlessParameters::kMaxStagger))
     throw std::invalid_argument("lisco::EndlessClusterer: the stagger must be within 0 and a sixteenth of a turn");
   if (!std::all_of(parameters.origin.begin(), parameters.origin.end(), [](float c) { return std::isfinite(c); }))
     throw std::invalid_argument("lisco::EndlessClusterer: the origin must be finite");
   if (!(std::fabs(parameters.start_azimuth) <= EndlessParameters::kMaxAzimuth))
     throw std::invalid_argument("lisco::EndlessClusterer: the start azimuth must be within -1e6 and 1e6 radians");
+  if (!callback) throw std::invalid_argument("lisco::EndlessClusterer: the callback must not be empty");
 }
 
 }  // namespace
@@ -98,7 +99,7 @@ class EndlessClusterer::Stream {
 // --- Receiving columns ----------------------------------------------------------------------------------------------
 
 void EndlessClusterer::Stream::begin(const EndlessParameters& parameters, Callback callback) {
-  check(parameters);
+  check(parameters, callback);
   if (!usable_) *this = Stream();
   usable_ = false;
   parameters_ = parameters;

@@ -21,6 +21,7 @@ class EndlessSets {
   using Element = std::uint32_t;
   static constexpr Element kNone = ~Element{0};
   static constexpr std::int64_t kSlots = 16;  ///< panes in memory: more than a cluster and its neighbours span
+  static_assert((kSlots & (kSlots - 1)) == 0, "slots of negative panes follow those of positive ones");
 
   struct Set {
     Element parent;
@@ -54,8 +55,8 @@ class EndlessSets {
   /// getH: the root of the set that holds a run.
   Element find(Element element);
 
-  /// merge: joins the sets of two runs. An open set that meets a delivered one stays open, marked as continued, and
-  /// takes over its runs' identity but not its returns.
+  /// merge: joins the sets of two runs. An open set that meets a delivered one becomes the root of both and is marked
+  /// as continued; the delivered returns are not added to it.
   void merge(Element a, Element b);
 
  private:

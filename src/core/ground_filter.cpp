@@ -72,11 +72,20 @@ class GroundFilter::State {
   PlaneEstimator plane_estimator_;
 };
 
-void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t lasers) {
+void check(const GroundParameters& parameters) {
   if (std::isinf(parameters.sensor_height))
     throw std::invalid_argument("lisco::GroundFilter: the sensor height is infinite");
   if (!(parameters.max_slope >= 1.0F && parameters.max_slope <= 60.0F))
     throw std::invalid_argument("lisco::GroundFilter: max_slope is not within 1 to 60 degrees");
+  constexpr float kMaxSlope = 10.0F;
+  for (const float slope :
+       {parameters.slope[0], parameters.slope[1], parameters.sensor.tilt[0], parameters.sensor.tilt[1]})
+    if (!(std::fabs(slope) <= kMaxSlope))
+      throw std::invalid_argument("lisco::GroundFilter: the slope or the sensor's tilt is not within -10 to 10");
+}
+
+void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t lasers) {
+  check(parameters);
   parameters_ = parameters;
   const float max_slope = maxSlope(parameters);
   lasers_ = lasers;
@@ -207,6 +216,7 @@ GroundParameters estimateGround(std::size_t columns, std::size_t lasers, const s
 
 GroundParameters estimateGroundPlane(std::size_t columns, std::size_t lasers, GroundParameters parameters,
                                      const CellSource& cells) {
+  check(parameters);
   Columns sampled;
   sampled.resize(lasers, Block::kColumns);
   Block block;

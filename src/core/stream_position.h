@@ -26,6 +26,11 @@ inline std::int64_t paneOf(Ticks ticks) {
   return (ticks - (ticks % kTicksPerPane + kTicksPerPane) % kTicksPerPane) / kTicksPerPane;
 }
 
+/// The eighth of its turn that a pane is, 0..kPanesPerTurn-1.
+inline std::int64_t paneInTurn(std::int64_t pane) {
+  return (pane % kPanesPerTurn + kPanesPerTurn) % kPanesPerTurn;
+}
+
 /// The position of a tick, turns; the next larger one that a double can represent.
 inline double positionOf(Ticks ticks) {
   auto rounded = static_cast<double>(ticks);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/endless_sets.h"
 #include "core/pi.h"
 
 namespace lisco {
@@ -79,8 +78,8 @@ Ticks StreamReach::endOf(Ticks column, std::int64_t pane, double rho, Ticks know
 }
 
 StreamReach::Ray StreamReach::rayAfter(std::int64_t pane) const {
-  const auto panes = static_cast<double>(EndlessSets::slotOf(pane + 1));  // of two turns
-  const double azimuth = azimuthOf(panes / static_cast<double>(kPanesPerTurn) + turns_of_stagger_ / 2);
+  const double azimuth =
+      azimuthOf(static_cast<double>(paneInTurn(pane + 1)) / static_cast<double>(kPanesPerTurn) + turns_of_stagger_ / 2);
   return {{-direction_ * std::sin(azimuth), direction_ * std::cos(azimuth)}};
 }
 

@@ -53,6 +53,7 @@ class WindowClusterer::Window {
   void numberSubclusters();
 
   WindowParameters parameters_;
+  std::size_t max_lasers_ = 0;  ///< so that a window's cells have numbers
   Tolerance tolerance_;
   bool usable_ = false;  ///< begun, and left by no exception since
   ColumnBlock block_;
@@ -75,6 +76,8 @@ void WindowClusterer::Window::begin(const WindowParameters& parameters) {
   if (!usable_) *this = Window();
   usable_ = false;
   parameters_ = parameters;
+  constexpr std::size_t kMaxCells = (std::size_t{1} << 31) - 1;
+  max_lasers_ = kMaxCells / parameters.window_columns;
   tolerance_ = Tolerance(parameters.tolerance);
   // One more than a window has, so that its panes last while the next one is filled.
   panes_.resize(std::max(panes_.size(), parameters.window_columns / hop + 1));
@@ -89,6 +92,7 @@ void WindowClusterer::Window::begin(const WindowParameters& parameters) {
 bool WindowClusterer::Window::addColumn(const Return* cells, std::size_t lasers) {
   if (parameters_.lasers != 0 && lasers > parameters_.lasers)
     throw std::invalid_argument("lisco::WindowClusterer: a column of more cells than lasers were declared");
+  if (lasers > max_lasers_) throw std::invalid_argument("lisco::WindowClusterer: a window of 2^31 cells or more");
   usable_ = false;
   block_.add(cells, lasers);
   const bool pane_ends = pane_columns_ + block_.columns() == parameters_.hop_columns;

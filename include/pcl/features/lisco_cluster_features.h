@@ -32,6 +32,7 @@ namespace pcl {
  * then getAABB (), getOBB () and getMassCenter (). Unlike there, the oriented box is upright (it turns about the z axis
  * only) and fits the visible sides of the cluster instead of its main axes, which a half-seen car does not follow.
  * Degenerate clusters and precision: lisco::clusterFeatures. Points with a NaN or infinite coordinate are left out.
+ * The nearest range is counted from the cloud's sensor_origin_.
  * \ingroup features
  */
 template <typename PointT>
@@ -47,7 +48,7 @@ class LiscoClusterFeatures : public PCLBase<PointT> {
   void compute(const std::vector<PointIndices>& clusters, std::vector<lisco::ClusterFeatures>& features);
 
   /** \brief Computes the features of the input (setInputCloud (), setIndices ()) as one cluster.
-   * \throws nothing; without input, or with an index beyond it, the getters return false
+   * Without input, or with an index beyond it: a PCL_ERROR, and the getters return false.
    */
   void compute();
 

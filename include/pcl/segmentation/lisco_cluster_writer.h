@@ -40,7 +40,7 @@ class LiscoClusterWriter {
  public:
   using From = lisco::RunVisitor::From;
 
-  /** \param[in] clusterer lisco::ColumnClusterer or lisco::WindowClusterer, after update () */
+  /** \param[in] clusterer lisco::ColumnClusterer after update (), or lisco::WindowClusterer after a window */
   LiscoClusterWriter(const Clusterer& clusterer, const PCLHeader& header, uindex_t min_size, uindex_t max_size,
                      LiscoClusterPlaces& places, std::vector<PointIndices>& clusters)
       : sizes_(clusterer.sizes()), header_(header), places_(places), clusters_(clusters), first_own_(clusters.size()) {

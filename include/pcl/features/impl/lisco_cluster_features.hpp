@@ -23,7 +23,9 @@ bool pcl::LiscoClusterFeatures<PointT>::computeOf(const Indices& indices, lisco:
     if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z))
       points_.push_back({point.x, point.y, point.z});
   }
-  features = lisco::clusterFeatures(points_.data(), points_.size(), sizeof(points_[0]));
+  const Eigen::Vector4f& sensor = input_->sensor_origin_;
+  features =
+      lisco::clusterFeatures(points_.data(), points_.size(), sizeof(points_[0]), {sensor[0], sensor[1], sensor[2]});
   return (true);
 }
 
