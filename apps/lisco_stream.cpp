@@ -132,9 +132,9 @@ bool parse(int argc, char** argv, Options& options) {
      "possible)")
     ("output,o", pathOption("DIR", "--output", options.output),
      "folder for rotation_000001.pcd and so on: each rotation (or window) as an organized cloud of x y z intensity "
-     "label ground, where the label is the cluster's id, 0 for none, and ground is 1 for returns left out as ground (no "
-     "such field with --ground none); in mode endless, written once all its clusters have been delivered. Removes those "
-     "of an earlier run")
+     "label ground, where the label is the cluster's id, 0 for none, and ground is 1 for returns left out as ground "
+     "(no such field with --ground none); in mode endless, written once all its clusters have been delivered. Removes "
+     "those of an earlier run")
     ("bag", pathOption("FILE.mcap", "--bag", options.bag),
      "write each rotation or window as a recording of ROS 2: the labelled cloud (sensor_msgs/PointCloud2) and oriented "
      "boxes (visualization_msgs/MarkerArray)")

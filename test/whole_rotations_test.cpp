@@ -224,10 +224,10 @@ TEST_P(WholeRotations, OfUnorderedReturnsEqualTheOracle) {
     lisco::Parameters parameters = parametersFor(random, recording, random.chance(0.3) ? 1 + random.below(8) : 1);
     parameters.sensor = lisco::SensorHints();
     const auto cells = [&](std::size_t laser, std::size_t column) { return recording.scan.at(laser, column); };
-    unordered +=
-        lisco::UnorderedReturns::areIn(columns, lasers, lisco::CellSource(cells), lisco::Tolerance(recording.tolerance))
-            ? 1
-            : 0;
+    unordered += lisco::UnorderedReturns::isUnordered(columns, lasers, lisco::CellSource(cells),
+                                                      lisco::Tolerance(recording.tolerance))
+                     ? 1
+                     : 0;
     const SimdLevel level(levels()[seed % levels().size()]);
     SCOPED_TRACE("seed " + std::to_string(seed) + ", " + lisco::simdLevel() + ", " + std::to_string(lasers) + " x " +
                  std::to_string(columns) + ", " + std::to_string(parameters.threads) + " threads");

@@ -8,8 +8,8 @@
 namespace lisco_apps {
 
 /// A folder that receives a labelled cloud of each turn: rotation_000001.pcd and so on, organized (a row per laser from
-/// top to bottom, a column per firing), fields x y z intensity label ground; label 0: in no cluster, ground 1: left out as
-/// ground.
+/// top to bottom, a column per firing), fields x y z intensity label ground; label 0: in no cluster; ground 1: left out
+/// as ground.
 class LabelledClouds {
  public:
   /// Makes the folder, and those above it, and removes the files of an earlier run.

@@ -30,7 +30,7 @@ struct LabelGroundParameters {
 /// \param stride bytes from one point to the next, at least 12; points need not be aligned
 /// \param ground receives `count` bytes: 1 on the ground, else 0
 /// \throws std::invalid_argument if the stride is below 12, count is 2^31 or more, lasers do not divide count, a
-///         pointer is null while count is not 0, or a parameter is as GroundFilter::begin rejects it
+///         pointer is null while count is not 0, or GroundFilter::begin rejects a parameter
 LISCO_EXPORT void labelGround(const void* points, std::size_t count, std::size_t stride,
                               const LabelGroundParameters& parameters, std::uint8_t* ground);
 

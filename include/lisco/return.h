@@ -19,7 +19,7 @@ struct Return {
   float x;                     ///< metres, in the cloud's own frame
   float y;                     ///< the same
   float z;                     ///< the same
-  std::uint32_t source_index;  ///< the caller's name for this cell, handed back with its subcluster
+  std::uint32_t source_index;  ///< the caller's number for this cell, handed back with its subcluster
 };
 
 /// A cell without a return (the paper's d = 0).

@@ -25,7 +25,7 @@ constexpr std::size_t kSample = 128;     ///< points that the closeness is summe
 constexpr std::size_t kEdges = 16;       ///< of the hull, the longest, that are tried as headings
 constexpr double kSharpness = 0.03;      ///< metres from a side within which points count the same: the noise of ranges
 constexpr double kFirstStep = kPi / 90;  ///< radians, of the search around the best edge
-constexpr double kLastStep = kPi / 46080;
+constexpr double kLastStep = kPi / 23040;  ///< the finest: 0.008 degrees
 
 /// Bounds of the hull along a heading (a) and across it (b).
 struct Extent {
@@ -66,7 +66,7 @@ class LShapeFit {
       return true;
     };
     for (const double edge : longestEdges()) consider(edge);
-    for (double step = kFirstStep; step > kLastStep; step /= 2)
+    for (double step = kFirstStep; step >= kLastStep; step /= 2)
       if (!consider(best + step)) consider(best - step);
     return best;
   }

@@ -47,7 +47,7 @@ class ColumnBlock {
   void clear() { lasers_ = columns_ = 0; }
 
  private:
-  /// Of columns, in cells: an odd number of cache lines, so that those of one laser spread over the cache.
+  /// Cells from one column to the next: an odd number of cache lines, so that those of one laser spread over the cache.
   static std::size_t strideFor(std::size_t lasers) {
     constexpr std::size_t kLine = 64 / sizeof(Return);
     return ((lasers + kLine - 1) / kLine | 1U) * kLine;

@@ -201,7 +201,7 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
   if (partition_count_ > 1) subclusters_.reserve(lasers * columns + RingBlock::kColumns);
   const bool drifts = parameters_.sensor.drift > kMaxDrift;
   if (!drifts && readFarAndNear(lasers, cells)) return;
-  if (UnorderedReturns::areIn(columns, lasers, cells, tolerance_))
+  if (UnorderedReturns::isUnordered(columns, lasers, cells, tolerance_))
     readUnordered(lasers, cells);
   else
     readNear(lasers, cells);
@@ -238,7 +238,7 @@ bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSou
   return trial.await();
 }
 
-/// Makes room for the near returns of some columns: half of what a trial tells to expect, as scenes differ around the
+/// Makes room for the near returns of some columns: half of what the trial predicts, as scenes differ around the
 /// sensor.
 void ColumnClusterer::Rotation::reserveNear(Partition& partition, std::size_t columns) {
   if (tried_near_.columns == 0) return;

@@ -17,7 +17,7 @@ constexpr std::size_t kDirections = 8;        ///< of extreme points
 constexpr std::size_t kSample = 256;          ///< points, among which the extremes are searched for
 
 /// Positive if a, b, c turn to the left.
-double turn(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
+double orientation(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
@@ -30,7 +30,7 @@ std::vector<PlanePoint> monotoneChain(std::vector<PlanePoint> points) {
   if (points.size() < 3) return points;
   std::vector<PlanePoint> hull;
   const auto append = [&hull](const PlanePoint& point, std::size_t first) {
-    while (hull.size() >= first + 2 && turn(hull[hull.size() - 2], hull.back(), point) <= 0) hull.pop_back();
+    while (hull.size() >= first + 2 && orientation(hull[hull.size() - 2], hull.back(), point) <= 0) hull.pop_back();
     hull.push_back(point);
   };
   for (const PlanePoint& point : points) append(point, 0);
@@ -74,8 +74,9 @@ std::vector<PlanePoint> convexHull(const std::vector<PlanePoint>& points) {
   }
   std::vector<PlanePoint> outside(octagon);
   for (const PlanePoint& point : points) {
-    double least = turn(edges[0].from, edges[0].to, point);
-    for (std::size_t i = 1; i < kDirections; ++i) least = std::min(least, turn(edges[i].from, edges[i].to, point));
+    double least = orientation(edges[0].from, edges[0].to, point);
+    for (std::size_t i = 1; i < kDirections; ++i)
+      least = std::min(least, orientation(edges[i].from, edges[i].to, point));
     if (!(least > 0)) outside.push_back(point);
   }
   return monotoneChain(std::move(outside));

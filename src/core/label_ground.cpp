@@ -87,7 +87,7 @@ void GroundLabeller::State::label(const StridedPoints& points, std::size_t count
 void GroundLabeller::State::labelUnorganized(const StridedPoints& points, std::size_t count,
                                              GroundParameters parameters, std::uint8_t* ground) {
   // Metres. Seen from a point on the ground, as is the origin of a vehicle's frame, rays to the ground do not rise with
-  // the distance; seen from above it, they do. Of a scan in its sensor's frame, that point finds as much.
+  // the distance; seen from above it, they do. A scan in its sensor's frame shows as much ground from there.
   constexpr float kLowOrigin = 0.5F, kRise = 1.5F;
   std::fill_n(ground, count, std::uint8_t{0});
   SortedPoints cells{columns_, points};

@@ -10,8 +10,9 @@ namespace lisco {
 /// One thread for each core.
 std::size_t allThreads();
 
-/// Calls work (context, i) for each i below `threads`, each in a thread of its own, and returns when all have. With
-/// fewer threads, i = 0 begins before any other of its thread; FarTrial relies on it.
+/// Calls work (context, i) for each i below `threads`, each in a thread of its own, and returns when all have. If
+/// fewer threads start, one calls several i in ascending order, so that i = 0 waits for no other: FarTrial relies on
+/// it.
 void inParallel(std::size_t threads, void (*work)(void* context, std::size_t thread), void* context);
 
 template <typename Work>

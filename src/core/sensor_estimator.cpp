@@ -31,11 +31,11 @@ constexpr double kAsBefore = 1.5;
 /// Pairs of adjacent returns, and of returns further apart in a row, that an estimate needs. More: small and sparse
 /// clouds get no hints; fewer: chance decides the medians.
 constexpr std::size_t kMinPairs = 8;
-/// Of the azimuth from column to column, radians; below, the cloud does not turn. Less than any sensor's.
+/// Smallest azimuth step between columns, radians; below it the cloud does not turn. Less than any sensor's.
 constexpr double kMinStep = 1e-4;
 /// Median deviation of azimuths in steps; beyond, columns are no steps of a turn. More: clouds of cameras get a range
 /// image; less: clouds that jitter get none.
-constexpr double kMaxDeviation = 0.5;
+constexpr double kMaxAzimuthDeviation = 0.5;
 /// Part of the pairs that jitter and drift less than the hints say. More: moved objects and bad returns decide; less: a
 /// sensor that moves in a part of the turn is taken for one at rest.
 constexpr double kSteadyShare = 0.75;
@@ -50,10 +50,11 @@ constexpr std::size_t kSampledRows = 8;
 /// If fewer than 1 / kFewReturns of these are returns, other rows are sampled: with dual returns, the rows of second
 /// returns alternate with those of first ones.
 constexpr std::size_t kFewReturns = 4;
-/// Of a turn, 1 / kMinTurn; a cloud of less would leave the range image mostly empty.
-constexpr std::size_t kMinTurn = 4;
+/// Turns that the steps may make of a cloud's columns: a range image of a cloud of less than a quarter turn would be
+/// mostly empty.
+constexpr std::size_t kMaxTurnsPerCloud = 4;
 
-/// Of a point as seen from the sensor, metres.
+/// A point as seen from the sensor, metres.
 struct Seen {
   double x, y, z;
 
@@ -173,7 +174,8 @@ SensorHints SensorEstimator::estimate(const std::array<float, 3>& declared_origi
   const auto step = static_cast<double>(median(turns, 0.0F));
   Sample<double> deviations;
   for (const double turn : turns) deviations.push_back(std::fabs(turn - step));
-  if (std::fabs(step) > kMinStep && static_cast<double>(median(deviations, 0.0F)) < kMaxDeviation * std::fabs(step))
+  if (std::fabs(step) > kMinStep &&
+      static_cast<double>(median(deviations, 0.0F)) < kMaxAzimuthDeviation * std::fabs(step))
     hints.steps_per_turn = static_cast<int>(std::lround(2.0 * kPi / std::fabs(step)));
   hints.clockwise = step < 0;
   if (hints.steps_per_turn > 0)
@@ -237,7 +239,7 @@ SensorHints estimateSensor(std::size_t columns, std::size_t lasers, const std::a
   // These may be the rows of second returns, of which few rays have one.
   if (hints.steps_per_turn == 0 && row_step > 1 && returns * kFewReturns < samples)
     hints = estimateFrom(row_step / 2 - 1);
-  if (static_cast<std::size_t>(hints.steps_per_turn) > kMinTurn * columns) hints.steps_per_turn = 0;
+  if (static_cast<std::size_t>(hints.steps_per_turn) > kMaxTurnsPerCloud * columns) hints.steps_per_turn = 0;
   return hints;
 }
 

@@ -78,7 +78,7 @@ class SensorFrameEstimator::Slopes {
   /// By how much the frame is to change: a Gauss-Newton step on the deviations from each laser's mean, whose weights
   /// fall with the deviation.
   Vector step(const SensorFrame& frame, double scale) const {
-    constexpr double kDamping = 1e-5;  // what cannot be told stays as it is
+    constexpr double kDamping = 1e-5;  // unknowns that the returns do not determine stay as they are
     Matrix a{};
     Vector b{};
     for (const Ring& ring : rings_) {

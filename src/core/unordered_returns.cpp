@@ -62,8 +62,8 @@ constexpr std::size_t kSampledPairs = 256;
 
 }  // namespace
 
-bool UnorderedReturns::areIn(std::size_t columns, std::size_t lasers, const CellSource& cells,
-                             const Tolerance& tolerance) {
+bool UnorderedReturns::isUnordered(std::size_t columns, std::size_t lasers, const CellSource& cells,
+                                   const Tolerance& tolerance) {
   if (!tolerance.joinsAnything()) return false;
   // Odd, so that not always the same laser is met where the columns are firings.
   const std::size_t step = std::max<std::size_t>(1, columns * lasers / kSampledPairs) | 1;

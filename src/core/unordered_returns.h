@@ -22,8 +22,8 @@ namespace lisco {
 /// runs and without a range image, and sorted by voxel. Sets are of voxels.
 class UnorderedReturns {
  public:
-  /// Whether a cloud's returns are so: estimated from a sample.
-  static bool areIn(std::size_t columns, std::size_t lasers, const CellSource& cells, const Tolerance& tolerance);
+  /// Estimates from a sample whether a cloud's runs take more time than they save.
+  static bool isUnordered(std::size_t columns, std::size_t lasers, const CellSource& cells, const Tolerance& tolerance);
 
   /// Starts without returns. Keeps its memory.
   void begin(std::size_t parts);

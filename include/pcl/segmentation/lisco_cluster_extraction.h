@@ -16,7 +16,7 @@
 #include <pcl/point_types.h>
 #include <pcl/search/kdtree.h>
 #include <pcl/search/search.h>
-#include <pcl/segmentation/extract_clusters.h>  // comparePointClusters, which its clients call too
+#include <pcl/segmentation/extract_clusters.h>  // kept for programs that call comparePointClusters ()
 #include <pcl/segmentation/lisco_cloud_clusterer.h>
 #include <pcl/segmentation/lisco_search_method.h>
 

@@ -15,8 +15,9 @@
 namespace pcl::detail {
 
 /** \brief The part common to the classes that receive one column after the other. Errors are reported by PCL_ERROR
- * and have no other effect. An exception (memory was refused, or a callback threw) ends the rotation or stream, unless
- * it comes from writing clusters out: no column is taken and nothing is delivered until the next one begins.
+ * and change nothing but the output arguments. An exception (memory was refused, or a callback threw) ends the rotation
+ * or stream, unless it comes from writing clusters out: no column is taken and nothing is delivered until the next one
+ * begins.
  */
 template <typename PointT>
 class LiscoColumnStream {

@@ -53,45 +53,11 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
   using Cluster = LiscoEndlessCluster<PointT>;                  ///< delivered by the callback
   using ClusterCallback = std::function<void(const Cluster&)>;  ///< receives it
 
-  /** \brief Add the next column; delivers the clusters that it cannot reach.
-   * \param[in] points one of each laser; copied
-   * \param[in] count number of rows, may be 0
-   * \param[in] position turns of the sensor since any moment, never less than that of the column before
-   * \return false, after a PCL_ERROR and without effect: before beginStream (); if there are more rows than lasers
-   * declared; if the position is less than the one before, not finite, or beyond 1e12 turns
-   */
-  inline bool addColumn(const PointT* points, std::size_t count, double position) {
-    return (addColumnAt(points, count, &position));
-  }
-
   /** \brief Begin a stream. Discards clusters of the last one not yet delivered.
    * \return false, after a PCL_ERROR and without effect, if the stagger is not within 0..pi/8, the sensor origin is not
    * finite, or the start azimuth is not within -1e6..1e6 radians
    */
   bool beginStream();
-
-  /** \brief Add a column, 1 / getColumnsPerTurn () turns after the column before, at 0 for the first one. False, after
-   * a PCL_ERROR and without effect, if the number of columns of a turn is not known.
-   */
-  inline bool addColumn(const PointT* points, std::size_t count) { return (addColumnAt(points, count, nullptr)); }
-
-  /** \brief The same; the points of the cloud are the rows. */
-  inline bool addColumn(const PointCloud& column, double position) {
-    return (addColumn(column.points.data(), column.size(), position));
-  }
-  /** \brief The same without a position. */
-  inline bool addColumn(const PointCloud& column) { return (addColumn(column.points.data(), column.size())); }
-
-  /** \brief Deliver the clusters that the columns so far complete, without waiting for a block of them. */
-  void update();
-
-  /** \brief End the stream: deliver all clusters. More columns may follow; they are a new stream. */
-  void finish();
-
-  LiscoEndlessExtraction();
-  ~LiscoEndlessExtraction();
-  LiscoEndlessExtraction(const LiscoEndlessExtraction&) = delete;
-  LiscoEndlessExtraction& operator=(const LiscoEndlessExtraction&) = delete;
 
   /** \brief Set the receiver of the clusters. A cluster is valid during the call only. The receiver must neither throw
    * nor call this object. Takes effect at once.
@@ -118,6 +84,40 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
     setReceiver(std::move(receiver));
   }
 
+  /** \brief Add the next column; delivers the clusters that it cannot reach.
+   * \param[in] points one of each laser; copied
+   * \param[in] count number of rows, may be 0
+   * \param[in] position turns of the sensor since any moment, never less than that of the column before
+   * \return false, after a PCL_ERROR and without effect: before beginStream (); if there are more rows than lasers
+   * declared; if the position is less than the one before, not finite, or beyond 1e12 turns
+   */
+  inline bool addColumn(const PointT* points, std::size_t count, double position) {
+    return (addColumnAt(points, count, &position));
+  }
+
+  /** \brief Add a column, 1 / getColumnsPerTurn () turns after the column before, at 0 for the first one. False, after
+   * a PCL_ERROR and without effect, if the number of columns of a turn is not known.
+   */
+  inline bool addColumn(const PointT* points, std::size_t count) { return (addColumnAt(points, count, nullptr)); }
+
+  /** \brief The same; the points of the cloud are the rows. */
+  inline bool addColumn(const PointCloud& column, double position) {
+    return (addColumn(column.points.data(), column.size(), position));
+  }
+  /** \brief The same without a position. */
+  inline bool addColumn(const PointCloud& column) { return (addColumn(column.points.data(), column.size())); }
+
+  /** \brief Deliver the clusters that the columns so far complete, without waiting for a block of them. */
+  void update();
+
+  /** \brief End the stream: deliver all clusters. More columns may follow; they are a new stream. */
+  void finish();
+
+  LiscoEndlessExtraction();
+  ~LiscoEndlessExtraction();
+  LiscoEndlessExtraction(const LiscoEndlessExtraction&) = delete;
+  LiscoEndlessExtraction& operator=(const LiscoEndlessExtraction&) = delete;
+
   /** \brief Number of returns since beginStream (), of the columns clustered so far. */
   std::uint64_t getNumberOfReturns() const;
 
@@ -129,7 +129,7 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
   /** \brief Number of columns in memory, about a turn and a half at most. */
   std::size_t getNumberOfColumnsHeld() const;
 
-  // All of these take effect when the next stream begins, sizes as well.
+  // The setters below and those of the sizes take effect when the next stream begins.
 
   /** \brief Position of the sensor, metres, in the coordinates of the points (default: the origin): the centre of the
    * azimuths.

@@ -21,7 +21,7 @@ inline constexpr float kAngleRounding = 1e-4F;
 /// Metres; beyond, returns go to the voxels: their squares may overflow.
 inline constexpr float kMaxRange = 1e15F;
 
-/// Of the sensor's horizon, along x and y.
+/// Largest tilt of the sensor's horizon along x and y, metres per metre; larger hints are ignored.
 inline constexpr float kMaxTilt = 0.5F;
 
 // --- Limits of the range image --------------------------------------------------------------------------------------
@@ -54,7 +54,7 @@ inline constexpr double kMinBinInCoarseness = 2;  ///< width of a bin over the r
 
 // --- Cost of linking: measured --------------------------------------------------------------------------------------
 
-/// Of searching a segment's neighbours in a sector, in comparisons of registers of bins.
+/// Cost of searching one segment's neighbours in a sector, in comparisons of registers of bins.
 inline constexpr std::uint32_t kSegmentCost = 2;
 /// Units of work where it is done in parts, about 5 ns each.
 inline constexpr std::uint32_t kWorkOfSameBins = 12;  ///< of a laser

@@ -26,7 +26,7 @@ inline float deviationFor(const SensorHints& hints) {
 }
 
 /// Which returns are far: those that see the tolerance under few bins and lasers. None (min_range infinite) if the
-/// hints are of no help.
+/// hints are out of range or unknown.
 inline FarRange farRangeFor(const Tolerance& tolerance, const SensorHints& hints) {
   constexpr float kNone = std::numeric_limits<float>::infinity();
   FarRange range;

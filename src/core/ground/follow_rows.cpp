@@ -32,11 +32,11 @@ constexpr float kSmoothAboveMap = 0.13F, kSmoothRange = 40.0F;  // contradicts a
 constexpr float kKnownHeight = 0.06F;                           // even among returns of which most are higher
 
 // Heights off the straight continuation of the column's ground, growing with the distance from the ground reached:
-// k + kGrowth * distance, of which the growth is kMost at most.
-constexpr float kAtColumn = 0.16F, kAtColumnGrowth = 0.03F, kAtColumnMost = 0.15F;  // is ground
-constexpr float kLevel = 0.15F, kLevelGrowth = 0.11F, kLevelMost = 0.8F;            // is, where it seems to go on
-constexpr float kFirst = 0.1F, kFirstGrowth = 0.04F, kFirstLevelGrowth = 0.12F;     // before any ground is reached
-constexpr float kFirstMost = 10.0F;                                                 // distance up to which these grow
+// k + min (kGrowth * distance, kMax).
+constexpr float kAtColumn = 0.16F, kAtColumnGrowth = 0.03F, kAtColumnMax = 0.15F;  // is ground
+constexpr float kLevel = 0.15F, kLevelGrowth = 0.11F, kLevelMax = 0.8F;            // is, where it seems to go on
+constexpr float kFirst = 0.1F, kFirstGrowth = 0.04F, kFirstLevelGrowth = 0.12F;    // before any ground is reached
+constexpr float kFirstMaxDistance = 10.0F;                                         // distance up to which these grow
 constexpr float kAgrees = 0.1F, kAgreesGrowth = 0.03F;  // with kSure: may be as rough as leaves
 constexpr float kObstacle = 0.25F;                      // hides the ground beyond
 constexpr float kHigher = 0.1F;                         // counts as Found::higher
@@ -239,14 +239,14 @@ HWY_INLINE Mask foundByColumn(const RowPart& part, const Mapped& map, const Abov
   const Mask first = part.first;
   const Mask smooth = hn::AndNot(above.surface, hn::And(hn::And(flat, above.seen), goesOn(above, part.slope)));
   const Mask fits_map = hn::Lt(map.above, mostAboveMap(map, part.rho, smooth));
-  const auto distance = part.distance, near = hn::Min(distance, set(kFirstMost)), off = hn::Abs(part.above);
+  const auto distance = part.distance, near = hn::Min(distance, set(kFirstMaxDistance)), off = hn::Abs(part.above);
   // At its height.
   const auto at_column =
       select(first, grown(kFirst, kFirstGrowth, near),
-             hn::Add(set(kAtColumn), hn::Min(hn::Mul(set(kAtColumnGrowth), distance), set(kAtColumnMost))));
+             hn::Add(set(kAtColumn), hn::Min(hn::Mul(set(kAtColumnGrowth), distance), set(kAtColumnMax))));
   auto continued = hn::Lt(off, at_column);
   const auto level = select(first, grown(kFirst, kFirstLevelGrowth, near),
-                            hn::Add(set(kLevel), hn::Min(hn::Mul(set(kLevelGrowth), distance), set(kLevelMost))));
+                            hn::Add(set(kLevel), hn::Min(hn::Mul(set(kLevelGrowth), distance), set(kLevelMax))));
   const auto flat_free = hn::AndNot(obstacle, flat);
   continued = hn::Or(continued, hn::And(hn::And(flat_free, goesOn(above, part.slope)), hn::Lt(off, level)));
   // Where the ground changes its slope: beyond, it has that slope.

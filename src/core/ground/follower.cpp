@@ -105,7 +105,7 @@ void Follower::prepare(const RowOrder& order, const Plane& plane, GroundMap& map
       setStart(plane, plane.slopeTowards(order.directionOf(rows[i].row)), followed_[starts_[i].followed]);
     }
     const std::int32_t sector = sector_of[rows[i].row];
-    if (sector != prepared) map.look(static_cast<std::size_t>(sector), number, plane);
+    if (sector != prepared) map.prepare(static_cast<std::size_t>(sector), number, plane);
     prepared = sector;
     sectors[i] = static_cast<std::uint32_t>(sector);
   }

@@ -18,7 +18,7 @@ namespace lisco::ground {
 class GroundMap {
  public:
   static constexpr std::size_t kBins = 128;  ///< of distance, eight for each octave of the squared distance
-  /// The exponent and three bits of the mantissa of the squared distance, 0.5 m, are those of bin 0.
+  /// Number of bin 0: exponent and three highest mantissa bits of 0.25 m2, the square of 0.5 m.
   static constexpr std::int32_t kFirstBin = (127 - 2) << 3;
   static constexpr int kBinShift = 20;
   static constexpr float kUnknown = 1e9F;
@@ -51,7 +51,7 @@ class GroundMap {
 
   /// Prepares a sector for a block's returns. If it was last seen in another rotation, it starts with what is known
   /// beside it.
-  void look(std::size_t sector, std::uint32_t block, const Plane& plane) {
+  void prepare(std::size_t sector, std::uint32_t block, const Plane& plane) {
     if (latest_[sector] == block) return;
     if (latest_[sector] == 0 || block - latest_[sector] > kFresh) renew(sector, block, plane);
     latest_[sector] = block;
@@ -68,7 +68,7 @@ class GroundMap {
   void renew(std::size_t number, std::uint32_t block, const Plane& plane);
 
   std::vector<Sector> sectors_;
-  std::array<std::uint32_t, kSectors> latest_{};  // block that looked at a sector, from 1 on; 0: none
+  std::array<std::uint32_t, kSectors> latest_{};  // block that a sector was last prepared for, from 1 on; 0: none
 };
 
 }  // namespace lisco::ground

@@ -22,8 +22,8 @@ struct Shown {
   std::size_t with_ground_count;
 };
 
-/// What a block shows of the map, as arrays that are longer than needed. Distances and heights are metres. Flags are
-/// words, since stores of bytes may be to any pointer.
+/// Writes a block's ground into the map. Arrays may be longer than their content. Distances and heights are metres.
+/// Flags are words, since stores of bytes may be to any pointer.
 struct MapReports {
   /// Ground found from one distance to another.
   struct Stretches {
@@ -33,8 +33,7 @@ struct MapReports {
     AlignedVector<std::int32_t> first, last;  ///< bins; last is -1 for a stretch that is not entered
     std::vector<std::uint32_t> sector;        ///< of the map
     std::vector<std::uint32_t> is_doubted;    ///< 1 if it is off the ground of the blocks before, else 0
-    std::vector<std::uint32_t>
-        is_last;  ///< element s + 1: 1 if no stretch lies beyond stretch s, else 0; element 0: unused
+    std::vector<std::uint32_t> is_last;       ///< element s + 1: 1 if stretch s is the outermost, else 0
   };
   Stretches stretches;
   std::uint32_t block_number = 0;  ///< blocks entered since begin ()

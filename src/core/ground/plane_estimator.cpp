@@ -34,9 +34,9 @@ constexpr double kPointReach = 6.0;     // metres; where lines begin further out
 constexpr double kSlopeReach = 2.0;     // metres, over which a line's slope counts
 constexpr double kLevelWeight = 20.0;   // square metres, of the horizon
 constexpr float kMinWeight = 6.0F;      // of the lines that show a plane
-// Looks per one that shows ground, at most: 1 to 2 on streets, 9 and more where objects alone are around. Where a plane
-// may be a table's, most looks show it, or it is none.
-constexpr std::uint32_t kLooksPerGround = 8, kLooksPerLowGround = 3;
+// Updates per one that shows ground, at most: 1 to 2 on streets, 9 and more where objects alone are around. Where a
+// plane may be a table's, most updates show it, or it is none.
+constexpr std::uint32_t kUpdatesPerGround = 8, kUpdatesPerLowGround = 3;
 
 }  // namespace
 
@@ -53,14 +53,14 @@ void PlaneEstimator::begin(const GroundParameters& parameters, float max_slope, 
   plane_ = {hasHeight() ? -parameters.sensor_height : 0.0F, parameters.slope[0] - sensor.tilt[0],
             parameters.slope[1] - sensor.tilt[1]};
   count_ = seen_ = 0;
-  looks_ = 0;
+  updates_ = 0;
   showed_ = 0;
 }
 
 bool PlaneEstimator::isKnown() const {
   if (height_state_ == Height::kGiven) return true;
-  const std::uint32_t looks_per_one = plane_.height > -kTable ? kLooksPerLowGround : kLooksPerGround;
-  return height_state_ == Height::kFound && looks_per_one * countBits(showed_) >= looks_;
+  const std::uint32_t updates_per_one = plane_.height > -kTable ? kUpdatesPerLowGround : kUpdatesPerGround;
+  return height_state_ == Height::kFound && updates_per_one * countBits(showed_) >= updates_;
 }
 
 void PlaneEstimator::add(const Block& block, const Columns& columns, std::size_t first, std::size_t column) {
@@ -184,7 +184,7 @@ PlaneEstimator::Agreed PlaneEstimator::lowestOf(const Line* lines, std::size_t s
 }
 
 void PlaneEstimator::update() {
-  looks_ = std::min(looks_ + 1, kLooks);
+  updates_ = std::min(updates_ + 1, kUpdates);
   showed_ = showed_ << 1 | static_cast<std::uint64_t>(count_ != seen_);
   seen_ = count_;
   if (height_state_ == Height::kFound) return refine();

@@ -35,12 +35,12 @@ class PlaneEstimator {
   /// \param columns those that the block was measured from, `first` its first one
   void add(const Block& block, const Columns& columns, std::size_t first, std::size_t column);
 
-  /// Looks at the columns added since the last time, and updates the plane; it stays as it is, if they show too little.
+  /// Updates the plane by the columns added since the last update; it stays as it is if they show too little.
   void update();
 
   /// Whether a height was given or found.
   bool hasHeight() const { return height_state_ != Height::kUnknown; }
-  /// Whether there is a plane: a height was given, or enough of the latest looks have shown ground.
+  /// Whether there is a plane: a height was given, or enough of the latest updates have shown ground.
   bool isKnown() const;
   const Plane& plane() const { return plane_; }
 
@@ -67,11 +67,11 @@ class PlaneEstimator {
   std::size_t count_ = 0;  // ever added
   Plane plane_;
   enum class Height { kUnknown, kGiven, kFound } height_state_ = Height::kUnknown;
-  static constexpr std::uint32_t kLooks = 64;
-  std::uint32_t looks_ = 0;   // up to kLooks
-  std::size_t seen_ = 0;      // of count_, by the latest look
-  std::uint64_t showed_ = 0;  // bit i: whether the look i looks ago showed ground, of kLooks
-  float highest_ = 0.0F;      // metres
+  static constexpr std::uint32_t kUpdates = 64;
+  std::uint32_t updates_ = 0;  // up to kUpdates
+  std::size_t seen_ = 0;       // of count_, by the latest update
+  std::uint64_t showed_ = 0;   // bit i: whether the update i updates ago showed ground, of kUpdates
+  float highest_ = 0.0F;       // metres
   float max_slope_ = 0.0F;
   std::array<float, 3> origin_{};  // of the sensor
 };

@@ -73,12 +73,12 @@ class BrickMap {
     std::uint32_t first;  ///< number of the first key in use
   };
 
-  /// Of a key, for a table in order. More: up to 256 KiB for a plane of few bricks; less: hashes take longer (memory,
-  /// recordings).
+  /// Most bits of a key for which the table is in order. More: up to 256 KiB for a plane of few bricks; less: hashes
+  /// take longer (memory, recordings).
   static constexpr unsigned kMaxOrderedBits = 20;
-  /// Of a place in a table by a hash, for 16 or more places per key; larger tables have 2 or more. Few places are taken
-  /// then, so that most keys around one are missed at the first place: 1.2 times as fast on sparse clouds (recordings
-  /// --cloud airborne).
+  /// Most bits of a place at which a hashed table has 16 or more places per key; larger ones have 2 or more. Few places
+  /// are taken then, so that most keys around one are missed at the first place: 1.2 times as fast on sparse clouds
+  /// (recordings --cloud airborne).
   static constexpr unsigned kMaxSparseBits = 12;
 
   /// Where a word is, or would be.

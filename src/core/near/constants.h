@@ -30,7 +30,7 @@ inline constexpr std::size_t kNearStep = 4;
 /// Metres: between these, squares in float neither vanish nor overflow.
 inline constexpr double kMinSortedTolerance = 1e-18;
 inline constexpr double kMaxSortedTolerance = 1e18;
-/// Of a voxel's number along an axis: converted by signed instructions of 32 bits.
+/// Largest number of a voxel along an axis: fits a signed 32-bit conversion.
 inline constexpr double kMaxVoxelNumber = 2147480000.0;
 /// Work of a fragment beyond that of its returns, in returns: for dividing it among threads (threads).
 inline constexpr std::uint32_t kWorkOfFragment = 2;

@@ -143,9 +143,9 @@ struct VoxelGrid {
     std::uint32_t group = kNone;
   };
 
-  /// Of the brick of a voxel, or of the group of a brick.
+  /// The brick of a voxel, or the group of a brick.
   static Key containerOf(const Key& key) { return {key[0] >> 2, key[1] >> 2, key[2] >> 2}; }
-  /// There, as in Neighbourhood.
+  /// Its place there, as in Neighbourhood.
   static std::uint32_t placeOf(const Key& key) { return (key[0] & 3U) | (key[1] & 3U) << 2 | (key[2] & 3U) << 4; }
   static bool areEqual(const Key& a, const Key& b) { return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2])) == 0; }
   static std::uint32_t hashOf(const Key& key) {

@@ -23,7 +23,7 @@ constexpr unsigned kOrderBits = 21;
 /// New cliques that are linked at a time: fewer spread the work of columns more evenly, more need fewer look-ups
 /// (benchmarks/suite.sh latency).
 constexpr std::size_t kCliquesOfPart = 4;
-/// Of the bricks around one, in comparisons of cliques.
+/// Work of finding the bricks around one, in comparisons of cliques.
 constexpr std::size_t kWorkOfFinding = 10;
 
 /// Finds the bricks around one that are in use and wanted.

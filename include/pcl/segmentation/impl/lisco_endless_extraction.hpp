@@ -26,10 +26,10 @@ class pcl::LiscoEndlessExtraction<PointT>::State : public detail::LiscoReceivedC
     if (!receiver) return;
     points_.clear();
     cells_.clear();
-    delivered.forEachRun([this](const std::uint32_t* names, std::size_t count) {
+    delivered.forEachRun([this](const std::uint32_t* ids, std::size_t count) {
       for (std::size_t i = 0; i < count; ++i) {
-        const auto cell = this->store.cellOf(names[i]);
-        points_.push_back(this->store.pointOf(names[i]));
+        const auto cell = this->store.cellOf(ids[i]);
+        points_.push_back(this->store.pointOf(ids[i]));
         cells_.push_back({cell.column, cell.row});
       }
     });
