@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "lisco/ground_filter.h"
+#include "lisco/sensor_hints.h"
 #include "simulation/drive.h"
 #include "simulation/motion.h"
 #include "simulation/random.h"
@@ -327,6 +329,42 @@ TEST(Drive, AtRestIsAScan) {
     ASSERT_NEAR(length(placeOf(still.cells[i]) - placeOf(expected.cells[i])), 0, 1e-4) << "cell " << i;
   }
   EXPECT_LT(leaves, still.cells.size() / 10);
+}
+
+/// Parts of a whole scan's ground that the filter finds, and of its finds that are ground.
+struct GroundFound {
+  double recall, precision;
+};
+
+GroundFound groundFoundIn(const SimulatedScan& scan) {
+  const auto cell_at = [&scan](std::size_t laser, std::size_t step) {
+    const SimulatedCell& cell = scan.cells[laser * scan.steps + step];
+    return lisco::Return{cell.x, cell.y, cell.z, 0};
+  };
+  lisco::GroundParameters parameters;
+  parameters.sensor = lisco::estimateSensor(scan.steps, scan.lasers, {}, lisco::CellSource(cell_at));
+  std::vector<std::uint8_t> found(scan.cells.size());
+  lisco::GroundFilter().filterScan(parameters, scan.steps, scan.lasers, cell_at, found.data());
+  double both = 0, ground = 0, all = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (std::isnan(scan.cells[i].x)) continue;
+    const bool is_ground = scan.cells[i].object == 0;
+    ground += is_ground;
+    all += found[i];
+    both += is_ground && found[i] != 0;
+  }
+  return {both / ground, both / all};
+}
+
+// The lines of such fields, drawn on to beneath the sensor, end up to a metre below the ground.
+TEST(Drive, ShowsTheGroundOfUnevenFieldsInASingleScan) {
+  for (const char* const sensor : {"hdl64e", "hdl32e"})
+    for (const unsigned seed : {1U, 14U}) {
+      Drive field = driveOver("field", {}, {seed, 0.02, 0.005}, sensor, 0);
+      const GroundFound found = groundFoundIn(field.columns(0, field.sensor().steps));
+      EXPECT_GT(found.recall, 0.9) << sensor << ", seed " << seed;
+      EXPECT_GT(found.precision, 0.98) << sensor << ", seed " << seed;
+    }
 }
 
 TEST(Drive, MovesObjectsBySpeedTimesTime) {

@@ -84,6 +84,17 @@ TEST(GroundScenes, FindsRampsUpAndDown) {
   }
 }
 
+// The lines of the ground, drawn on to beneath the sensor, end half a metre below it.
+TEST(GroundScenes, EstimateThePlaneOfAHollowWhereItsLinesBegin) {
+  const Scan scan =
+      scanOfSurface([](double x, double y) { return 0.15 * std::clamp(std::hypot(x, y) - 3.0, 0.0, 12.0) - kHeight; });
+  const auto cells = [&](std::size_t laser, std::size_t column) { return scan.cells[laser * scan.columns + column]; };
+  std::vector<std::uint8_t> ground(scan.cells.size());
+  const auto estimated = lisco::GroundFilter().filterScan({}, scan.columns, scan.lasers, cells, ground.data());
+  EXPECT_NEAR(static_cast<double>(estimated.sensor_height), kHeight, 0.2);
+  EXPECT_GT(share(scan, ground, all), 0.98);
+}
+
 /// 12 m x 8 m and 3.2 m high, with a table 1 m wide; the sensor is 1 m above the floor.
 Scan room(std::size_t lasers) {
   const auto isTable = [](double x, double y) { return std::fabs(x - 3.0) < 0.5 && std::fabs(y) < 1.0; };

@@ -232,7 +232,7 @@ GroundParameters estimateGroundPlane(std::size_t columns, std::size_t lasers, Gr
     block.measure(sampled, 0, parameters.sensor);
     for (std::size_t i = 0; i <= to; ++i) estimator.add(block, sampled, 0, i);
   }
-  estimator.update();
+  estimator.estimate();
   if (!estimator.isKnown()) return parameters;
   if (std::isnan(parameters.sensor_height)) parameters.sensor_height = -estimator.plane().height;
   parameters.slope = {estimator.plane().slope_x + parameters.sensor.tilt[0],

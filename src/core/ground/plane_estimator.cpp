@@ -34,6 +34,8 @@ constexpr double kPointReach = 6.0;     // metres; where lines begin further out
 constexpr double kSlopeReach = 2.0;     // metres, over which a line's slope counts
 constexpr double kLevelWeight = 20.0;   // square metres, of the horizon
 constexpr float kMinWeight = 6.0F;      // of the lines that show a plane
+constexpr float kOnPlane = 0.2F;        // metres; lines that begin this near to a plane begin on it
+constexpr float kClearlyMore = 1.5F;    // times the weight of lines that begin on another plane
 // Updates per one that shows ground, at most: 1 to 2 on streets, 9 and more where objects alone are around. Where a
 // plane may be a table's, most updates show it, or it is none.
 constexpr std::uint32_t kUpdatesPerGround = 8, kUpdatesPerLowGround = 3;
@@ -189,15 +191,42 @@ void PlaneEstimator::update() {
   seen_ = count_;
   if (height_state_ == Height::kFound) return refine();
   if (height_state_ == Height::kGiven) return fitSlopes();
-  const std::size_t size = std::min(count_, kMemory);
-  const Agreed agreed = lowestOf(lines_.data(), size, kWindow, kEnough);
-  if (agreed.weight < kMinWeight) return;
+  if (!find()) return;
+  // The lines so far come from all kColumns columns of a block, which have one direction. From now on one column of a
+  // block adds a line, and each of these lines counts as much less.
+  for (std::size_t i = 0; i < std::min(count_, kMemory); ++i) lines_[i].weight /= static_cast<float>(Block::kColumns);
+}
+
+/// On uneven ground, lines are far off beneath the sensor: a plane refined by where they begin is taken if it clearly
+/// holds more of these places.
+void PlaneEstimator::estimate() {
+  if (height_state_ == Height::kGiven) return fitSlopes();
+  if (!find()) return;
+  const Plane found = plane_;
+  refine();
+  refine();  // by other lines, as the slope has changed
+  if (!(weightOn(plane_) > kClearlyMore * weightOn(found))) plane_ = found;
+}
+
+/// Finds the plane's height from those of the lines beneath the sensor. \return false if they show none
+bool PlaneEstimator::find() {
+  const Agreed agreed = lowestOf(lines_.data(), std::min(count_, kMemory), kWindow, kEnough);
+  if (agreed.weight < kMinWeight) return false;
   plane_.height = agreed.height;
   height_state_ = Height::kFound;
   fitSlopes();
-  // The lines so far come from all kColumns columns of a block, which have one direction. From now on one column of a
-  // block adds a line, and each of these lines counts as much less.
-  for (std::size_t i = 0; i < size; ++i) lines_[i].weight /= static_cast<float>(Block::kColumns);
+  return true;
+}
+
+/// Weight of the lines that begin on a plane.
+float PlaneEstimator::weightOn(const Plane& plane) const {
+  float weight = 0.0F;
+  for (std::size_t i = 0; i < std::min(count_, kMemory); ++i) {
+    const Line& line = lines_[i];
+    const float slope = line.slope - plane.slopeTowards(line.direction);
+    if (std::fabs(line.height - plane.height + slope * line.rho) < kOnPlane) weight += line.weight;
+  }
+  return weight;
 }
 
 /// Fits the slopes of a plane to those of the lines at its height.

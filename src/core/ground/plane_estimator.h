@@ -38,6 +38,9 @@ class PlaneEstimator {
   /// Updates the plane by the columns added since the last update; it stays as it is if they show too little.
   void update();
 
+  /// Estimates the plane by all columns added, as those of a whole scan, instead of update ().
+  void estimate();
+
   /// Whether a height was given or found.
   bool hasHeight() const { return height_state_ != Height::kUnknown; }
   /// Whether there is a plane: a height was given, or enough of the latest updates have shown ground.
@@ -57,8 +60,10 @@ class PlaneEstimator {
     float height, weight;
   };
   static Agreed lowestOf(const Line* lines, std::size_t size, float window, float enough);
+  bool find();
   void fitSlopes();
   void refine();
+  float weightOn(const Plane& plane) const;
 
   std::vector<float> rho_, height_, x_, y_;  // of a column's near returns; then the directions towards them
   std::vector<std::uint64_t> lowest_;        // as in Cell
