@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "recordings/cloud_columns.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "io/point_geometry.h"
@@ -29,6 +31,17 @@ CloudColumns::CloudColumns(const Topic& topic)
         return scanOf(pointCloud2In({0, 1000 * packet.time_us, packet.data, packet.size}, topic));
       }) {}
 
+void CloudColumns::estimateSensor(const Cloud& cloud) {
+  std::array<float, 3> declared{};
+  if (cloud.sensor_origin_.allFinite()) std::copy_n(cloud.sensor_origin_.data(), declared.size(), declared.begin());
+  const auto cell_at = [&cloud](std::size_t row, std::size_t column) {
+    const pcl::PointXYZ& point = cloud[row * cloud.width + column];
+    return lisco::Return{point.x, point.y, point.z, 0};
+  };
+  sensor_ = lisco::estimateSensor(cloud.width, cloud.height, declared, lisco::CellSource(cell_at), sensor_);
+  place_ = sensor_.steps_per_turn != 0 ? SensorPlace{sensor_.origin, sensor_.tilt} : SensorPlace{declared, {}};
+}
+
 Decoder::Kind CloudColumns::decode(const Packet& packet, const Visitor& visit) {
   constexpr double kHourUs = 3600e6;
   Scan scan;
@@ -49,6 +62,7 @@ Decoder::Kind CloudColumns::decode(const Packet& packet, const Visitor& visit) {
     return Kind::kForeign;
   }
   ++counts_.data;
+  estimateSensor(cloud);
   const bool has_other_rows = !cells_.empty() && cells_.size() != cloud.height;
   cells_.resize(cloud.height);
   for (std::size_t column = 0; column < cloud.width; ++column) {
@@ -59,7 +73,7 @@ Decoder::Kind CloudColumns::decode(const Packet& packet, const Visitor& visit) {
       const bool is_return = isReturn(point);
       cells_[row] = is_return ? Cell{point.x, point.y, point.z, 0} : kNoCell;
       if (!is_return) continue;
-      const double azimuth = azimuthOf(point);
+      const double azimuth = azimuthOf(pcl::PointXYZ(point.x - place_.origin[0], point.y - place_.origin[1], 0));
       x += std::cos(azimuth);
       y += std::sin(azimuth);
     }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "io/scan_file.h"
+#include "lisco/sensor_hints.h"
 #include "recordings/topic_reader.h"
 #include "sensors/decoder.h"
 #include "sensors/packet_source.h"
@@ -29,7 +30,8 @@ class RawMessages : public PacketSource {
 };
 
 /// Takes clouds for packets, and gives the columns of each: a rotation begins with each cloud. The frame is the
-/// cloud's; an azimuth is that of a column's returns in the mean. Clouds that are malformed, or have no rows, neither
+/// cloud's, which may be a vehicle's: the sensor's place in it is estimated. An azimuth is that of a column's returns in
+/// the mean, as seen from the sensor. Clouds that are malformed, or have no rows, neither
 /// by themselves nor by their rings, are foreign.
 class CloudColumns : public Decoder {
  public:
@@ -39,14 +41,20 @@ class CloudColumns : public Decoder {
   explicit CloudColumns(const Topic& topic);
 
   Kind decode(const Packet& packet, const Visitor& visit) override;
+  SensorPlace sensorPlace() const override { return place_; }
+  bool turnsClockwise() const override { return sensor_.clockwise || sensor_.steps_per_turn == 0; }
 
   /// The clouds that were left out since they are malformed, or since they have no rows: a line each; empty if none.
   std::vector<std::string> leftOut() const;
 
  private:
   std::function<Scan(const Packet&)> read_;
+  void estimateSensor(const Cloud& cloud);
+
   std::vector<Cell> cells_;
-  double azimuth_ = 0;  ///< of the last column
+  lisco::SensorHints sensor_;  ///< estimate of the last cloud
+  SensorPlace place_;          ///< by the same, or as the cloud declares it if no rotating sensor is recognized
+  double azimuth_ = 0;         ///< of the last column
   std::uint64_t malformed_ = 0, without_rows_ = 0;
   std::string first_malformed_;  ///< when, and why
 };

@@ -3,6 +3,7 @@
 #include "sensors/decoder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include <boost/algorithm/string/join.hpp>
@@ -15,6 +16,14 @@
 #include "sensors/velodyne_model.h"
 
 namespace lisco_apps {
+
+bool SensorPlace::isAbout(const SensorPlace& other) const {
+  constexpr float kMaxShift = 0.1F, kMaxTilt = 0.01F;  // metres, metres per metre
+  const auto differ = [](float a, float b, float most) { return !(std::fabs(a - b) <= most); };
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (differ(origin[axis], other.origin[axis], kMaxShift)) return false;
+  return !differ(tilt[0], other.tilt[0], kMaxTilt) && !differ(tilt[1], other.tilt[1], kMaxTilt);
+}
 
 namespace {
 

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -33,6 +34,15 @@ struct Column {
   bool after_break;  ///< at least a whole turn is missing before it, or an unknown part, or its number of cells differs
   /// Whether a rotation starts with it; nullopt: by its azimuth.
   std::optional<bool> starts_rotation = std::nullopt;
+};
+
+/// A sensor in another frame than its own.
+struct SensorPlace {
+  std::array<float, 3> origin{};  ///< metres
+  std::array<float, 2> tilt{};    ///< by which its horizon rises along x and y, metres per metre
+
+  /// Whether two places differ by no more than estimates from one cloud to the next do.
+  bool isAbout(const SensorPlace& other) const;
 };
 
 /// Which of the returns of a laser and firing are given, if a packet carries several: the strongest, the last, which is
@@ -99,6 +109,11 @@ class Decoder {
   /// Upper bound of the azimuth between a column and its returns of 0.5 m or more, radians, at up to 20 turns a second.
   double stagger() const { return stagger_; }
   const Counts& counts() const { return counts_; }
+
+  /// Where the sensor is in the frame of the last columns; those of packets are in its own.
+  virtual SensorPlace sensorPlace() const { return {}; }
+  /// The sense of rotation of the last columns, seen from above. All sensors whose packets are decoded turn clockwise.
+  virtual bool turnsClockwise() const { return true; }
 
   /// The azimuth at which the sensor's own frames begin, degrees clockwise from +x; nullopt if it has none.
   virtual std::optional<double> rotationStart() const { return std::nullopt; }

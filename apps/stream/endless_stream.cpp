@@ -10,14 +10,19 @@
 namespace lisco_apps {
 EndlessStream::EndlessStream(const StreamOptions& options, const Decoder& decoder, Listener& listener)
     : Stream(options, decoder, listener) {
-  lisco::EndlessParameters parameters;
-  parameters.tolerance = options.tolerance;
-  parameters.min_size = options.min_size;
-  parameters.max_size = options.max_size;
-  parameters.clockwise = true;  // as azimuths count, from +x
-  parameters.stagger = std::min(decoder.stagger(), lisco::EndlessParameters::kMaxStagger);
-  parameters.block_columns = kBlock;
-  clusterer_.begin(parameters, [this](const lisco::EndlessCluster& cluster) { deliver(cluster); });
+  parameters_.tolerance = options.tolerance;
+  parameters_.min_size = options.min_size;
+  parameters_.max_size = options.max_size;
+  parameters_.clockwise = true;
+  parameters_.stagger = std::min(decoder.stagger(), lisco::EndlessParameters::kMaxStagger);
+  parameters_.block_columns = kBlock;
+  beginStream();
+}
+
+void EndlessStream::beginStream() {
+  clusterer_.begin(parameters_, [this](const lisco::EndlessCluster& cluster) { deliver(cluster); });
+  position_ = {};
+  marks_.clear();
 }
 
 bool EndlessStream::take(const PreparedColumn& column) {
@@ -90,8 +95,19 @@ void EndlessStream::closeTurns(double position) {
   }
 }
 
+/// Positions count azimuths from +x in the sense of rotation. Where clouds of another sensor follow, the stream ends.
 double EndlessStream::positionOf(const Column& column) {
   constexpr double kHourUs = 3600e6;
+  const SensorPlace place = decoder_.sensorPlace();
+  if (parameters_.clockwise != decoder_.turnsClockwise() || !place_.isAbout(place)) {
+    finishGround();
+    endStream();
+    outliers_before_ += clusterer_.outlierCount();
+    parameters_.clockwise = decoder_.turnsClockwise();
+    parameters_.origin = place.origin;
+    place_ = place;
+    beginStream();
+  }
   std::optional<double> turns;
   if (last_time_us_ && decoder_.turnUs() > 0 && !column.after_break) {
     turns = std::remainder(column.time_us - *last_time_us_, kHourUs) / decoder_.turnUs();
@@ -99,7 +115,8 @@ double EndlessStream::positionOf(const Column& column) {
     turns = decoder_.gapUs() / decoder_.turnUs();  // 0 if unknown
   }
   last_time_us_ = column.time_us;
-  return position_.next(column.azimuth, turns, column.after_break);
+  const double azimuth = parameters_.clockwise ? column.azimuth : std::fmod(360 - column.azimuth, 360.);
+  return position_.next(azimuth, turns, column.after_break);
 }
 
 /// When the first column came that cannot reach a cluster; of a cut cluster, the last column.
@@ -128,6 +145,7 @@ void EndlessStream::deliver(const lisco::EndlessCluster& cluster) {
       cells_.push_back(open->first_cell + cell);
     }
   });
+  delivered.turns_clockwise = parameters_.clockwise;
   delivered.first_position = cluster.firstPosition();
   delivered.last_position = cluster.lastPosition();
   delivered.is_cut = cluster.isCut();

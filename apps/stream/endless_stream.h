@@ -23,7 +23,7 @@ class EndlessStream : public Stream {
 
   void wait() override;
   void finish() override;
-  std::optional<std::uint64_t> outliers() const override { return clusterer_.outlierCount(); }
+  std::optional<std::uint64_t> outliers() const override { return outliers_before_ + clusterer_.outlierCount(); }
 
  private:
   /// Columns that are read together: at most a millisecond of these sensors. One by one they take three times as long.
@@ -44,6 +44,7 @@ class EndlessStream : public Stream {
   bool take(const PreparedColumn& column) override;
   void turnIsOver(Clock::time_point /*start*/) override {}
   double positionOf(const Column& column) override;
+  void beginStream();
   void begin(const PreparedColumn& column);
   void endTurn();
   void closeTurns(double position);
@@ -51,9 +52,12 @@ class EndlessStream : public Stream {
   void deliver(const lisco::EndlessCluster& cluster);
   std::optional<Clock::time_point> closedAt(double reach_end) const;
 
+  lisco::EndlessParameters parameters_;
+  SensorPlace place_;  ///< of the sensor
   TurnPosition position_;
   lisco::EndlessClusterer clusterer_;
-  std::deque<OpenTurn> turns_;  ///< the current one is last
+  std::uint64_t outliers_before_ = 0;  ///< of streams of the clusterer that have ended
+  std::deque<OpenTurn> turns_;         ///< the current one is last
   std::vector<OpenTurn> spare_;
   bool is_finishing_ = false;
   std::uint64_t next_cell_ = 0;  ///< number of the next cell; its lower half is the cell's source index

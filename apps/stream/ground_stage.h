@@ -54,6 +54,16 @@ class GroundStage {
 
   /// The place of the next column, to be filled before add (). All but the uses.
   PreparedColumn& next() { return waiting_[(first_ + count_) % kPlaces]; }
+  /// Sets the sensor of the columns that follow; if it is elsewhere than before, the ground is searched anew.
+  /// \param take as in add ()
+  template <typename Take>
+  void setSensor(const SensorPlace& sensor, Take&& take) {
+    if (sensor.isAbout(sensor_)) return;
+    finish(take);
+    sensor_ = sensor;
+    lasers_ = 0;
+  }
+
   /// Adds the column at next (). \param take called as void (const PreparedColumn&) with columns that are decided
   template <typename Take>
   void add(Take&& take) {
@@ -67,7 +77,10 @@ class GroundStage {
     if (column.cells.size() > lasers_) {
       finish(take, 1);
       lasers_ = column.cells.size();
-      filter_.begin({}, lasers_);
+      lisco::GroundParameters parameters;
+      parameters.sensor.origin = sensor_.origin;
+      parameters.sensor.tilt = sensor_.tilt;
+      filter_.begin(parameters, lasers_);
     }
     fillReturns(column);
     filter_.addColumn(returns_.data(), returns_.size(), [&](std::size_t, const std::uint8_t* ground, std::size_t) {
@@ -104,6 +117,7 @@ class GroundStage {
   GroundChoice ground_;
   Region region_;
   lisco::GroundFilter filter_;
+  SensorPlace sensor_;
   std::size_t lasers_ = 0;                       ///< of the filter; 0: not begun
   std::array<PreparedColumn, kPlaces> waiting_;  ///< a ring: keeps the memory of its columns
   std::size_t first_ = 0, count_ = 0;

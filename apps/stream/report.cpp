@@ -118,10 +118,11 @@ void Report::cluster(const DeliveredCluster& cluster) {
   if (cluster.is_cut) ++totals_.cut;
   if (cluster.is_continued) ++totals_.continued;
   if (format_ == Format::kText) return;
+  const double sense = cluster.turns_clockwise ? 1 : -1;
   Json json{{"id", cluster.found.id},
             {"time", secondsOf(cluster.time_us)},
-            {"first_azimuth", azimuthAt(cluster.first_position)},
-            {"last_azimuth", azimuthAt(cluster.last_position)},
+            {"first_azimuth", azimuthAt(sense * cluster.first_position)},
+            {"last_azimuth", azimuthAt(sense * cluster.last_position)},
             {"turns", rounded(cluster.last_position - cluster.first_position, kPerTurn)}};
   addFeatures(json, cluster.found.features);
   json["cut"] = cluster.is_cut;

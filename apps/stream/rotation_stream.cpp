@@ -61,7 +61,7 @@ lisco::Parameters RotationStream::parametersFor(const PreparedColumn& first) con
       return returnOf(turn_.cells[at], turn_.uses[at], 0);
     };
     const lisco::SensorHints estimated =
-        lisco::estimateSensor(turn_.columns(), turn_.lasers, {}, lisco::CellSource(cell_at));
+        lisco::estimateSensor(turn_.columns(), turn_.lasers, decoder_.sensorPlace().origin, lisco::CellSource(cell_at));
     if (estimated.steps_per_turn > 0) parameters.sensor = estimated;
   }
   parameters.tolerance = options_.tolerance;

@@ -12,6 +12,7 @@ bool Stream::add(const Column& column, const Origin& origin) {
   if (starts_turn) {
     turnIsOver(start);
     start = Clock::now();
+    stage_.setSensor(decoder_.sensorPlace(), [this](const PreparedColumn& decided) { pass(decided); });
   }
   const bool is_beyond = starts_turn && options_.rotations != 0 && received_turns_ == options_.rotations;
   is_open_ = is_open_ && takes_ && !(is_beyond && endsWithTurns());

@@ -76,6 +76,7 @@ struct DeliveredCluster {
   const std::vector<std::uint64_t>* cells = nullptr;  ///< numbers, from the first cell of the stream's first column
   FoundCluster found;
   double first_position = 0, last_position = 0;  ///< of its first and last column, turns
+  bool turns_clockwise = true;                   ///< positions count azimuths clockwise, else counterclockwise
   bool is_cut = false, is_continued = false;     ///< see lisco::EndlessCluster
   std::int64_t time_us = 0;                      ///< of the last packet before the delivery
   std::optional<Clock::duration> latency;        ///< none if delivered by the end of the stream

@@ -550,6 +550,68 @@ TEST_F(LiscoStream, FindsTheObjectsOfASimulatedDrive) {
   }
 }
 
+/// A simulated road, and the same scan in other frames and orders.
+class OtherClouds : public LiscoStream, public testing::WithParamInterface<const char*> {
+ protected:
+  struct Found {
+    double ground, clusters;
+  };
+
+  void write(const std::string& name) {
+    const Outcome simulated = runLine(std::string(LISCO_SIMULATE) + " --terrain road --sensor hdl32e -o " + name);
+    ASSERT_EQ(simulated.status, 0) << simulated.err;
+    if (name == "road.pcd") return;
+    const std::string content = textOf(folder_ / name);
+    const std::size_t data = content.find("DATA binary\n") + 12;
+    std::string header = content.substr(0, data);
+    struct Point {
+      float x, y, z;
+      std::uint32_t label;
+    };
+    std::vector<Point> points((content.size() - data) / sizeof(Point));
+    std::memcpy(points.data(), content.data() + data, points.size() * sizeof(Point));
+    const std::size_t width = pcdOf(content).width;
+    for (std::size_t row = 0; name == "reversed.pcd" && row < points.size(); row += width)
+      std::reverse(points.begin() + static_cast<std::ptrdiff_t>(row),
+                   points.begin() + static_cast<std::ptrdiff_t>(row + width));
+    const std::string viewpoint = "VIEWPOINT 0 0 0 ";
+    if (name == "in_a_map.pcd") header.replace(header.find(viewpoint), viewpoint.size(), "VIEWPOINT 1000 2000 100 ");
+    for (Point& point : points) {
+      if (name == "in_a_vehicles_frame.pcd") point = {point.x - 2, point.y, point.z + 1.8F, 0};
+      if (name == "in_a_map.pcd") point = {point.x + 1000, point.y + 2000, point.z + 100, 0};
+    }
+    header += std::string(reinterpret_cast<const char*>(points.data()), points.size() * sizeof(Point));
+    LiscoStream::write(name, header);
+  }
+
+  Found found(const std::string& cloud, const std::string& mode) {
+    const Outcome outcome = run(cloud + " -t 0.4 --json --stats --mode " + mode);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const std::size_t at = outcome.err.find(" of the ground");
+    EXPECT_NE(at, std::string::npos) << outcome.err;
+    if (mode == "endless") {
+      EXPECT_NE(outcome.err.find(" 0 outliers"), std::string::npos) << outcome.err;
+    }
+    const std::size_t number = outcome.err.rfind(' ', at - 1);
+    return {std::stod(outcome.err.substr(number)), static_cast<double>(statOf(outcome.err, "clusters"))};
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Name, OtherClouds, testing::Values("reversed", "in_a_vehicles_frame", "in_a_map"),
+                         [](const auto& test) { return std::string(test.param); });
+
+TEST_P(OtherClouds, HaveTheSameGroundAndClusters) {
+  const std::string name = std::string(GetParam()) + ".pcd";
+  write("road.pcd");
+  write(name);
+  for (const char* mode : {"rotation", "endless"}) {
+    const Found expected = found("road.pcd", mode);
+    const Found other = found(name, mode);
+    EXPECT_GT(expected.clusters, 50);
+    EXPECT_NEAR(other.ground, expected.ground, 0.02 * expected.ground) << mode;
+    EXPECT_NEAR(other.clusters, expected.clusters, 0.1 * expected.clusters) << mode;
+  }
+}
+
 // --- Errors --------------------------------------------------------------------------------------------------------
 
 TEST_F(LiscoStream, EndsAtTheTruncationOfACapture) {
