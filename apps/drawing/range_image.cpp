@@ -47,12 +47,14 @@ PointMap shiftedRows(const Cloud& cloud) {
 
 /// A projection by azimuth and elevation; the nearest return of a cell is shown.
 PointMap projected(const Cloud& cloud) {
+  const SensorPoint sensor = sensorOf(cloud);
   double lowest = kPi / 2;
   double highest = -kPi / 2;
   for (const auto& point : cloud)
     if (isReturn(point)) {
-      lowest = std::min(lowest, elevationOf(point));
-      highest = std::max(highest, elevationOf(point));
+      const double elevation = elevationOf(seenFrom(sensor, point));
+      lowest = std::min(lowest, elevation);
+      highest = std::max(highest, elevation);
     }
   PointMap map = emptyMap(kProjectedColumns, kProjectedRows);
   std::vector<double> nearest(map.points.size(), std::numeric_limits<double>::infinity());
@@ -60,8 +62,8 @@ PointMap projected(const Cloud& cloud) {
     return static_cast<std::size_t>(std::clamp(position * bins, 0.0, bins - 1.0));
   };
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const auto& point = cloud[i];
-    if (!isReturn(point)) continue;
+    if (!isReturn(cloud[i])) continue;
+    const pcl::PointXYZ point = seenFrom(sensor, cloud[i]);
     const double down = (highest - elevationOf(point)) / std::max(highest - lowest, 1e-9);
     const std::size_t cell =
         binOf(down, kProjectedRows) * kProjectedColumns + binOf(0.5 - azimuthOf(point) / (2 * kPi), kProjectedColumns);
@@ -87,11 +89,12 @@ PointMap thinnedOut(PointMap map) {
 /// Whether the first and the last column with returns lie side by side, as in a turn of a rotating sensor.
 bool meetsAtItsEnds(const Cloud& cloud, const PointMap& map) {
   if (seenByCamera(cloud)) return false;
+  const SensorPoint sensor = sensorOf(cloud);
   const auto directionOf = [&](int column, std::array<double, 2>& sum) {
     for (int row = 0; row < map.rows; ++row) {
       const std::int64_t index = map.points[map.cellAt(row, column)];
       if (index == PointMap::kNoPoint || !isReturn(cloud[static_cast<std::size_t>(index)])) continue;
-      const double azimuth = azimuthOf(cloud[static_cast<std::size_t>(index)]);
+      const double azimuth = azimuthOf(seenFrom(sensor, cloud[static_cast<std::size_t>(index)]));
       sum[0] += std::cos(azimuth);
       sum[1] += std::sin(azimuth);
     }

@@ -23,12 +23,14 @@ constexpr double kSwatch = 12;         ///< pixels, side of a square of colour
 ScanColors colorsOf(const ClusteredScan& scan, const std::vector<std::uint32_t>& labels,
                     const std::vector<Color>& of_cluster) {
   const Cloud& cloud = *scan.cloud;
+  const SensorPoint sensor = sensorOf(cloud);
   ScanColors colors;
   colors.of_cluster = of_cluster;
   colors.of_point.assign(cloud.size(), kBackground.argb());
   colors.shaded = colors.of_point;
   const auto color = [&](std::size_t i, const Color& plain) {
-    const double brightness = 1.0 - kDimming * std::log2(std::max(rangeOf(cloud[i]), kMinRange) / kFullBrightness);
+    const double range = std::max(rangeOf(seenFrom(sensor, cloud[i])), kMinRange);
+    const double brightness = 1.0 - kDimming * std::log2(range / kFullBrightness);
     colors.of_point[i] = plain.argb();
     colors.shaded[i] = plain.shaded(std::clamp(brightness, kMinBrightness, 1.0)).argb();
   };
@@ -105,13 +107,29 @@ void drawHeader(Canvas& canvas, const ClusteredScan& scan, double left, double r
   entry(kGround, "ground");
 }
 
+SensorPoint sensorOf(const Cloud& cloud) {
+  SensorPoint sensor{};
+  if (cloud.sensor_origin_.allFinite())
+    for (std::size_t axis = 0; axis < sensor.size(); ++axis)
+      sensor[axis] = static_cast<double>(cloud.sensor_origin_[static_cast<Eigen::Index>(axis)]);
+  return sensor;
+}
+
+pcl::PointXYZ seenFrom(const SensorPoint& sensor, const pcl::PointXYZ& point) {
+  return {static_cast<float>(static_cast<double>(point.x) - sensor[0]),
+          static_cast<float>(static_cast<double>(point.y) - sensor[1]),
+          static_cast<float>(static_cast<double>(point.z) - sensor[2])};
+}
+
 bool seenByCamera(const Cloud& cloud) {
+  const SensorPoint sensor = sensorOf(cloud);
   std::size_t returns = 0;
   std::size_t ahead = 0;
   for (const auto& point : cloud) {
     if (!isReturn(point)) continue;
     ++returns;
-    ahead += point.z > 0.5F * std::hypot(point.x, point.y) ? 1 : 0;
+    const pcl::PointXYZ seen = seenFrom(sensor, point);
+    ahead += seen.z > 0.5F * std::hypot(seen.x, seen.y) ? 1 : 0;
   }
   return returns > 0 && static_cast<double>(ahead) > kCameraShare * static_cast<double>(returns);
 }

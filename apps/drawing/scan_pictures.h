@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -17,9 +18,9 @@ namespace lisco_apps {
 /// - the scan as the sensor sees it, one cell per laser and step (an unorganized scan is projected by azimuth and
 ///   elevation): clusters in colours, noise grey, ground dark, no return black; the rectangles around the cells of the
 ///   larger clusters, divided where they cross the seam of a turn;
-/// - the scan from above, x (forward) up and y to the left, with the oriented boxes of the clusters, the sensor, rings
-///   of equal range and a scale. A camera's cloud (all points ahead in +z) is shown with z up and x to the right, with
-///   axis-aligned boxes.
+/// - the scan from above, x (forward) up and y to the left, with the oriented boxes of the clusters, the sensor and
+///   rings of equal range, unless it is far away, and a scale. A camera's cloud (all points ahead in +z) is shown with
+///   z up and x to the right, with axis-aligned boxes.
 /// \throws std::runtime_error if a file cannot be written
 void drawPictures(const ClusteredScan& scan, const fs::path& range_image_png, const fs::path& top_view_png);
 
@@ -65,6 +66,12 @@ void paintCells(Canvas& canvas, const PointMap& map, int left, const std::vector
 /// Writes the title at the left of the header and the meaning of the colours at its right.
 /// \param left, right ends of the header
 void drawHeader(Canvas& canvas, const ClusteredScan& scan, double left, double right);
+
+/// Where the sensor of a cloud is, metres: its VIEWPOINT; the origin if that is not finite.
+using SensorPoint = std::array<double, 3>;
+SensorPoint sensorOf(const Cloud& cloud);
+/// A point as seen from there.
+pcl::PointXYZ seenFrom(const SensorPoint& sensor, const pcl::PointXYZ& point);
 
 /// Whether the points lie ahead of a camera (+z forward) instead of around a LiDAR.
 bool seenByCamera(const Cloud& cloud);

@@ -23,29 +23,45 @@ constexpr int kRings = 20;
 /// The part of the plane that is shown: right and up in metres to pixels.
 class Window {
  public:
-  /// Holds the sensor and all but the outermost of the points.
-  Window(std::vector<double> rights, std::vector<double> ups) {
-    const auto [left, right] = spanOf(rights);
-    const auto [low, high] = spanOf(ups);
-    extent_ = std::max({right - left, high - low, kMinExtent}) * kMargin;
-    center_right_ = (left + right) / 2;
-    center_up_ = (low + high) / 2;
+  /// Holds all but the outermost of the points, and the sensor, unless it is farther away than they are wide.
+  /// \param sensor right and up
+  Window(std::vector<double> rights, std::vector<double> ups, const std::array<double, 2>& sensor) {
+    const Span right = spanOf(rights, sensor[0]);
+    const Span up = spanOf(ups, sensor[1]);
+    const double width = std::max(right.second - right.first, up.second - up.first);
+    shows_sensor_ = isNear(right, sensor[0], width) && isNear(up, sensor[1], width);
+    const auto [left_end, right_end] = shows_sensor_ ? widened(right, sensor[0]) : right;
+    const auto [low_end, high_end] = shows_sensor_ ? widened(up, sensor[1]) : up;
+    extent_ = std::max({right_end - left_end, high_end - low_end, kMinExtent}) * kMargin;
+    center_right_ = (left_end + right_end) / 2;
+    center_up_ = (low_end + high_end) / 2;
   }
 
   double extent() const { return extent_; }  ///< metres
+  bool showsSensor() const { return shows_sensor_; }
   double pixelsPerMetre() const { return kSize / extent_; }
   double x(double right) const { return kSize / 2.0 + (right - center_right_) * pixelsPerMetre(); }
   double y(double up) const { return kHeaderHeight + kSize / 2.0 - (up - center_up_) * pixelsPerMetre(); }
 
  private:
-  static std::pair<double, double> spanOf(std::vector<double>& values) {
-    values.push_back(0);
+  using Span = std::pair<double, double>;
+
+  /// \param sensor is taken where there are no values
+  static Span spanOf(std::vector<double>& values, double sensor) {
+    if (values.empty()) values.push_back(sensor);
     std::sort(values.begin(), values.end());
     const std::size_t cut = values.size() / kOutermost;
-    return {std::min(0.0, values[cut]), std::max(0.0, values[values.size() - 1 - cut])};
+    return {values[cut], values[values.size() - 1 - cut]};
+  }
+  static bool isNear(const Span& span, double sensor, double width) {
+    return sensor >= span.first - width && sensor <= span.second + width;
+  }
+  static Span widened(const Span& span, double sensor) {
+    return {std::min(span.first, sensor), std::max(span.second, sensor)};
   }
 
   double extent_, center_right_, center_up_;
+  bool shows_sensor_;
 };
 
 void drawScaleBar(Canvas& canvas, double length, double pixels) {
@@ -66,6 +82,11 @@ class View {
       : cloud_(*scan.cloud), is_camera_(seenByCamera(cloud_)), window_(windowAround(scan.returns.clustered)) {}
 
   const Window& window() const { return window_; }
+  /// Right and up, metres.
+  std::array<double, 2> sensor() const {
+    const SensorPoint at = sensorOf(cloud_);
+    return is_camera_ ? std::array<double, 2>{at[0], at[2]} : std::array<double, 2>{-at[1], at[0]};
+  }
   /// \return false outside of the picture
   bool find(std::size_t point, int& x, int& y) const {
     if (!isReturn(cloud_[point])) return false;
@@ -104,7 +125,7 @@ class View {
       rights.push_back(rightOf(static_cast<std::size_t>(index)));
       ups.push_back(upOf(static_cast<std::size_t>(index)));
     }
-    return {std::move(rights), std::move(ups)};
+    return {std::move(rights), std::move(ups), sensor()};
   }
 
   const Cloud& cloud_;
@@ -129,7 +150,15 @@ void drawBoxes(Canvas& canvas, const ClusteredScan& scan, const View& view, cons
       top = std::min(top, y);
       bottom = std::max(bottom, y);
     }
-    const double x = (left + right) / 2;
+    // Above the uppermost corner, or the middle of the upper side.
+    double x = 0;
+    int corners = 0;
+    for (const auto& [corner_x, corner_y] : view.corners(scan.features[i]))
+      if (corner_y < top + 1) {
+        x += corner_x;
+        ++corners;
+      }
+    x /= corners;
     if (std::max(right - left, bottom - top) < kMinBox || x < 0 || x >= kSize || top < kHeaderHeight + 2 * kAbove ||
         top >= kSize + kHeaderHeight)
       continue;
@@ -163,25 +192,28 @@ void drawTopView(const ClusteredScan& scan, const PointMap& map, const ScanColor
   const Window& window = view.window();
   const double ring = roundLength(window.extent() / 4);  // metres between rings of equal range
   const double ring_pixels = ring * window.pixelsPerMetre();
-  const double sensor_x = window.x(0);
-  const double sensor_y = window.y(0);
+  const int rings = window.showsSensor() ? kRings : 0;
+  const double sensor_x = window.x(view.sensor()[0]);
+  const double sensor_y = window.y(view.sensor()[1]);
   canvas.setColor(kLine);
-  for (int i = 1; i <= kRings; ++i) canvas.circle(sensor_x, sensor_y, i * ring_pixels, 1);
+  for (int i = 1; i <= rings; ++i) canvas.circle(sensor_x, sensor_y, i * ring_pixels, 1);
 
   paintCells(canvas, map, 0, colors.of_point);
   drawBoxes(canvas, scan, view, colors);
 
   canvas.setColor(kText, 0.75);
-  for (int i = 1; i <= kRings; ++i) {
+  for (int i = 1; i <= rings; ++i) {
     const double y = sensor_y - i * ring_pixels;
     if (y < kHeaderHeight + 14) break;
     canvas.text(sensor_x + 4, y - 4, kLabelSize, formatted("%g m", i * ring));
   }
   // The sensor: a circle with a line that points forward.
-  canvas.setColor(kText);
-  canvas.circle(sensor_x, sensor_y, 6, 2);
-  canvas.line(sensor_x, sensor_y - 6, sensor_x, sensor_y - 18, 2);
-  canvas.label(sensor_x, sensor_y + 18, kLabelSize, "sensor", kText);
+  if (window.showsSensor()) {
+    canvas.setColor(kText);
+    canvas.circle(sensor_x, sensor_y, 6, 2);
+    canvas.line(sensor_x, sensor_y - 6, sensor_x, sensor_y - 18, 2);
+    canvas.label(sensor_x, sensor_y + 18, kLabelSize, "sensor", kText);
+  }
   drawScaleBar(canvas, ring, ring_pixels);
 
   canvas.setColor(kBackground);

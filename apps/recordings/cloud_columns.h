@@ -30,9 +30,9 @@ class RawMessages : public PacketSource {
 };
 
 /// Takes clouds for packets, and gives the columns of each: a rotation begins with each cloud. The frame is the
-/// cloud's, which may be a vehicle's: the sensor's place in it is estimated. An azimuth is that of a column's returns in
-/// the mean, as seen from the sensor. Clouds that are malformed, or have no rows, neither
-/// by themselves nor by their rings, are foreign.
+/// cloud's, which may be a vehicle's: the sensor's place in it is estimated. An azimuth is that of a column's returns
+/// in the mean, as seen from the sensor. Clouds that are malformed, or have no rows, neither by themselves nor by their
+/// rings, are foreign.
 class CloudColumns : public Decoder {
  public:
   /// \param read gives the cloud of a packet; throws Broken if it is malformed

@@ -336,6 +336,28 @@ TEST_F(ScanPictures, BoxesAreDividedAtTheSeam) {
   EXPECT_FALSE(box.rightOf(599));
 }
 
+/// Number of points that a picture shows.
+std::size_t shownIn(const PointMap& map) {
+  std::set<std::int64_t> shown(map.points.begin(), map.points.end());
+  shown.erase(PointMap::kNoPoint);
+  return shown.size();
+}
+
+TEST_F(ScanPictures, TopViewShowsCloudsFarFromTheOrigin) {
+  ClusteredScan scan = wallAt(100, 220);
+  const auto expected = static_cast<double>(shownIn(topViewOf(scan)));
+  EXPECT_GT(expected, 100);
+  auto moved = std::make_shared<Cloud>(*scan.cloud);
+  for (pcl::PointXYZ& point : *moved) {
+    point.x += 4000;
+    point.y -= 6000;
+  }
+  scan.cloud = moved;
+  EXPECT_GT(static_cast<double>(shownIn(topViewOf(scan))), expected / 2);
+  moved->sensor_origin_ << 4000, -6000, 0, 0;
+  EXPECT_NEAR(static_cast<double>(shownIn(topViewOf(scan))), expected, 0.05 * expected);
+}
+
 /// A real scan and its tolerance.
 struct ScanFile {
   const char* name;
