@@ -161,14 +161,19 @@ void PlaneEstimator::add(const Block& block, const Columns& columns, std::size_t
   lines_[count_++ % kMemory] = line;
 }
 
+/// Weight of a line's height beneath the sensor.
+float PlaneEstimator::sureWeight(const Line& line) {
+  const float reach = line.rho / kSureReach, squared = reach * reach;
+  return line.weight * std::min(1.0F, 2.0F / (1.0F + squared * squared));
+}
+
 /// Of the heights that at least `enough` of the most weight agrees with, the lowest: the mean of those near it, and
 /// their weight.
 PlaneEstimator::Agreed PlaneEstimator::lowestOf(const Line* lines, std::size_t size, float window, float enough) {
   std::array<float, kMemory> heights, support{};
   for (std::size_t i = 0; i < size; ++i) heights[i] = lines[i].height;
   for (std::size_t j = 0; j < size; ++j) {
-    const float reach = lines[j].rho / kSureReach;
-    const float height = lines[j].height, weight = lines[j].weight * std::min(1.0F, 2.0F / (1.0F + reach * reach));
+    const float height = lines[j].height, weight = sureWeight(lines[j]);
     for (std::size_t i = 0; i < size; ++i) support[i] += std::fabs(heights[i] - height) < window ? weight : 0.0F;
   }
   float most = 0.0F;
@@ -210,8 +215,12 @@ void PlaneEstimator::estimate() {
 
 /// Finds the plane's height from those of the lines beneath the sensor. \return false if they show none
 bool PlaneEstimator::find() {
-  const Agreed agreed = lowestOf(lines_.data(), std::min(count_, kMemory), kWindow, kEnough);
-  if (agreed.weight < kMinWeight) return false;
+  const std::size_t size = std::min(count_, kMemory);
+  const Agreed agreed = lowestOf(lines_.data(), size, kWindow, kEnough);
+  float sure = 0.0F;
+  for (std::size_t i = 0; i < size; ++i)
+    if (std::fabs(lines_[i].height - agreed.height) < 2.0F * kWindow) sure += sureWeight(lines_[i]);
+  if (sure < kMinWeight) return false;
   plane_.height = agreed.height;
   height_state_ = Height::kFound;
   fitSlopes();

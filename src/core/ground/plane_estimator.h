@@ -59,6 +59,7 @@ class PlaneEstimator {
   struct Agreed {
     float height, weight;
   };
+  static float sureWeight(const Line& line);
   static Agreed lowestOf(const Line* lines, std::size_t size, float window, float enough);
   bool find();
   void fitSlopes();
