@@ -12,29 +12,12 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <hwy/highway.h>
-
 #include "core/ground/follow_rows.h"
+#include "core/ground/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace lisco {
+namespace lisco::ground {
 namespace HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using ground::Block;
-using ground::FollowResult;
-using ground::FollowSetting;
-using ground::Found;
-using ground::GroundMap;
-using ground::Passed;
-using ground::RowOrder;
-
-using LaneFloats = hn::CappedTag<float, Block::kColumns>;
-using LaneInts = hn::RebindToSigned<LaneFloats>;
-using Floats = hn::Vec<LaneFloats>;
-using Mask = hn::Mask<LaneFloats>;
-constexpr LaneFloats kLanes{};
-constexpr LaneInts kLaneInts{};
 
 // Distances and heights are metres, slopes metres per metre.
 // Least loss of objects and of ground in the tables of benchmarks/suite.sh ground ground_real.
@@ -63,14 +46,10 @@ struct FollowedRow {
   const GroundMap::Sector* sector;
   const Passed* before;  ///< of the rows below
   Passed* passed;
-  const ground::GroundReached* inwards;  ///< the ground that these have reached
-  ground::GroundReached* followed;
+  const GroundReached* inwards;  ///< the ground that these have reached
+  GroundReached* followed;
   std::size_t number;  ///< of `followed`
 };
-
-HWY_INLINE Floats set(float value) {
-  return hn::Set(kLanes, value);
-}
 
 HWY_INLINE Floats select(Mask mask, Floats yes, Floats no) {
   return hn::IfThenElse(mask, yes, no);
@@ -181,7 +160,7 @@ HWY_INLINE Mask isRough(const FollowedRow& row, std::size_t k, Floats rho, Float
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace lisco
+}  // namespace lisco::ground
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -13,24 +13,17 @@
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
+#include "core/ground/lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
-namespace lisco {
+namespace lisco::ground {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-/// A laser's cells of a block, or a part of them.
-using RowFloats = hn::CappedTag<float, ground::Block::kColumns>;
-using RowVector = hn::Vec<RowFloats>;
-constexpr RowFloats kRow{};
-constexpr hn::RebindToSigned<RowFloats> kRowInts{};
-
-void measureRows(ground::Block& block, const ground::Columns& columns, std::size_t first, const SensorHints& sensor) {
+void measureRows(Block& block, const Columns& columns, std::size_t first, const SensorHints& sensor) {
   constexpr float kMaxCoordinate = 1e6F;  // metres; beyond, coordinates are no measurements
-  const auto set = [](float value) { return hn::Set(kRow, value); };
-  const auto most = hn::BitCast(kRowInts, set(kMaxCoordinate));
-  const std::size_t rows = block.size / ground::Block::kColumns;
-  const auto least = set(ground::Block::kMinRho);
+  const auto most = hn::BitCast(kLaneInts, set(kMaxCoordinate));
+  const std::size_t rows = block.size / Block::kColumns;
+  const auto least = set(Block::kMinRho);
   // Looked up once: the bytes of `returns` may be stored to any pointer.
   const std::array<float, 3> origin = sensor.origin;
   const std::array<float, 2> tilt = sensor.tilt;
@@ -48,50 +41,49 @@ void measureRows(ground::Block& block, const ground::Columns& columns, std::size
   const std::size_t stride = columns.stride;
   for (std::size_t row = 0; row < rows; ++row) {
     unsigned returns = 0;
-    for (std::size_t k = 0; k < ground::Block::kColumns; k += hn::Lanes(kRow)) {
+    for (std::size_t k = 0; k < Block::kColumns; k += hn::Lanes(kLanes)) {
       const std::size_t from = row * stride + k;
-      const std::size_t to = row * ground::Block::kColumns + k;
-      const auto x_read = hn::LoadU(kRow, x_from + from);
-      const auto y_read = hn::LoadU(kRow, y_from + from);
-      const auto z_read = hn::LoadU(kRow, z_from + from);
+      const std::size_t to = row * Block::kColumns + k;
+      const auto x_read = hn::LoadU(kLanes, x_from + from);
+      const auto y_read = hn::LoadU(kLanes, y_from + from);
+      const auto z_read = hn::LoadU(kLanes, z_from + from);
       const auto x = hn::Sub(x_read, set(origin[0]));
       const auto y = hn::Sub(y_read, set(origin[1]));
       const auto z = hn::Sub(z_read, set(origin[2]));
       // As integers, the magnitudes of floats are in their order, and those of NaN above all.
-      const auto magnitude = [](RowVector value) HWY_ATTR { return hn::BitCast(kRowInts, hn::Abs(value)); };
+      const auto magnitude = [](Floats value) HWY_ATTR { return hn::BitCast(kLaneInts, hn::Abs(value)); };
       const auto largest = hn::Max(hn::Max(magnitude(x), magnitude(y)), magnitude(z));
-      const auto any = hn::BitCast(kRowInts, hn::Abs(hn::Or(hn::Or(x_read, y_read), z_read)));
-      const auto is_return = hn::RebindMask(kRow, hn::AndNot(hn::Eq(any, hn::Zero(kRowInts)), hn::Lt(largest, most)));
+      const auto any = hn::BitCast(kLaneInts, hn::Abs(hn::Or(hn::Or(x_read, y_read), z_read)));
+      const auto is_return =
+          hn::RebindMask(kLanes, hn::AndNot(hn::Eq(any, hn::Zero(kLaneInts)), hn::Lt(largest, most)));
       const auto squared = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
       const auto rho = hn::Sqrt(hn::IfThenElseZero(is_return, squared));
-      hn::StoreU(rho, kRow, block_rho + to);
+      hn::StoreU(rho, kLanes, block_rho + to);
       std::uint8_t bits[8] = {};
-      hn::StoreMaskBits(kRow, hn::Gt(rho, least), bits);
+      hn::StoreMaskBits(kLanes, hn::Gt(rho, least), bits);
       returns |= static_cast<unsigned>(bits[0]) << k;
       const auto horizon = hn::Add(hn::Mul(set(tilt[0]), x), hn::Mul(set(tilt[1]), y));
       const auto height = hn::IfThenElseZero(is_return, hn::Sub(z, horizon));
-      hn::StoreU(height, kRow, block_height + to);
+      hn::StoreU(height, kLanes, block_height + to);
     }
     block_returns[row] = static_cast<std::uint8_t>(returns);
     const std::size_t last = 31 - static_cast<std::size_t>(__builtin_clz(returns | 1U));
     last_columns[row] = static_cast<std::uint32_t>(last);
     last_x[row] = x_from[row * stride + last] - origin[0];
     last_y[row] = y_from[row * stride + last] - origin[1];
-    last_rho[row] = block_rho[row * ground::Block::kColumns + last];
-    last_height[row] = block_height[row * ground::Block::kColumns + last];
+    last_rho[row] = block_rho[row * Block::kColumns + last];
+    last_height[row] = block_height[row * Block::kColumns + last];
   }
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace lisco
+}  // namespace lisco::ground
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace lisco {
+namespace lisco::ground {
 
 HWY_EXPORT(measureRows);
-
-namespace ground {
 
 void Columns::resize(std::size_t lasers, std::size_t columns) {
   stride = columns;
@@ -120,6 +112,5 @@ void Block::measure(const Columns& columns, std::size_t first, const SensorHints
   HWY_DYNAMIC_DISPATCH(measureRows)(*this, columns, first, sensor);
 }
 
-}  // namespace ground
-}  // namespace lisco
+}  // namespace lisco::ground
 #endif

@@ -14,7 +14,7 @@
 #include "core/ground/above-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace lisco {
+namespace lisco::ground {
 namespace HWY_NAMESPACE {
 
 // Distances and heights are metres, slopes metres per metre.
@@ -104,8 +104,8 @@ struct RowPart {
 };
 
 HWY_INLINE RowPart partOf(const FollowedRow& row, std::size_t k, Floats steepest) {
-  const ground::GroundReached& before = *row.inwards;
-  const auto load = [k](const ground::Lanes& lanes) { return hn::LoadU(kLanes, lanes.data() + k); };
+  const GroundReached& before = *row.inwards;
+  const auto load = [k](const Lanes& lanes) { return hn::LoadU(kLanes, lanes.data() + k); };
   RowPart part;
   part.rho = hn::LoadU(kLanes, row.rho + k);
   part.height = hn::LoadU(kLanes, row.height + k);
@@ -166,10 +166,10 @@ HWY_INLINE Mask areObstacles(const RowPart& part, const Above& above) {
 /// Moves the ground reached to the returns of `reached`.
 HWY_INLINE void advance(const FollowedRow& row, std::size_t k, Mask reached, Floats rho, Floats height,
                         Floats max_slope) {
-  const ground::GroundReached& before = *row.inwards;
-  ground::GroundReached& now = *row.followed;
-  const auto load = [k](const ground::Lanes& lanes) { return hn::LoadU(kLanes, lanes.data() + k); };
-  const auto store = [k](Floats value, ground::Lanes& lanes) { hn::StoreU(value, kLanes, lanes.data() + k); };
+  const GroundReached& before = *row.inwards;
+  GroundReached& now = *row.followed;
+  const auto load = [k](const Lanes& lanes) { return hn::LoadU(kLanes, lanes.data() + k); };
+  const auto store = [k](Floats value, Lanes& lanes) { hn::StoreU(value, kLanes, lanes.data() + k); };
   auto back_rho = load(before.back_rho), back_height = load(before.back_height);
   auto next_rho = load(before.next_rho), next_height = load(before.next_height);
   const auto far = hn::And(reached, hn::Ge(hn::Sub(rho, next_rho), grown(kBaseline, kBaselineGrowth, rho)));
@@ -364,7 +364,7 @@ void followRows(const FollowSetting& setting, std::size_t first, std::size_t end
   const std::uint32_t* const sectors = setting.sectors;
   const Passed* const starts = setting.starts;
   Passed* const passed = result.passed;
-  ground::GroundReached* const reached = result.followed;
+  GroundReached* const reached = result.followed;
   Found* const found = result.found;
   for (std::size_t i = first; i < end; ++i) {
     const RowOrder::Row& row = rows[i];
@@ -391,17 +391,17 @@ void followRows(const FollowSetting& setting, std::size_t first, std::size_t end
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace lisco
+}  // namespace lisco::ground
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace lisco {
+namespace lisco::ground {
 
 HWY_EXPORT(followRows);
 
-void ground::followRows(const FollowSetting& setting, std::size_t first, std::size_t end, const FollowResult& result) {
+void followRows(const FollowSetting& setting, std::size_t first, std::size_t end, const FollowResult& result) {
   HWY_DYNAMIC_DISPATCH(followRows)(setting, first, end, result);
 }
 
-}  // namespace lisco
+}  // namespace lisco::ground
 #endif

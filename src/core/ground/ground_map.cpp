@@ -13,11 +13,10 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace lisco {
+namespace lisco::ground {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using ground::GroundMap;
 
 /// Starts a sector with what is known some sectors away.
 /// \param sectors how many; negative: clockwise
@@ -43,15 +42,14 @@ void copySector(const GroundMap::Sector& from, float sectors, float slope, float
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace lisco
+}  // namespace lisco::ground
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace lisco {
+namespace lisco::ground {
 
 HWY_EXPORT(copySector);
 
-namespace ground {
 namespace {
 
 // Least loss of objects and of ground in the tables of benchmarks/suite.sh ground ground_real.
@@ -101,6 +99,5 @@ void GroundMap::renew(std::size_t number, std::uint32_t block, const Plane& plan
   sector = Sector();
 }
 
-}  // namespace ground
-}  // namespace lisco
+}  // namespace lisco::ground
 #endif

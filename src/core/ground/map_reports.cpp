@@ -14,28 +14,11 @@
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
+#include "core/ground/lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
-namespace lisco {
+namespace lisco::ground {
 namespace HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using ground::Block;
-using ground::FollowResult;
-using ground::FollowSetting;
-using ground::Found;
-using ground::GroundMap;
-using ground::GroundReached;
-using ground::MapReports;
-using ground::Passed;
-using ground::RowOrder;
-using ground::Shown;
-
-using BinFloats = hn::CappedTag<float, 8>;
-using BinInts = hn::RebindToSigned<BinFloats>;
-using BinVector = hn::Vec<BinFloats>;
-using BinMask = hn::Mask<BinFloats>;
-constexpr BinFloats kBinFloats{};
-constexpr BinInts kBinInts{};
 
 // Least loss of objects and of ground in the tables of benchmarks/suite.sh ground ground_real.
 constexpr float kAlong = 0.05F;        // metres per metre, by which the ground may rise unseen between two returns
@@ -58,34 +41,28 @@ HWY_INLINE std::size_t lastOf(std::uint8_t bits) {
   return 31 - static_cast<std::size_t>(__builtin_clz(bits | 1U));
 }
 
-HWY_INLINE BinVector set(float value) {
-  return hn::Set(kBinFloats, value);
-}
-
 /// Calls visit(bin, mask, is_last) for the bins from first to last, some at a time: those of the mask, from `bin` on.
 template <typename Visit>
 HWY_INLINE void forBins(std::int32_t first, std::int32_t last, Visit&& visit) {
-  constexpr auto kTogether = static_cast<std::int32_t>(hn::MaxLanes(kBinFloats));
-  const auto step = hn::Set(kBinInts, kTogether);
-  const auto before = hn::Set(kBinInts, first - 1), after = hn::Set(kBinInts, last + 1);
-  const auto end = hn::Set(kBinInts, last);
+  constexpr auto kTogether = static_cast<std::int32_t>(hn::MaxLanes(kLanes));
+  const auto step = hn::Set(kLaneInts, kTogether);
+  const auto before = hn::Set(kLaneInts, first - 1), after = hn::Set(kLaneInts, last + 1);
+  const auto end = hn::Set(kLaneInts, last);
   std::int32_t bin = first & -kTogether;
-  auto bins = hn::Add(hn::Iota(kBinInts, 0), hn::Set(kBinInts, bin));
+  auto bins = hn::Add(hn::Iota(kLaneInts, 0), hn::Set(kLaneInts, bin));
   for (; bin <= last; bin += kTogether, bins = hn::Add(bins, step))
-    visit(static_cast<std::size_t>(bin), hn::RebindMask(kBinFloats, hn::And(hn::Gt(bins, before), hn::Gt(after, bins))),
-          hn::RebindMask(kBinFloats, hn::Eq(bins, end)));
+    visit(static_cast<std::size_t>(bin), hn::RebindMask(kLanes, hn::And(hn::Gt(bins, before), hn::Gt(after, bins))),
+          hn::RebindMask(kLanes, hn::Eq(bins, end)));
 }
 
 /// The values of a sector's cells from a bin on.
 struct Cells {
-  HWY_INLINE BinVector load(const GroundMap::Values& values) const { return hn::LoadU(kBinFloats, &values[bin]); }
-  HWY_INLINE void store(BinVector value, GroundMap::Values& values) const {
-    hn::StoreU(value, kBinFloats, &values[bin]);
+  HWY_INLINE Floats load(const GroundMap::Values& values) const { return hn::LoadU(kLanes, &values[bin]); }
+  HWY_INLINE void store(Floats value, GroundMap::Values& values) const { hn::StoreU(value, kLanes, &values[bin]); }
+  HWY_INLINE void store(Mask mask, Floats value, GroundMap::Values& values) const {
+    hn::StoreU(hn::IfThenElse(mask, value, load(values)), kLanes, &values[bin]);
   }
-  HWY_INLINE void store(BinMask mask, BinVector value, GroundMap::Values& values) const {
-    hn::StoreU(hn::IfThenElse(mask, value, load(values)), kBinFloats, &values[bin]);
-  }
-  HWY_INLINE BinVector heightAt(BinVector rho) const {
+  HWY_INLINE Floats heightAt(Floats rho) const {
     return hn::Add(load(sector.offset), hn::Mul(load(sector.slope), rho));
   }
 
@@ -96,11 +73,11 @@ struct Cells {
 using Middles = const GroundMap::Values&;
 
 /// GroundMap::binOf
-HWY_INLINE hn::Vec<BinInts> binsOf(BinVector rho) {
-  const auto int32 = [](std::int32_t value) HWY_ATTR { return hn::Set(kBinInts, value); };
-  const auto bits = hn::ShiftRight<GroundMap::kBinShift>(hn::BitCast(kBinInts, hn::Mul(rho, rho)));
+HWY_INLINE hn::Vec<LaneInts> binsOf(Floats rho) {
+  const auto int32 = [](std::int32_t value) HWY_ATTR { return hn::Set(kLaneInts, value); };
+  const auto bits = hn::ShiftRight<GroundMap::kBinShift>(hn::BitCast(kLaneInts, hn::Mul(rho, rho)));
   const auto bin = hn::Sub(bits, int32(GroundMap::kFirstBin));
-  return hn::Min(hn::Max(bin, hn::Zero(kBinInts)), int32(static_cast<std::int32_t>(GroundMap::kBins) - 1));
+  return hn::Min(hn::Max(bin, hn::Zero(kLaneInts)), int32(static_cast<std::int32_t>(GroundMap::kBins) - 1));
 }
 
 /// Collects the ground that the rows have shown. \return number of stretches
@@ -140,10 +117,9 @@ std::size_t collectStretches(const Shown& shown, MapReports& reports) {
 
 /// Computes the bins of the stretches, and the lines that are entered.
 HWY_INLINE void measureStretches(MapReports::Stretches& stretches, std::size_t count, float max_slope) {
-  for (std::size_t i = 0; i < count; i += hn::MaxLanes(kBinFloats)) {
-    const auto load = [i](const AlignedVector<float>& values) HWY_ATTR { return hn::LoadU(kBinFloats, &values[i]); };
-    const auto store = [i](BinVector value, AlignedVector<float>& to)
-                           HWY_ATTR { hn::StoreU(value, kBinFloats, &to[i]); };
+  for (std::size_t i = 0; i < count; i += hn::MaxLanes(kLanes)) {
+    const auto load = [i](const AlignedVector<float>& values) HWY_ATTR { return hn::LoadU(kLanes, &values[i]); };
+    const auto store = [i](Floats value, AlignedVector<float>& to) HWY_ATTR { hn::StoreU(value, kLanes, &to[i]); };
     const auto from_rho = load(stretches.from_rho), rho = load(stretches.rho), height = load(stretches.height);
     const auto length = hn::Sub(rho, from_rho), rise = hn::Sub(height, load(stretches.from_height));
     const auto most = set(max_slope);
@@ -153,9 +129,9 @@ HWY_INLINE void measureStretches(MapReports::Stretches& stretches, std::size_t c
     store(slope, stretches.slope);
     store(hn::Sub(height, hn::Mul(slope, rho)), stretches.offset);
     store(hn::Div(height, rho), stretches.ray);
-    hn::StoreU(binsOf(from_rho), kBinInts, &stretches.first[i]);
-    const auto last = hn::IfThenElse(hn::RebindMask(kBinInts, is_none), hn::Set(kBinInts, -1), binsOf(rho));
-    hn::StoreU(last, kBinInts, &stretches.last[i]);
+    hn::StoreU(binsOf(from_rho), kLaneInts, &stretches.first[i]);
+    const auto last = hn::IfThenElse(hn::RebindMask(kLaneInts, is_none), hn::Set(kLaneInts, -1), binsOf(rho));
+    hn::StoreU(last, kLaneInts, &stretches.last[i]);
   }
 }
 
@@ -173,7 +149,7 @@ void seeThrough(const Shown& shown, std::uint32_t block_number, GroundMap::Secto
     if (first >= end) continue;
     GroundMap::Sector& sector = sectors[setting.sectors[i]];
     const auto slope = set(block.last_height[row] / to);
-    forBins(first, end - 1, [&](std::size_t bin, BinMask mask, BinMask /*is_last*/) HWY_ATTR {
+    forBins(first, end - 1, [&](std::size_t bin, Mask mask, Mask /*is_last*/) HWY_ATTR {
       const Cells cells{sector, bin};
       const auto middle = cells.load(middles);
       const auto ray = hn::Add(hn::Mul(slope, middle), set(kMarginRay));
@@ -189,13 +165,13 @@ HWY_INLINE void addStretch(GroundMap::Sector& sector, const MapReports::Stretche
   const auto offset = set(stretches.offset[i]), slope = set(stretches.slope[i]);
   const auto most = hn::Mul(set(kMaxTrend), rho), gain = set(trend_gain);
   // Where ground is doubted that was there before, its slack is at least this, and more than before.
-  const auto no_doubt = hn::Set(kBinInts, static_cast<std::int32_t>(stretches.is_doubted[i]) - 1);
-  const auto doubt = hn::MaskFromVec(hn::BitCast(kBinFloats, hn::Not(no_doubt)));
-  forBins(stretches.first[i], stretches.last[i], [&](std::size_t bin, BinMask mask, BinMask is_end) HWY_ATTR {
+  const auto no_doubt = hn::Set(kLaneInts, static_cast<std::int32_t>(stretches.is_doubted[i]) - 1);
+  const auto doubt = hn::MaskFromVec(hn::BitCast(kLanes, hn::Not(no_doubt)));
+  forBins(stretches.first[i], stretches.last[i], [&](std::size_t bin, Mask mask, Mask is_end) HWY_ATTR {
     const Cells cells{sector, bin};
     const auto at = cells.load(middles);
     const auto inside = hn::Min(hn::Sub(at, from_rho), hn::Sub(rho, at));
-    const auto slack = hn::Mul(set(kAlong), hn::Max(hn::Zero(kBinFloats), inside));
+    const auto slack = hn::Mul(set(kAlong), hn::Max(hn::Zero(kLanes), inside));
     const auto before = cells.load(sector.slack), height = cells.heightAt(at);
     // The return would have been hidden.
     const auto is_hidden = hn::Gt(height, hn::Add(hn::Mul(ray, at), set(kMarginHidden)));
@@ -204,17 +180,17 @@ HWY_INLINE void addStretch(GroundMap::Sector& sector, const MapReports::Stretche
     const auto entered = hn::And(mask, hn::Or(is_hidden, is_better));
 
     const auto age = cells.load(sector.age), trend = cells.load(sector.trend);
-    const auto is_known = hn::And(hn::Lt(before, set(1.0F)), hn::Gt(age, hn::Zero(kBinFloats)));
+    const auto is_known = hn::And(hn::Lt(before, set(1.0F)), hn::Gt(age, hn::Zero(kLanes)));
     const auto updates = hn::And(hn::And(is_end, is_known), hn::AndNot(is_hidden, is_better));
     const auto rise = hn::Sub(hn::Add(offset, hn::Mul(slope, at)), height);
     const auto update = hn::Mul(hn::Div(gain, hn::Max(age, set(1.0F))), rise);
     const auto updated = hn::Min(hn::Max(hn::Add(trend, update), hn::Neg(most)), most);
     const auto kept = hn::IfThenElse(updates, updated, trend);
-    cells.store(hn::IfThenElse(hn::And(mask, is_hidden), hn::Zero(kBinFloats), kept), sector.trend);
+    cells.store(hn::IfThenElse(hn::And(mask, is_hidden), hn::Zero(kLanes), kept), sector.trend);
     cells.store(entered, hn::IfThenElse(hn::AndNot(is_hidden, doubt), doubted, slack), sector.slack);
     cells.store(entered, offset, sector.offset);
     cells.store(entered, slope, sector.slope);
-    cells.store(hn::IfThenElse(entered, hn::Zero(kBinFloats), age), sector.age);
+    cells.store(hn::IfThenElse(entered, hn::Zero(kLanes), age), sector.age);
   });
 }
 
@@ -227,7 +203,7 @@ HWY_INLINE void extend(GroundMap::Sector& sector, const MapReports::Stretches& s
   const auto first = static_cast<std::int32_t>(GroundMap::binOf(rho)) + 1;
   if (first >= static_cast<std::int32_t>(GroundMap::kBins)) return;
   forBins(first, static_cast<std::int32_t>(GroundMap::binOf(farthest)),
-          [&](std::size_t bin, BinMask mask, BinMask /*is_last*/) HWY_ATTR {
+          [&](std::size_t bin, Mask mask, Mask /*is_last*/) HWY_ATTR {
             const Cells cells{sector, bin};
             const auto way = hn::Sub(cells.load(middles), set(rho));
             const auto slack = hn::Add(set(kBeyondStart), hn::Mul(set(kBeyond), way));
@@ -236,8 +212,8 @@ HWY_INLINE void extend(GroundMap::Sector& sector, const MapReports::Stretches& s
             cells.store(entered, set(offset), sector.offset);
             cells.store(entered, set(slope), sector.slope);
             cells.store(entered, slack, sector.slack);
-            cells.store(entered, hn::Zero(kBinFloats), sector.trend);
-            cells.store(entered, hn::Zero(kBinFloats), sector.age);
+            cells.store(entered, hn::Zero(kLanes), sector.trend);
+            cells.store(entered, hn::Zero(kLanes), sector.age);
           });
 }
 
@@ -255,15 +231,13 @@ void enterReports(const Shown& shown, MapReports& reports, GroundMap::Sector* se
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace lisco
+}  // namespace lisco::ground
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace lisco {
+namespace lisco::ground {
 
 HWY_EXPORT(enterReports);
-
-namespace ground {
 
 void MapReports::begin(std::size_t lasers) {
   block_number = 0;
@@ -280,6 +254,5 @@ void MapReports::enter(const Shown& shown, GroundMap::Sector* sectors) {
   HWY_DYNAMIC_DISPATCH(enterReports)(shown, *this, sectors);
 }
 
-}  // namespace ground
-}  // namespace lisco
+}  // namespace lisco::ground
 #endif

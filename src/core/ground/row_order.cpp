@@ -15,12 +15,10 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace lisco {
+namespace lisco::ground {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using ground::kTurn;
-using ground::RowOrder;
 
 using AzimuthFloats = hn::CappedTag<float, RowOrder::kPadding>;
 constexpr AzimuthFloats kAzimuths{};
@@ -92,15 +90,13 @@ void linkRows(const float* azimuths, const float* slopes, const std::uint64_t* k
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace lisco
+}  // namespace lisco::ground
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace lisco {
+namespace lisco::ground {
 
 HWY_EXPORT(linkRows);
-
-namespace ground {
 
 void RowOrder::begin(std::size_t lasers) {
   lasers_ = lasers;
@@ -153,6 +149,5 @@ void RowOrder::sort() {
   HWY_DYNAMIC_DISPATCH(linkRows)(azimuths, slopes_.data(), order_.data(), static_cast<std::int32_t>(lasers_), rows_);
 }
 
-}  // namespace ground
-}  // namespace lisco
+}  // namespace lisco::ground
 #endif

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+//
+// Vectors of the ground filter: the columns of a block, or bins of the map; compiled once for each SIMD level.
+#if defined(LISCO_GROUND_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef LISCO_GROUND_LANES_INL_H
+#undef LISCO_GROUND_LANES_INL_H
+#else
+#define LISCO_GROUND_LANES_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include "core/ground/block.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lisco::ground {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using LaneFloats = hn::CappedTag<float, Block::kColumns>;
+using LaneInts = hn::RebindToSigned<LaneFloats>;
+using LaneWords = hn::RebindToUnsigned<LaneFloats>;
+using Floats = hn::Vec<LaneFloats>;
+using Mask = hn::Mask<LaneFloats>;
+constexpr LaneFloats kLanes{};
+constexpr LaneInts kLaneInts{};
+constexpr LaneWords kLaneWords{};
+
+HWY_INLINE Floats set(float value) {
+  return hn::Set(kLanes, value);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lisco::ground
+HWY_AFTER_NAMESPACE();
+
+#endif
