@@ -10,6 +10,7 @@
 #include "core/disjoint_sets.h"
 #include "core/far/image_circle.h"
 #include "core/far_trial.h"
+#include "core/laser_order.h"
 #include "core/load_balancer.h"
 #include "core/near/voxel_sorter.h"
 #include "core/parallel.h"

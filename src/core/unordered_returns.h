@@ -9,11 +9,11 @@
 #include "core/bits.h"
 #include "core/disjoint_sets.h"
 #include "core/growing_array.h"
+#include "core/laser_order.h"
 #include "core/near/near_returns.h"
 #include "core/near/voxel_sorter.h"
 #include "core/neighbour.h"
 #include "core/partition.h"
-#include "core/runs.h"
 #include "lisco/return.h"
 
 namespace lisco {

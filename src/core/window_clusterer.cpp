@@ -8,6 +8,7 @@
 
 #include "core/column_block.h"
 #include "core/disjoint_sets.h"
+#include "core/laser_order.h"
 #include "core/partition.h"
 #include "core/runs.h"
 #include "core/simd.h"

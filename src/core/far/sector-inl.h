@@ -9,7 +9,6 @@
 #define LISCO_SECTOR_INL_H
 #endif
 
-#include <algorithm>
 
 #include "core/bits.h"
 #include "core/disjoint_sets.h"

@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
