@@ -105,8 +105,10 @@ void fuzzGround(const std::uint8_t* data, std::size_t size) {
   const std::size_t copy_at = input.below(kMaxColumns);
   Scan scan = scanFrom(input);
 
-  const bool is_bad =
-      std::isinf(parameters.sensor_height) || !(parameters.max_slope >= 1.0F && parameters.max_slope <= 60.0F);
+  const auto is_slope = [](float slope) { return std::fabs(slope) <= 10.0F; };
+  const bool is_bad = std::isinf(parameters.sensor_height) ||
+                      !(parameters.max_slope >= 1.0F && parameters.max_slope <= 60.0F) ||
+                      !is_slope(parameters.slope[0]) || !is_slope(parameters.slope[1]);
   const auto cells = [&](std::size_t laser, std::size_t column) { return scan.at(laser, column); };
   std::vector<std::uint8_t> ground(scan.cells.size(), 7);
   lisco::GroundFilter filter;
