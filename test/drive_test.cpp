@@ -349,11 +349,16 @@ GroundFound compared(const SimulatedScan& scan, const std::vector<std::uint8_t>&
   return {both / ground, both / all};
 }
 
-GroundFound groundFoundIn(const SimulatedScan& scan) {
-  const auto cell_at = [&scan](std::size_t laser, std::size_t step) {
+/// The cells of a scan, which must last, for the library.
+auto cellsOf(const SimulatedScan& scan) {
+  return [&scan](std::size_t laser, std::size_t step) {
     const SimulatedCell& cell = scan.cells[laser * scan.steps + step];
     return lisco::Return{cell.x, cell.y, cell.z, 0};
   };
+}
+
+GroundFound groundFoundIn(const SimulatedScan& scan) {
+  const auto cell_at = cellsOf(scan);
   lisco::GroundParameters parameters;
   parameters.sensor = lisco::estimateSensor(scan.steps, scan.lasers, {}, lisco::CellSource(cell_at));
   std::vector<std::uint8_t> found(scan.cells.size());
@@ -369,10 +374,7 @@ TEST(Drive, ShowsTheGroundAroundTheTopOfARamp) {
   Drive ramp = driveOver("ramp", motion, {8, 0.02, 0.005}, "vlp16", 0, 4.2);
   const std::size_t steps = ramp.sensor().steps;
   const SimulatedScan scan = ramp.columns(40 * steps, 2 * steps);
-  const auto cell_at = [&scan](std::size_t laser, std::size_t step) {
-    const SimulatedCell& cell = scan.cells[laser * scan.steps + step];
-    return lisco::Return{cell.x, cell.y, cell.z, 0};
-  };
+  const auto cell_at = cellsOf(scan);
   std::vector<std::uint8_t> found(scan.cells.size());
   lisco::GroundFilter().filter({}, scan.steps, scan.lasers, cell_at, found.data());
   EXPECT_GT(compared(scan, found).recall, 0.87);  // 0.78 if these columns tell the height

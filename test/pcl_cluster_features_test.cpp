@@ -61,7 +61,7 @@ TEST(PclClusterFeatures, DescribesEachCluster) {
   EXPECT_NEAR(slanting.box.yaw, M_PI / 4, 1e-5);
 }
 
-TEST(LiscoClusterFeatures, CountsTheNearestRangeFromTheSensor) {
+TEST(PclClusterFeatures, CountsTheNearestRangeFromTheSensor) {
   auto cloud = twoWalls();
   cloud->sensor_origin_ << 7, 0, 0, 0;
   pcl::LiscoClusterFeatures<pcl::PointXYZI> estimation;

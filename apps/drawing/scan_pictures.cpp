@@ -108,11 +108,8 @@ void drawHeader(Canvas& canvas, const ClusteredScan& scan, double left, double r
 }
 
 SensorPoint sensorOf(const Cloud& cloud) {
-  SensorPoint sensor{};
-  if (cloud.sensor_origin_.allFinite())
-    for (std::size_t axis = 0; axis < sensor.size(); ++axis)
-      sensor[axis] = static_cast<double>(cloud.sensor_origin_[static_cast<Eigen::Index>(axis)]);
-  return sensor;
+  const std::array<float, 3> origin = declaredOriginOf(cloud);
+  return {static_cast<double>(origin[0]), static_cast<double>(origin[1]), static_cast<double>(origin[2])};
 }
 
 pcl::PointXYZ seenFrom(const SensorPoint& sensor, const pcl::PointXYZ& point) {

@@ -144,7 +144,8 @@ void drawBoxes(Canvas& canvas, const ClusteredScan& scan, const View& view, cons
   }
   for (std::size_t i = 0; i < scan.clusters.size() && !ids.isFull(); ++i) {
     double left = kSize, right = 0, top = kSize + kHeaderHeight, bottom = 0;
-    for (const auto& [x, y] : view.corners(scan.features[i])) {
+    const std::vector<std::array<double, 2>> corners = view.corners(scan.features[i]);
+    for (const auto& [x, y] : corners) {
       left = std::min(left, x);
       right = std::max(right, x);
       top = std::min(top, y);
@@ -152,13 +153,13 @@ void drawBoxes(Canvas& canvas, const ClusteredScan& scan, const View& view, cons
     }
     // Above the uppermost corner, or the middle of the upper side.
     double x = 0;
-    int corners = 0;
-    for (const auto& [corner_x, corner_y] : view.corners(scan.features[i]))
+    int uppermost = 0;
+    for (const auto& [corner_x, corner_y] : corners)
       if (corner_y < top + 1) {
         x += corner_x;
-        ++corners;
+        ++uppermost;
       }
-    x /= corners;
+    x /= uppermost;
     if (std::max(right - left, bottom - top) < kMinBox || x < 0 || x >= kSize || top < kHeaderHeight + 2 * kAbove ||
         top >= kSize + kHeaderHeight)
       continue;

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include "core/pi.h"
@@ -14,6 +15,14 @@ using lisco::kPi;
 template <typename Point>
 bool isReturn(const Point& p) {
   return lisco::isReturn(p.x, p.y, p.z);
+}
+
+/// Where a cloud says that its sensor is, metres; (0, 0, 0) if that is not finite.
+template <typename Cloud>
+std::array<float, 3> declaredOriginOf(const Cloud& cloud) {
+  const auto& origin = cloud.sensor_origin_;
+  if (!origin.allFinite()) return {};
+  return {origin[0], origin[1], origin[2]};
 }
 
 /// Distance from (0, 0, 0), metres.

@@ -2,7 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "recordings/cloud_columns.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -32,8 +31,7 @@ CloudColumns::CloudColumns(const Topic& topic)
       }) {}
 
 void CloudColumns::estimateSensor(const Cloud& cloud) {
-  std::array<float, 3> declared{};
-  if (cloud.sensor_origin_.allFinite()) std::copy_n(cloud.sensor_origin_.data(), declared.size(), declared.begin());
+  const std::array<float, 3> declared = declaredOriginOf(cloud);
   const auto cell_at = [&cloud](std::size_t row, std::size_t column) {
     const pcl::PointXYZ& point = cloud[row * cloud.width + column];
     return lisco::Return{point.x, point.y, point.z, 0};

@@ -54,6 +54,7 @@ class GroundStage {
 
   /// The place of the next column, to be filled before add (). All but the uses.
   PreparedColumn& next() { return waiting_[(first_ + count_) % kPlaces]; }
+
   /// Sets the sensor of the columns that follow; if it is elsewhere than before, the ground is searched anew.
   /// \param take as in add ()
   template <typename Take>
