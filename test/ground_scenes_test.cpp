@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ground/unevenness.h"
 #include "ground_scans.h"
 #include "lisco/simd.h"
 
@@ -308,6 +309,29 @@ TEST(GroundScenes, LeavesMostOfBoxesThatHideTheGroundFromChainsOfLasers) {
   const std::vector<std::uint8_t> ground = filterAll(scan);
   EXPECT_LT(share(scan, ground, [](const lisco::Return& cell) { return cell.z > -1.4F; }), 0.4);
   EXPECT_GT(share(scan, ground, [](const lisco::Return& cell) { return cell.z < -1.79F; }), 0.99);
+}
+
+TEST(GroundScenes, FindsMostOfAnUnevenField) {
+  const auto field = [](double x, double y) {
+    const double hills = std::sin(0.21 * x + 0.5) + std::sin(0.21 * (0.3 * x - 0.95 * y) + 4.0);
+    const double bumps = std::sin(0.48 * (0.8 * x + 0.6 * y) + 1.0) + std::sin(1.05 * (0.5 * x - 0.87 * y));
+    return 0.4 * hills + 0.1 * bumps - 1.6 - kHeight;
+  };
+  const Scan scan = chainsOf([&](double azimuth, double slope) { return meetsSurface(azimuth, slope, field); });
+  const std::vector<std::uint8_t> ground = filterAll(scan);
+  EXPECT_GT(share(scan, ground, all), 0.928);
+}
+
+TEST(Unevenness, FollowsTheChangesOfSlope) {
+  const auto unit = static_cast<std::int32_t>(lisco::ground::Unevenness::kUnit);
+  lisco::ground::Unevenness unevenness;
+  EXPECT_EQ(unevenness.value(), 0.0F);
+  unevenness.add(unit / 10, 1);
+  EXPECT_EQ(unevenness.value(), 0.0F) << "one stretch of a kerb";
+  for (int block = 0; block < 64; ++block) unevenness.add(unit, 10);
+  EXPECT_EQ(unevenness.value(), 1.0F);
+  for (int block = 0; block < 256; ++block) unevenness.add(unit / 10, 10);
+  EXPECT_EQ(unevenness.value(), 0.0F);
 }
 
 TEST(GroundScenes, BeginsAtTheGroundNearby) {

@@ -70,6 +70,14 @@ TEST_F(GroundTruth, ScoresTheFilters) {
   EXPECT_NE(again.out.find("\nsensor car "), std::string::npos) << again.out;
 }
 
+TEST_F(GroundTruth, FindsTheCrestsAndSlopesOfAField) {
+  const Outcome outcome = run("--only-lisco --terrains field --sensors vls128 --seeds 7 --rotations 1");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::vector<Scores> scores = scoresOf(outcome.out, "| field | vls128 |");
+  ASSERT_EQ(scores.size(), 1U) << outcome.out;
+  EXPECT_GT(scores[0].f1, 95.5);
+}
+
 TEST_F(GroundTruth, RefusesUnknownNamesInOneLine) {
   expectRefusal("--terrains lake", {"lake"});
   expectRefusal("--sensors hdl65", {"hdl65"});

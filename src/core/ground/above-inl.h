@@ -49,6 +49,7 @@ struct FollowedRow {
   const GroundReached* inwards;  ///< the ground that these have reached
   GroundReached* followed;
   std::size_t number;  ///< of `followed`
+  float unevenness;    ///< Unevenness::value
 };
 
 HWY_INLINE Floats select(Mask mask, Floats yes, Floats no) {

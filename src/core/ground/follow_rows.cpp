@@ -29,6 +29,7 @@ constexpr float kSure = 0.05F;                                  // slack and hei
 constexpr float kFoot = 0.03F;                                  // height, even at the foot of a wall
 constexpr float kAboveMap = 0.08F;                              // contradicts
 constexpr float kSmoothAboveMap = 0.13F, kSmoothRange = 40.0F;  // contradicts a smooth surface up to this distance
+constexpr float kUnevenAboveMap = 0.18F;                        // and more beyond, times the unevenness
 constexpr float kKnownHeight = 0.06F;                           // even among returns of which most are higher
 
 // Heights off the straight continuation of the column's ground, growing with the distance from the ground reached:
@@ -42,10 +43,13 @@ constexpr float kObstacle = 0.25F;                      // hides the ground beyo
 constexpr float kHigher = 0.1F;                         // counts as Found::higher
 constexpr float kNearBelow = 0.1F, kReflection = 0.5F;  // in between, returns below are ground that is not followed
 // Differences of slopes.
-constexpr float kSameSlope = 0.2F;                  // the ground seems to go on
-constexpr float kBend = 0.13F, kBendGrowth = 0.1F;  // at a bend, where the growth is by 1 / step
-constexpr float kLineBend = 0.2F;                   // of a line beyond an object
+constexpr float kSameSlope = 0.2F;                      // the ground seems to go on
+constexpr float kBend = 0.13F, kBendGrowth = 0.1F;      // at a bend, where the growth is by 1 / step
+constexpr float kLineBend = 0.2F;                       // of a line beyond an object
+constexpr float kFirstSurface = 0.2F, kSurface = 0.1F;  // of a surface where nothing is known, times the unevenness
 // Others.
+constexpr float kUnevenBelowMap = 1.0F;                    // below the map, where no object is, times the unevenness
+constexpr float kSurfaceLength = 2.0F;                     // least length of a surface where nothing is known
 constexpr float kLineKnown = 0.3F;                         // slack up to which the map decides against returns above it
 constexpr float kStepDown = 0.15F, kStepUp = 0.13F;        // below the steepest descent, above the steepest rise
 constexpr float kReflectedFrom = 1.0F;                     // below the highest possible ground
@@ -125,9 +129,10 @@ HWY_INLINE RowPart partOf(const FollowedRow& row, std::size_t k, Floats steepest
 }
 
 /// The most height of ground above the map's. \param smooth whether the surface is smooth, or may be
-HWY_INLINE Floats mostAboveMap(const Mapped& map, Floats rho, Mask smooth) {
-  const Mask near = hn::And(smooth, hn::Lt(rho, set(kSmoothRange)));
-  return hn::Add(select(near, set(kSmoothAboveMap), set(kAboveMap)), map.slack);
+HWY_INLINE Floats mostAboveMap(const Mapped& map, Floats rho, Mask smooth, float unevenness) {
+  const auto far = set(kAboveMap + unevenness * kUnevenAboveMap);
+  const auto most = select(hn::Lt(rho, set(kSmoothRange)), set(kSmoothAboveMap), far);
+  return hn::Add(select(smooth, most, set(kAboveMap)), map.slack);
 }
 
 /// Returns that are too high for ground, whatever the rows above show: it cannot rise so steeply from lower and nearer
@@ -137,8 +142,9 @@ HWY_INLINE Mask areTooHigh(const RowPart& part) {
 }
 
 /// Likewise: the map has the ground clearly lower.
-HWY_INLINE Mask areAboveMap(const RowPart& part, const Mapped& map) {
-  return hn::And(hn::Le(map.slack, set(kLineKnown)), hn::Ge(map.above, mostAboveMap(map, part.rho, part.valid)));
+HWY_INLINE Mask areAboveMap(const RowPart& part, const Mapped& map, float unevenness) {
+  const auto most = mostAboveMap(map, part.rho, part.valid, unevenness);
+  return hn::And(hn::Le(map.slack, set(kLineKnown)), hn::Ge(map.above, most));
 }
 
 /// Returns on the ground, whatever the rows above show: both the map and the column have it there.
@@ -235,10 +241,16 @@ HWY_INLINE Mask foundByMap(const Mapped& map, const Above& above, Mask flat, Mas
 
 /// Ground that continues the column's.
 HWY_INLINE Mask foundByColumn(const RowPart& part, const Mapped& map, const Above& above, Mask flat, Mask obstacle,
-                              Floats steepest) {
+                              Floats steepest, float unevenness) {
   const Mask first = part.first;
-  const Mask smooth = hn::AndNot(above.surface, hn::And(hn::And(flat, above.seen), goesOn(above, part.slope)));
-  const Mask fits_map = hn::Lt(map.above, mostAboveMap(map, part.rho, smooth));
+  Mask smooth = hn::AndNot(above.surface, hn::And(hn::And(flat, above.seen), goesOn(above, part.slope)));
+  if (unevenness > 0.0F) {
+    // Above a crest far away is nothing.
+    const Mask far = hn::AndNot(first, hn::Ge(part.rho, set(kSmoothRange)));
+    const Mask highest = hn::AndNot(hn::Or(above.seen, above.nearer), hn::AndNot(above.surface, flat));
+    smooth = hn::Or(smooth, hn::And(far, highest));
+  }
+  const Mask fits_map = hn::Lt(map.above, mostAboveMap(map, part.rho, smooth, unevenness));
   const auto distance = part.distance, near = hn::Min(distance, set(kFirstMaxDistance)), off = hn::Abs(part.above);
   // At its height.
   const auto at_column =
@@ -266,6 +278,25 @@ HWY_INLINE Mask foundByColumn(const RowPart& part, const Mapped& map, const Abov
   return hn::Or(found, hn::And(on_line, hn::Or(hn::Gt(map.slack, set(kLineKnown)), fits_map)));
 }
 
+/// On uneven ground, more is ground: what is lower than the map's, and surfaces where nothing is known, behind crests
+/// and on slopes that face the sensor.
+HWY_INLINE Mask foundOnUneven(const RowPart& part, const Mapped& map, const Above& above, Mask flat, Floats steepest,
+                              float unevenness) {
+  const auto level = hn::AndNot(above.surface, flat);
+  const auto below =
+      hn::And(hn::Lt(map.above, hn::Zero(kLanes)), hn::Gt(map.above, set(-unevenness * kUnevenBelowMap)));
+  const auto below_map = hn::And(hn::And(below, hn::Lt(map.slack, set(kKnown))), hn::AndNot(above.wall, level));
+
+  const auto here = hn::Div(part.from_ground, hn::Max(part.way, set(0.5F)));
+  const auto bend = hn::Abs(hn::Sub(above.slope, here));
+  const auto goes_on = hn::And(hn::Lt(hn::Abs(above.slope), set(unevenness * kSurface)), hn::Lt(bend, set(kSurface)));
+  const auto continues =
+      hn::Or(hn::AndNot(part.first, goes_on), hn::And(part.first, hn::Lt(bend, set(unevenness * kFirstSurface))));
+  const auto surface = hn::And(hn::And(above.seen, hn::Gt(above.step, set(kSurfaceLength))),
+                               hn::And(continues, hn::Lt(hn::Abs(here), steepest)));
+  return hn::Or(below_map, hn::And(hn::And(level, surface), hn::Ge(map.slack, set(kKnown))));
+}
+
 /// What is found of any part of a row.
 HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const RowPart& part, const Mapped& map,
                             Floats steepest, Mask& reached) {
@@ -279,7 +310,9 @@ HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const RowPart
 
   auto found = foundByMap(map, above, flat, hn::Or(agrees, sure));
   if (!hn::AllFalse(kLanes, hn::AndNot(found, valid)))
-    found = hn::Or(found, foundByColumn(part, map, above, flat, lanesOf(row.before->obstacles, k), steepest));
+    found = hn::Or(found,
+                   foundByColumn(part, map, above, flat, lanesOf(row.before->obstacles, k), steepest, row.unevenness));
+  if (row.unevenness > 0.0F) found = hn::Or(found, foundOnUneven(part, map, above, flat, steepest, row.unevenness));
   found = hn::And(found, hn::And(valid, hn::Le(height, hn::Add(part.limit, set(kStepUp)))));
   lowerLimit(row, k, part, found);
 
@@ -333,7 +366,8 @@ HWY_INLINE Found followRow(const FollowedRow& row, Floats steepest) {
       const Mapped map = maps[i] = lookDown(*row.sector, part.rho, part.height, part.valid);
       const auto too_high = areTooHigh(part);
       are_objects =
-          are_objects && hn::AllFalse(kLanes, hn::AndNot(hn::Or(too_high, areAboveMap(part, map)), part.valid));
+          are_objects &&
+          hn::AllFalse(kLanes, hn::AndNot(hn::Or(too_high, areAboveMap(part, map, row.unevenness)), part.valid));
       are_ground =
           are_ground && hn::AllFalse(kLanes, hn::AndNot(hn::AndNot(too_high, areWhereExpected(part, map)), part.valid));
     }
@@ -375,17 +409,10 @@ void followRows(const FollowSetting& setting, std::size_t first, std::size_t end
       continue;
     }
     const std::ptrdiff_t at = row.row * static_cast<std::ptrdiff_t>(Block::kColumns);
-    const FollowedRow followed{rho + at,
-                               height + at,
-                               rho,
-                               height,
-                               &row,
-                               map + sectors[i],
-                               &before,
-                               &passed[i],
-                               &reached[before.followed],
-                               &reached[i],
-                               i};
+    const FollowedRow followed{rho + at,    height + at, rho,
+                               height,      &row,        map + sectors[i],
+                               &before,     &passed[i],  &reached[before.followed],
+                               &reached[i], i,           setting.unevenness};
     found[i] = followRow(followed, steepest);
   }
 }

@@ -40,6 +40,7 @@ struct FollowSetting {
   const GroundMap::Sector* map;  ///< all sectors
   const std::uint32_t* sectors;  ///< for each row, its sector
   const Passed* starts;          ///< for each row with none below: what is known before it
+  float unevenness;              ///< Unevenness::value
 };
 
 /// What they show, for each row.

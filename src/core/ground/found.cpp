@@ -9,9 +9,6 @@
 namespace lisco::ground {
 namespace {
 
-// Least part of the ground among a row's returns and those of the rows next to it.
-constexpr std::uint32_t kMinGround = 2, kOfReturns = 7;
-
 /// The bits of a row in the lowest byte, and of the rows next to it in the next ones.
 std::uint32_t together(std::uint8_t row, std::uint8_t down, std::uint8_t up) {
   return std::uint32_t{row} | std::uint32_t{down} << 8 | std::uint32_t{up} << 16;
@@ -20,7 +17,7 @@ std::uint32_t together(std::uint8_t row, std::uint8_t down, std::uint8_t up) {
 }  // namespace
 
 void dropScattered(const RowOrder::Row* rows, Found* found, const std::vector<std::int32_t>& with_ground,
-                   std::size_t count, std::vector<std::int32_t>& scattered) {
+                   std::size_t count, float least_ground, std::vector<std::int32_t>& scattered) {
   std::size_t dropped = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const std::int32_t i = with_ground[k], down = rows[i].down, up = rows[i].up;
@@ -28,7 +25,8 @@ void dropScattered(const RowOrder::Row* rows, Found* found, const std::vector<st
     const std::uint32_t ground = together(found[i].ground, found[down].ground, found[up].ground);
     const std::uint32_t higher = together(found[i].higher, found[down].higher, found[up].higher);
     scattered[dropped] = i;
-    dropped += countBits(ground) * kOfReturns < countBits(ground | higher) * kMinGround ? 1 : 0;
+    const auto part = static_cast<float>(countBits(ground)), all = static_cast<float>(countBits(ground | higher));
+    dropped += part < least_ground * all ? 1 : 0;
   }
   for (std::size_t k = 0; k < dropped; ++k) {
     Found& row = found[scattered[k]];

@@ -35,6 +35,11 @@ constexpr float kMarginSame = 0.01F;    // metres
 constexpr float kMarginRay = 0.1F;      // metres
 constexpr float kMarginHidden = 0.05F;  // metres
 constexpr float kDoubt = 0.01F;         // metres
+// Stretches whose change of slope shows how uneven the ground is: nearer, kerbs and feet of walls change it.
+constexpr float kMinLength = 1.0F;                       // metres
+constexpr float kUnevenFrom = 10.0F, kUnevenTo = 60.0F;  // metres
+constexpr float kMaxChange = 0.3F;                       // metres per metre; greater changes count as much
+constexpr float kNoSlope = 1e9F;
 
 /// The highest of the bits that are set; the lowest if none is.
 HWY_INLINE std::size_t lastOf(std::uint8_t bits) {
@@ -103,6 +108,7 @@ std::size_t collectStretches(const Shown& shown, MapReports& reports) {
     const GroundReached& inwards = result.followed[before.followed];
     stretches.from_rho[count] = inwards.rho[last];
     stretches.from_height[count] = is_first ? shown.start_height : inwards.height[last];
+    stretches.slope_before[count] = is_first ? kNoSlope : inwards.slope[last];
     stretches.rho[count] = now.rho[last];
     stretches.height[count] = now.height[last];
     stretches.long_slope[count] = now.slope[last];
@@ -115,8 +121,10 @@ std::size_t collectStretches(const Shown& shown, MapReports& reports) {
   return count;
 }
 
-/// Computes the bins of the stretches, and the lines that are entered.
-HWY_INLINE void measureStretches(MapReports::Stretches& stretches, std::size_t count, float max_slope) {
+/// Computes the bins of the stretches, the lines that are entered, and how much the slope changes.
+HWY_INLINE void measureStretches(MapReports::Stretches& stretches, std::size_t count, float max_slope,
+                                 Unevenness& unevenness) {
+  auto changes = hn::Zero(kLaneInts), counts = changes;
   for (std::size_t i = 0; i < count; i += hn::MaxLanes(kLanes)) {
     const auto load = [i](const AlignedVector<float>& values) HWY_ATTR { return hn::LoadU(kLanes, &values[i]); };
     const auto store = [i](Floats value, AlignedVector<float>& to) HWY_ATTR { hn::StoreU(value, kLanes, &to[i]); };
@@ -127,12 +135,22 @@ HWY_INLINE void measureStretches(MapReports::Stretches& stretches, std::size_t c
     const auto own_slope = hn::Min(hn::Max(hn::Div(rise, length), hn::Neg(most)), most);
     const auto slope = hn::IfThenElse(hn::Gt(length, set(0.3F)), own_slope, load(stretches.long_slope));
     store(slope, stretches.slope);
+    const auto change = hn::Abs(hn::Sub(own_slope, load(stretches.slope_before)));
+    const auto in_range = hn::And(hn::Gt(rho, set(kUnevenFrom)), hn::Lt(rho, set(kUnevenTo)));
+    const auto is_stretch =
+        hn::And(hn::FirstN(kLanes, count - i), hn::AndNot(is_none, hn::Gt(length, set(kMinLength))));
+    const auto counted =
+        hn::RebindMask(kLaneInts, hn::And(hn::And(in_range, is_stretch), hn::Lt(change, set(kNoSlope / 2.0F))));
+    const auto units = hn::ConvertTo(kLaneInts, hn::Mul(hn::Min(change, set(kMaxChange)), set(Unevenness::kUnit)));
+    changes = hn::Add(changes, hn::IfThenElseZero(counted, units));
+    counts = hn::Sub(counts, hn::VecFromMask(kLaneInts, counted));
     store(hn::Sub(height, hn::Mul(slope, rho)), stretches.offset);
     store(hn::Div(height, rho), stretches.ray);
     hn::StoreU(binsOf(from_rho), kLaneInts, &stretches.first[i]);
     const auto last = hn::IfThenElse(hn::RebindMask(kLaneInts, is_none), hn::Set(kLaneInts, -1), binsOf(rho));
     hn::StoreU(last, kLaneInts, &stretches.last[i]);
   }
+  unevenness.add(hn::GetLane(hn::SumOfLanes(kLaneInts, changes)), hn::GetLane(hn::SumOfLanes(kLaneInts, counts)));
 }
 
 /// Forgets ground above the rays of the rows' latest returns, beyond the ground that their columns have shown. Rays of
@@ -222,7 +240,7 @@ void enterReports(const Shown& shown, MapReports& reports, GroundMap::Sector* se
   MapReports::Stretches& stretches = reports.stretches;
   seeThrough(shown, reports.block_number++, sectors, middles);
   const std::size_t count = collectStretches(shown, reports);
-  measureStretches(stretches, count, shown.setting.max_slope);
+  measureStretches(stretches, count, shown.setting.max_slope, reports.unevenness);
   const float trend_gain = shown.turns_left ? kTrendGain : -kTrendGain;
   for (std::size_t i = 0; i < count; ++i)
     if (stretches.last[i] >= 0) addStretch(sectors[stretches.sector[i]], stretches, i, trend_gain, middles);
@@ -241,10 +259,11 @@ HWY_EXPORT(enterReports);
 
 void MapReports::begin(std::size_t lasers) {
   block_number = 0;
+  unevenness = {};
   const std::size_t size = lasers + Block::kColumns;
   if (latest.size() >= size) return;
-  for (auto* values : {&stretches.from_rho, &stretches.from_height, &stretches.rho, &stretches.height,
-                       &stretches.long_slope, &stretches.slope, &stretches.offset, &stretches.ray})
+  for (auto* values : {&stretches.from_rho, &stretches.slope_before, &stretches.from_height, &stretches.rho,
+                       &stretches.height, &stretches.long_slope, &stretches.slope, &stretches.offset, &stretches.ray})
     values->resize(size);
   for (auto* values : {&stretches.first, &stretches.last}) values->resize(size);
   for (auto* values : {&stretches.sector, &stretches.is_doubted, &stretches.is_last, &latest}) values->resize(size);

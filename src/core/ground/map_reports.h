@@ -9,6 +9,7 @@
 #include "core/aligned_vector.h"
 #include "core/ground/follow_rows.h"
 #include "core/ground/ground_map.h"
+#include "core/ground/unevenness.h"
 
 namespace lisco::ground {
 
@@ -28,6 +29,7 @@ struct MapReports {
   /// Ground found from one distance to another.
   struct Stretches {
     AlignedVector<float> from_rho, from_height, rho, height;
+    AlignedVector<float> slope_before;        ///< of the ground further inwards; kNoSlope: none
     AlignedVector<float> long_slope;          ///< of the ground up to rho, over a longer way
     AlignedVector<float> slope, offset, ray;  ///< of the line that is entered, and of the ray to its end
     AlignedVector<std::int32_t> first, last;  ///< bins; last is -1 for a stretch that is not entered
@@ -36,6 +38,7 @@ struct MapReports {
     std::vector<std::uint32_t> is_last;       ///< element s + 1: 1 if stretch s is the outermost, else 0
   };
   Stretches stretches;
+  Unevenness unevenness;
   std::uint32_t block_number = 0;  ///< blocks entered since begin ()
   /// By position in the order, of rows that have reached ground: 1 + the outermost stretch up to there, or 0.
   std::vector<std::uint32_t> latest;

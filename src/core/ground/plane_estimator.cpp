@@ -34,6 +34,7 @@ constexpr double kPointReach = 6.0;     // metres; where lines begin further out
 constexpr double kSlopeReach = 2.0;     // metres, over which a line's slope counts
 constexpr double kLevelWeight = 20.0;   // square metres, of the horizon
 constexpr float kMinWeight = 6.0F;      // of the lines that show a plane
+constexpr float kMinRefining = 1.5F;    // of the lines that refine it: few are near where a stream begins
 constexpr float kOnPlane = 0.2F;        // metres; lines that begin this near to a plane begin on it
 constexpr float kClearlyMore = 1.5F;    // times the weight of lines that begin on another plane
 // Updates per one that shows ground, at most: 1 to 2 on streets, 9 and more where objects alone are around. Where a
@@ -285,7 +286,7 @@ void PlaneEstimator::refine() {
     add(weight, {0.0, kSlopeReach * x, kSlopeReach * y, kSlopeReach * slope});
     all += weight;
   }
-  if (all < kMinWeight) return;
+  if (all < kMinRefining) return;
   for (std::size_t pivot = 0; pivot < 3; ++pivot)
     for (std::size_t i = 0; i < 3; ++i) {
       if (i == pivot) continue;
