@@ -330,6 +330,8 @@ TEST(Unevenness, FollowsTheChangesOfSlope) {
   EXPECT_EQ(unevenness.value(), 0.0F) << "one stretch of a kerb";
   for (int block = 0; block < 64; ++block) unevenness.add(unit, 10);
   EXPECT_EQ(unevenness.value(), 1.0F);
+  for (int block = 0; block < 100000; ++block) unevenness.add(0, 0);
+  EXPECT_EQ(unevenness.value(), 1.0F) << "no ground in view";
   for (int block = 0; block < 256; ++block) unevenness.add(unit / 10, 10);
   EXPECT_EQ(unevenness.value(), 0.0F);
 }

@@ -278,8 +278,8 @@ HWY_INLINE Mask foundByColumn(const RowPart& part, const Mapped& map, const Abov
   return hn::Or(found, hn::And(on_line, hn::Or(hn::Gt(map.slack, set(kLineKnown)), fits_map)));
 }
 
-/// On uneven ground, more is ground: what is lower than the map's, and surfaces where nothing is known, behind crests
-/// and on slopes that face the sensor.
+/// Ground that is found only where it is uneven: what is lower than the map's, and surfaces where nothing is known,
+/// behind crests and on slopes that face the sensor.
 HWY_INLINE Mask foundOnUneven(const RowPart& part, const Mapped& map, const Above& above, Mask flat, Floats steepest,
                               float unevenness) {
   const auto level = hn::AndNot(above.surface, flat);
@@ -289,7 +289,8 @@ HWY_INLINE Mask foundOnUneven(const RowPart& part, const Mapped& map, const Abov
 
   const auto here = hn::Div(part.from_ground, hn::Max(part.way, set(0.5F)));
   const auto bend = hn::Abs(hn::Sub(above.slope, here));
-  const auto goes_on = hn::And(hn::Lt(hn::Abs(above.slope), set(unevenness * kSurface)), hn::Lt(bend, set(kSurface)));
+  const auto most = set(unevenness * kSurface);
+  const auto goes_on = hn::And(hn::Lt(hn::Abs(above.slope), most), hn::Lt(bend, most));
   const auto continues =
       hn::Or(hn::AndNot(part.first, goes_on), hn::And(part.first, hn::Lt(bend, set(unevenness * kFirstSurface))));
   const auto surface = hn::And(hn::And(above.seen, hn::Gt(above.step, set(kSurfaceLength))),

@@ -14,8 +14,9 @@ class Unevenness {
   static constexpr float kUnit = 65536.0F;  ///< of the sums of changes: integers, so that their order does not matter
 
   /// \param changes sum of the changes of slope that a block shows, in 1 / kUnit
-  /// \param count of these changes
+  /// \param count of these changes; a block without any changes nothing
   void add(std::int32_t changes, std::int32_t count) {
+    if (count == 0) return;
     sum_ = kKept * sum_ + static_cast<float>(changes) / kUnit;
     count_ = kKept * count_ + static_cast<float>(count);
   }
@@ -25,7 +26,7 @@ class Unevenness {
  private:
   // Least loss of objects and of ground in the tables of benchmarks/suite.sh ground ground_real.
   static constexpr float kEven = 0.038F, kUneven = 0.046F;  // metres per metre, mean changes of slope
-  static constexpr float kKept = 63.0F / 64.0F;             // of the blocks before
+  static constexpr float kKept = 63.0F / 64.0F;             // of the blocks before, by each
   static constexpr float kEvenAtFirst = 16.0F;              // changes of 0 before the first block
 
   float sum_ = 0.0F, count_ = kEvenAtFirst;
