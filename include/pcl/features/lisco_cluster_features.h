@@ -13,6 +13,7 @@
 #include <pcl/pcl_base.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
+#include <pcl/segmentation/lisco_pcl_version.h>
 
 #include "lisco/cluster_features.h"
 

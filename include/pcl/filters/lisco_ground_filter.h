@@ -12,6 +12,7 @@
 #include <pcl/filters/filter_indices.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
+#include <pcl/segmentation/lisco_pcl_version.h>
 
 #include "lisco/label_ground.h"
 

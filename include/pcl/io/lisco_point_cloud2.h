@@ -16,6 +16,7 @@
 #include <pcl/common/io.h>  // getFields
 #include <pcl/pcl_base.h>   // UNAVAILABLE
 #include <pcl/point_cloud.h>
+#include <pcl/segmentation/lisco_pcl_version.h>
 #include <pcl/types.h>
 
 namespace pcl {

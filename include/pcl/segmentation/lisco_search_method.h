@@ -8,6 +8,7 @@
 
 #include <pcl/search/kdtree.h>
 #include <pcl/search/search.h>
+#include <pcl/segmentation/lisco_pcl_version.h>
 
 namespace pcl::detail {
 

@@ -53,7 +53,8 @@ inline FarRange farRangeFor(const Tolerance& tolerance, const SensorHints& hints
       std::all_of(hints.tilt.begin(), hints.tilt.end(), [](float slope) { return std::fabs(slope) <= kMaxTilt; });
   const bool is_useful = is_origin_valid && is_tilt_valid && steps >= kMinSteps && steps <= kMaxSteps &&
                          tolerance.joinsAnything() && spacing > 1e-5 && spacing < 10 && min_range > 1e-18 &&
-                         min_range < 1e15 && min_range < static_cast<double>(hints.far_distance);
+                         min_range < static_cast<double>(kMaxRange) &&
+                         min_range < static_cast<double>(hints.far_distance);
   if (!is_useful) return range;
   const float reach = paddedReach(tolerance);
   range.min_range = static_cast<float>(min_range);

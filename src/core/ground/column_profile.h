@@ -11,9 +11,7 @@
 
 namespace lisco::ground {
 
-/// Bins of horizontal distance: eight of equal width in each octave of the squared distance, 3 to 6 % of it wide. Bin 0
-/// begins at 0.5 m; nearer returns belong to it.
-inline constexpr std::size_t kBins = 192;
+inline constexpr std::size_t kBins = 192;  ///< of distance, see distance_bins.h
 
 /// What the returns in a bin of a column show. Heights are metres above the sensor's horizon.
 struct Cell {
@@ -62,17 +60,6 @@ inline unsigned levelOf(float height) {
   return static_cast<unsigned>((towards_zero - (static_cast<float>(towards_zero) > levels ? 1 : 0)) & 63);
 }
 
-/// Number of the bin of a distance.
-inline std::uint32_t binOf(float rho) {
-  constexpr std::int32_t kFirst = (127 - 2) << 3;  // 0.25 m2
-  const float squared = rho * rho;
-  std::int32_t bits;
-  std::memcpy(&bits, &squared, sizeof bits);
-  constexpr auto kLast = static_cast<std::int32_t>(kBins) - 1;
-  const std::int32_t bin = (bits >> 20) - kFirst, positive = bin < 0 ? 0 : bin;
-  return static_cast<std::uint32_t>(positive > kLast ? kLast : positive);
-}
-
 /// The returns of a column by distance, from the sensor outwards.
 struct ColumnProfile {
   std::array<Cell, kBins> cells;
@@ -80,7 +67,7 @@ struct ColumnProfile {
 
   bool has(std::size_t bin) const { return (occupied[bin / 64] >> (bin % 64) & 1) != 0; }
 
-  /// \param bin of the return's distance, see binOf
+  /// \param bin distanceBin of the return
   /// \param lowest of the cell, if it holds this return only
   /// \param level of the return's height, see levelOf
   void add(std::size_t bin, std::uint64_t lowest, unsigned level) {

@@ -64,9 +64,7 @@ struct Mapped {
 };
 
 HWY_INLINE Mapped lookDown(const GroundMap::Sector& sector, Floats rho, Floats height, Mask valid) {
-  const auto exponent = hn::ShiftRight<GroundMap::kBinShift>(hn::BitCast(kLaneInts, hn::Mul(rho, rho)));
-  auto bin = hn::Sub(exponent, hn::Set(kLaneInts, GroundMap::kFirstBin));
-  bin = hn::Min(hn::Max(bin, hn::Zero(kLaneInts)), hn::Set(kLaneInts, static_cast<std::int32_t>(GroundMap::kBins) - 1));
+  const auto bin = distanceBins(rho, static_cast<std::int32_t>(GroundMap::kBins));
   Floats offset;
   Mapped mapped;
   // Mostly all returns are within as many bins as a vector has lanes.

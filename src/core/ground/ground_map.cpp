@@ -62,12 +62,8 @@ constexpr float kAcross = 0.06F;       // metres per metre, by which the ground 
 const GroundMap::Values& GroundMap::middles() {
   alignas(64) static const Values values = [] {
     Values all;
-    for (std::size_t bin = 0; bin < all.size(); ++bin) {
-      const std::int32_t bits = (static_cast<std::int32_t>(bin) + kFirstBin) << kBinShift;
-      float squared;
-      std::memcpy(&squared, &bits, sizeof squared);
-      all[bin] = 1.02F * std::sqrt(squared);
-    }
+    for (std::size_t bin = 0; bin < all.size(); ++bin)
+      all[bin] = 1.02F * std::sqrt(squaredDistanceOf(static_cast<std::int32_t>(bin)));
     return all;
   }();
   return values;

@@ -2,14 +2,13 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include "core/ground/direction.h"
+#include "core/ground/distance_bins.h"
 #include "core/ground/plane_estimator.h"
 
 namespace lisco::ground {
@@ -17,10 +16,7 @@ namespace lisco::ground {
 /// The ground found so far, by azimuth and horizontal distance: a line for each cell, in the frame of the sensor.
 class GroundMap {
  public:
-  static constexpr std::size_t kBins = 128;  ///< of distance, eight for each octave of the squared distance
-  /// Number of bin 0: exponent and three highest mantissa bits of 0.25 m2, the square of 0.5 m.
-  static constexpr std::int32_t kFirstBin = (127 - 2) << 3;
-  static constexpr int kBinShift = 20;
+  static constexpr std::size_t kBins = 128;  ///< of distance, see distance_bins.h
   static constexpr float kUnknown = 1e9F;
 
   /// A value for each bin.
@@ -39,13 +35,7 @@ class GroundMap {
 
   void begin();
 
-  static std::size_t binOf(float rho) {
-    const float squared = rho * rho;
-    std::int32_t bits;
-    std::memcpy(&bits, &squared, sizeof bits);
-    const std::int32_t bin = (bits >> kBinShift) - kFirstBin;
-    return static_cast<std::size_t>(std::clamp(bin, 0, static_cast<std::int32_t>(kBins) - 1));
-  }
+  static std::int32_t binOf(float rho) { return distanceBin(rho, static_cast<std::int32_t>(kBins)); }
   /// Distances in the middle of the bins, metres.
   static const Values& middles();
 

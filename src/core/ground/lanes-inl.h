@@ -9,9 +9,12 @@
 #define LISCO_GROUND_LANES_INL_H
 #endif
 
+#include <cstdint>
+
 #include <hwy/highway.h>
 
 #include "core/ground/block.h"
+#include "core/ground/distance_bins.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace lisco::ground {
@@ -30,6 +33,13 @@ constexpr LaneWords kLaneWords{};
 
 HWY_INLINE Floats set(float value) {
   return hn::Set(kLanes, value);
+}
+
+/// distanceBin of each lane
+HWY_INLINE hn::Vec<LaneInts> distanceBins(Floats rho, std::int32_t bins) {
+  const auto bits = hn::ShiftRight<kDistanceBinShift>(hn::BitCast(kLaneInts, hn::Mul(rho, rho)));
+  const auto bin = hn::Max(hn::Sub(bits, hn::Set(kLaneInts, kFirstDistanceBin)), hn::Zero(kLaneInts));
+  return hn::Min(bin, hn::Set(kLaneInts, bins - 1));
 }
 
 }  // namespace HWY_NAMESPACE

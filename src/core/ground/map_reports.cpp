@@ -76,14 +76,7 @@ struct Cells {
 };
 
 using Middles = const GroundMap::Values&;
-
-/// GroundMap::binOf
-HWY_INLINE hn::Vec<LaneInts> binsOf(Floats rho) {
-  const auto int32 = [](std::int32_t value) HWY_ATTR { return hn::Set(kLaneInts, value); };
-  const auto bits = hn::ShiftRight<GroundMap::kBinShift>(hn::BitCast(kLaneInts, hn::Mul(rho, rho)));
-  const auto bin = hn::Sub(bits, int32(GroundMap::kFirstBin));
-  return hn::Min(hn::Max(bin, hn::Zero(kLaneInts)), int32(static_cast<std::int32_t>(GroundMap::kBins) - 1));
-}
+constexpr auto kMapBins = static_cast<std::int32_t>(GroundMap::kBins);
 
 /// Collects the ground that the rows have shown. \return number of stretches
 std::size_t collectStretches(const Shown& shown, MapReports& reports) {
@@ -146,8 +139,9 @@ HWY_INLINE void measureStretches(MapReports::Stretches& stretches, std::size_t c
     counts = hn::Sub(counts, hn::VecFromMask(kLaneInts, counted));
     store(hn::Sub(height, hn::Mul(slope, rho)), stretches.offset);
     store(hn::Div(height, rho), stretches.ray);
-    hn::StoreU(binsOf(from_rho), kLaneInts, &stretches.first[i]);
-    const auto last = hn::IfThenElse(hn::RebindMask(kLaneInts, is_none), hn::Set(kLaneInts, -1), binsOf(rho));
+    hn::StoreU(distanceBins(from_rho, kMapBins), kLaneInts, &stretches.first[i]);
+    const auto last =
+        hn::IfThenElse(hn::RebindMask(kLaneInts, is_none), hn::Set(kLaneInts, -1), distanceBins(rho, kMapBins));
     hn::StoreU(last, kLaneInts, &stretches.last[i]);
   }
   unevenness.add(hn::GetLane(hn::SumOfLanes(kLaneInts, changes)), hn::GetLane(hn::SumOfLanes(kLaneInts, counts)));
@@ -162,8 +156,8 @@ void seeThrough(const Shown& shown, std::uint32_t block_number, GroundMap::Secto
     const auto row = static_cast<std::size_t>(setting.rows[i].row);
     const float to = block.last_rho[row];
     const GroundReached& ground = shown.result.followed[shown.result.passed[i].followed];
-    const auto first = static_cast<std::int32_t>(GroundMap::binOf(ground.rho[block.last[row]])) + 1;
-    const auto end = static_cast<std::int32_t>(GroundMap::binOf(to));
+    const std::int32_t first = GroundMap::binOf(ground.rho[block.last[row]]) + 1;
+    const std::int32_t end = GroundMap::binOf(to);
     if (first >= end) continue;
     GroundMap::Sector& sector = sectors[setting.sectors[i]];
     const auto slope = set(block.last_height[row] / to);
@@ -218,21 +212,20 @@ HWY_INLINE void extend(GroundMap::Sector& sector, const MapReports::Stretches& s
   const float rho = stretches.rho[i], slope = stretches.long_slope[i];
   const float farthest = rho + (kMaxBeyond - kBeyondStart) / kBeyond;
   const float offset = stretches.height[i] - slope * rho;
-  const auto first = static_cast<std::int32_t>(GroundMap::binOf(rho)) + 1;
-  if (first >= static_cast<std::int32_t>(GroundMap::kBins)) return;
-  forBins(first, static_cast<std::int32_t>(GroundMap::binOf(farthest)),
-          [&](std::size_t bin, Mask mask, Mask /*is_last*/) HWY_ATTR {
-            const Cells cells{sector, bin};
-            const auto way = hn::Sub(cells.load(middles), set(rho));
-            const auto slack = hn::Add(set(kBeyondStart), hn::Mul(set(kBeyond), way));
-            const auto entered =
-                hn::And(mask, hn::And(hn::Le(slack, set(kMaxBeyond)), hn::Lt(slack, cells.load(sector.slack))));
-            cells.store(entered, set(offset), sector.offset);
-            cells.store(entered, set(slope), sector.slope);
-            cells.store(entered, slack, sector.slack);
-            cells.store(entered, hn::Zero(kLanes), sector.trend);
-            cells.store(entered, hn::Zero(kLanes), sector.age);
-          });
+  const std::int32_t first = GroundMap::binOf(rho) + 1;
+  if (first >= kMapBins) return;
+  forBins(first, GroundMap::binOf(farthest), [&](std::size_t bin, Mask mask, Mask /*is_last*/) HWY_ATTR {
+    const Cells cells{sector, bin};
+    const auto way = hn::Sub(cells.load(middles), set(rho));
+    const auto slack = hn::Add(set(kBeyondStart), hn::Mul(set(kBeyond), way));
+    const auto entered =
+        hn::And(mask, hn::And(hn::Le(slack, set(kMaxBeyond)), hn::Lt(slack, cells.load(sector.slack))));
+    cells.store(entered, set(offset), sector.offset);
+    cells.store(entered, set(slope), sector.slope);
+    cells.store(entered, slack, sector.slack);
+    cells.store(entered, hn::Zero(kLanes), sector.trend);
+    cells.store(entered, hn::Zero(kLanes), sector.age);
+  });
 }
 
 void enterReports(const Shown& shown, MapReports& reports, GroundMap::Sector* sectors) {

@@ -8,6 +8,7 @@
 
 #include "core/bits.h"
 #include "core/ground/column_profile.h"
+#include "core/ground/distance_bins.h"
 
 namespace lisco::ground {
 namespace {
@@ -85,7 +86,7 @@ void PlaneEstimator::add(const Block& block, const Columns& columns, std::size_t
     y_[i] /= rho_[i];
   }
   for (std::size_t i = 0; i < count; ++i) {
-    bins_[i] = binOf(rho_[i]);
+    bins_[i] = static_cast<std::uint32_t>(distanceBin(rho_[i], static_cast<std::int32_t>(kBins)));
     levels_[i] = levelOf(height_[i]);
   }
   for (std::size_t i = 0; i < count; ++i) lowest_[i] = ground::lowestOf(rho_[i], height_[i]);
