@@ -267,8 +267,10 @@ void VoxelSorter::cutFragments() {
     part_sizes_[i] = HWY_DYNAMIC_DISPATCH(cutPart)(numbering_, number_bits_, part, starts, &items_[part.first]);
   });
   // Several parts exchange both arrays; the sets of single returns need an entry for each.
-  const bool is_compact = part_sizes_.size() == 1 && !fragments_.are_single;
-  scratch_.growInSteps((is_compact ? part_sizes_[0] : size) + kPrefetch);
+  if (part_sizes_.size() == 1 && !fragments_.are_single)
+    scratch_.growInSteps(part_sizes_[0] + kPrefetch);
+  else
+    scratch_.grow(size + kPrefetch);
 }
 
 /// Moves the fragments of each slab of planes together: slabs of about equal work, one for each part.
