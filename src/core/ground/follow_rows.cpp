@@ -308,10 +308,11 @@ HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const RowPart
   const auto sure = hn::And(hn::Lt(map.slack, set(kSure)), hn::Lt(off_map, set(kSure)));
 
   auto found = foundByMap(map, above, flat, hn::Or(agrees, sure));
-  if (!hn::AllFalse(kLanes, hn::AndNot(found, valid)))
-    found = hn::Or(found,
-                   foundByColumn(part, map, above, flat, lanesOf(row.before->obstacles, k), steepest, row.unevenness));
-  if (row.unevenness > 0.0F) found = hn::Or(found, foundOnUneven(part, map, above, flat, steepest, row.unevenness));
+  if (!hn::AllFalse(kLanes, hn::AndNot(found, valid))) {
+    const Mask obstacles = lanesOf(row.before->obstacles, k);
+    found = hn::Or(found, foundByColumn(part, map, above, flat, obstacles, steepest, row.unevenness));
+    if (row.unevenness > 0.0F) found = hn::Or(found, foundOnUneven(part, map, above, flat, steepest, row.unevenness));
+  }
   found = hn::And(found, hn::And(valid, hn::Le(height, hn::Add(part.limit, set(kStepUp)))));
   lowerLimit(row, k, part, found);
 

@@ -10,9 +10,6 @@ namespace lisco::ground {
 namespace {
 
 constexpr float kStartLimit = 0.2F;  // metres above the ground beneath the sensor
-// Least part of the ground among a row's returns and those of the rows next to it, less what the unevenness takes off.
-// Least loss of objects and of ground in the tables of benchmarks/suite.sh ground ground_real.
-constexpr float kMinGround = 0.285F, kUnevenMinGround = 0.15F;
 
 /// The first rows are followed by the column that measures the block, the others by the next one, so that neither has
 /// more work than the other (benchmarks/suite.sh ground_latency).
@@ -71,8 +68,7 @@ void Follower::followOtherRows(const Block& block, const RowOrder& order, const 
     count += static_cast<std::size_t>(found[i].ground != 0);
   }
   with_ground_count_ = count;
-  const float least_ground = kMinGround - reports_.unevenness.value() * kUnevenMinGround;
-  dropScattered(rows.data(), found, with_ground_, count, least_ground, scattered_);
+  dropScattered(rows.data(), found, with_ground_, count, reports_.unevenness.value(), scattered_);
   write(rows.data(), ground, columns, stride);
 }
 

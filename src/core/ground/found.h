@@ -22,9 +22,9 @@ struct Found {
 /// ground in front of it. `known` ground stays.
 /// \param found by position in the order; that of RowOrder::kNone, position -1, is empty
 /// \param with_ground positions of the rows with ground; the first `count` are used
-/// \param least_ground least part of the ground among a row's returns and those of the rows next to it
+/// \param unevenness Unevenness::value
 /// \param scattered at least `count` elements, overwritten
 void dropScattered(const RowOrder::Row* rows, Found* found, const std::vector<std::int32_t>& with_ground,
-                   std::size_t count, float least_ground, std::vector<std::int32_t>& scattered);
+                   std::size_t count, float unevenness, std::vector<std::int32_t>& scattered);
 
 }  // namespace lisco::ground

@@ -38,7 +38,7 @@ struct MapReports {
     std::vector<std::uint32_t> is_last;       ///< element s + 1: 1 if stretch s is the outermost, else 0
   };
   Stretches stretches;
-  Unevenness unevenness;
+  Unevenness unevenness;           ///< of the ground in all blocks entered
   std::uint32_t block_number = 0;  ///< blocks entered since begin ()
   /// By position in the order, of rows that have reached ground: 1 + the outermost stretch up to there, or 0.
   std::vector<std::uint32_t> latest;

@@ -14,7 +14,7 @@ class Unevenness {
   static constexpr float kUnit = 65536.0F;  ///< of the sums of changes: integers, so that their order does not matter
 
   /// \param changes sum of the changes of slope that a block shows, in 1 / kUnit
-  /// \param count of these changes; a block without any changes nothing
+  /// \param count of these changes; a block without any has no effect
   void add(std::int32_t changes, std::int32_t count) {
     if (count == 0) return;
     sum_ = kKept * sum_ + static_cast<float>(changes) / kUnit;
