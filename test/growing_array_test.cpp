@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <new>
@@ -125,27 +127,113 @@ TEST(GrowingArray, ExchangesMemoryWithOtherElements) {
   }
 }
 
-TEST(ImageCells, HaveFourPlanesInEachRow) {
-  lisco::ImageCells cells;
-  cells.setRowSize(10);
-  cells.reserveRows(3);
-  for (std::size_t row = 0; row < 3; ++row)
-    for (std::size_t i = cells.firstOf(row); i < cells.firstOf(row) + 10; ++i) {
-      cells.x[i] = static_cast<float>(i);
-      cells.y[i] = static_cast<float>(i) + 0.25F;
-      cells.z[i] = static_cast<float>(i) + 0.5F;
-      cells.element[i] = static_cast<std::uint32_t>(i);
+using lisco::ImageCells;
+
+/// Adds rows with memory, whose bins get values of their own.
+void addRows(ImageCells& cells, std::size_t bins, std::size_t count) {
+  const std::size_t before = cells.rowCount();
+  cells.addRows(count);
+  for (std::size_t row = before; row < cells.rowCount(); ++row) {
+    EXPECT_FALSE(cells.hasMemory(row));
+    cells.giveMemory(row, cells.rowCount() - row);
+    const lisco::WritableRowBins to = cells.at(row, 0);
+    for (std::size_t bin = 0; bin < bins; ++bin) {
+      to.x()[bin] = static_cast<float>(10 * row + bin);
+      to.y()[bin] = to.x()[bin] + 0.25F;
+      to.z()[bin] = to.x()[bin] + 0.5F;
+      to.element()[bin] = static_cast<std::uint32_t>(to.x()[bin]);
     }
-  lisco::ImageCells copy(cells);
-  cells.reserveRows(50'000);
-  for (const lisco::ImageCells* some : {&cells, &copy})
-    for (std::size_t row = 0; row < 3; ++row)
-      for (std::size_t i = some->firstOf(row); i < some->firstOf(row) + 10; ++i) {
-        ASSERT_EQ(some->x[i], static_cast<float>(i));
-        ASSERT_EQ(some->y[i], static_cast<float>(i) + 0.25F);
-        ASSERT_EQ(some->z[i], static_cast<float>(i) + 0.5F);
-        ASSERT_EQ(some->element[i], i);
-      }
+  }
+}
+
+/// Checks that rows have the values of addRows ().
+/// \param in_every these have memory: every so many rows, from the first on
+void expectRows(const ImageCells& cells, std::size_t bins, std::size_t in_every = 1) {
+  for (std::size_t row = 0; row < cells.rowCount(); ++row) {
+    ASSERT_EQ(cells.hasMemory(row), row % in_every == 0);
+    if (row % in_every != 0) continue;
+    for (std::size_t bin = 0; bin < bins; ++bin) {
+      const lisco::RowBins from = cells.at(row, bin);
+      const auto x = static_cast<float>(10 * (row / in_every) + bin);
+      ASSERT_EQ(*from.x(), x);
+      ASSERT_EQ(*from.y(), x + 0.25F);
+      ASSERT_EQ(*from.z(), x + 0.5F);
+      ASSERT_EQ(*from.element(), static_cast<std::uint32_t>(x));
+      ASSERT_EQ(from.from(-static_cast<std::ptrdiff_t>(bin)).z(), cells.at(row, 0).z());
+    }
+  }
+}
+
+TEST(ImageCells, KeepsRowsInPlaceWhileOthersAreAdded) {
+  constexpr std::size_t kBins = 9;
+  ImageCells cells;
+  cells.clear(kBins);
+  addRows(cells, kBins, 3);
+  const float* const first = cells.at(0, 0).x();
+  for (const std::size_t count : {1U, 5U, 50'000U}) addRows(cells, kBins, count);
+  EXPECT_EQ(cells.at(0, 0).x(), first);
+  EXPECT_EQ(cells.rowsWithMemory(), 50'009U);
+  expectRows(cells, kBins);
+  ImageCells copy(cells);
+  ImageCells assigned;
+  assigned = cells;
+  cells.at(1, 0).x()[0] = -1.0F;
+  for (const ImageCells* some : {&copy, &assigned}) expectRows(*some, kBins);
+  cells = std::move(copy);
+  expectRows(cells, kBins);
+}
+
+TEST(ImageCells, NumbersRowsAnewForAnotherLayer) {
+  ImageCells cells;
+  cells.clear(8);
+  addRows(cells, 8, 5);
+  cells.addLayer(1);
+  EXPECT_EQ(cells.rowCount(), 10U);
+  expectRows(cells, 8, 2);
+  cells.addLayer(2);
+  EXPECT_EQ(cells.rowCount(), 15U);
+  expectRows(cells, 8, 3);
+  EXPECT_EQ(cells.rowsWithMemory(), 5U);
+}
+
+TEST(ImageCells, UsesItsMemoryAgain) {
+  ImageCells cells;
+  std::size_t bytes = 0;
+  for (const std::size_t bins : {20U, 20U, 19U, 10U, 20U}) {
+    cells.clear(bins);
+    addRows(cells, 10, 4);
+    addRows(cells, 10, 4);
+    expectRows(cells, 10);
+    if (bytes == 0) bytes = cells.bytes();
+    EXPECT_EQ(cells.bytes(), bytes);
+  }
+}
+
+TEST(ImageCells, WidensRowsOfAllChunks) {
+  ImageCells cells;
+  cells.clear(10);
+  for (const std::size_t count : {3U, 4U}) addRows(cells, 10, count);
+  cells.widenRows(25, 8);
+  expectRows(cells, 8);
+  for (std::size_t row = 0; row < cells.rowCount(); ++row)
+    for (std::size_t bin = 8; bin < 25; ++bin) EXPECT_TRUE(std::isnan(cells.at(row, bin).x()[0])) << bin;
+  addRows(cells, 25, 1);
+  expectRows(cells, 8);
+  for (std::size_t row = 0; row < cells.rowCount(); ++row) EXPECT_EQ(cells.at(row, 0).y(), cells.at(row, 0).x() + 25);
+}
+
+TEST(ImageCells, ExchangesTheMemoryOfItsFirstRows) {
+  ImageCells cells;
+  lisco::GrowingArray<std::uint64_t> words;
+  words.grow(1000);
+  const void* const memory = words.data();
+  cells.exchangeMemory(words);
+  EXPECT_EQ(words.size(), 0U);
+  EXPECT_EQ(cells.exchangedBytes(), 8000U);
+  cells.clear(10);
+  addRows(cells, 10, 50);
+  EXPECT_EQ(cells.at(0, 0).x(), memory);
+  EXPECT_EQ(cells.bytes(), 8000U);
 }
 
 }  // namespace

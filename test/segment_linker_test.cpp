@@ -676,7 +676,7 @@ TEST(SegmentLinker, PutsReturnsOfTakenBinsIntoAnotherLayer) {
           unplaced += probe.put(laser, bin, 0.2 + 0.049 * i, 0.5 * static_cast<double>(laser)) ? 1 : 0;
     EXPECT_LE(unplaced, 200);
     EXPECT_EQ(probe.part().image.layers, static_cast<std::size_t>(in_a_bin));
-    EXPECT_EQ(probe.part().image.rows_in_memory, 3 * static_cast<std::size_t>(in_a_bin));
+    EXPECT_EQ(probe.part().image.cells.rowsWithMemory(), 3 * static_cast<std::size_t>(in_a_bin));
     probe.linkAll();
     EXPECT_EQ(difference(trueClusters(probe.points(), 0.05F), probe.clusters()), "");
   }
@@ -690,15 +690,15 @@ TEST(RangeImage, TakesMemoryForRowsOfALayerAtOnce) {
   image.addLasers(kLasers);
   const std::size_t one_layer = image.cells.bytes();
   image.addLayer();
-  image.openRow(image.rows[image.firstRowOf(7) + 1]);
+  image.openRow(image.firstRowOf(7) + 1);
   const std::size_t two_layers = image.cells.bytes();
   EXPECT_GE(two_layers, 2 * one_layer);
   EXPECT_LE(two_layers, 5 * one_layer / 2);
   for (std::size_t laser = 0; laser < kLasers; ++laser)
-    if (laser != 7) image.openRow(image.rows[image.firstRowOf(laser) + 1]);
+    if (laser != 7) image.openRow(image.firstRowOf(laser) + 1);
   EXPECT_EQ(image.cells.bytes(), two_layers);
   image.addLayer();
-  image.openRow(image.rows[image.firstRowOf(7) + 2]);
+  image.openRow(image.firstRowOf(7) + 2);
   EXPECT_GT(image.cells.bytes(), two_layers);
   EXPECT_LE(image.cells.bytes(), 5 * two_layers / 4);
 }

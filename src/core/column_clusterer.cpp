@@ -47,7 +47,7 @@ class ColumnClusterer::Rotation {
  private:
   void divide(std::size_t columns, std::size_t lasers, const CellSource& cells);
   void receiveAtOnce(std::size_t columns, std::size_t lasers, const CellSource& cells);
-  void preparePart(std::size_t i, const SensorHints& hints, std::size_t columns);
+  void preparePart(std::size_t i, const SensorHints& hints, std::size_t columns, std::size_t room = 0);
   bool readFarAndNear(std::size_t lasers, const CellSource& cells);
   void readPart(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial);
   void reserveRuns(Partition& partition);
@@ -78,7 +78,7 @@ class ColumnClusterer::Rotation {
   std::vector<LoadBalancer::Part> parts_;  ///< of the threads
   bool comes_at_once_ = false;             ///< the latest columns, of this rotation or the one before
   bool is_prepared_ = false;               ///< the last partition, for columns that follow
-  bool was_far_worthwhile_ = false;        ///< in the latest trial
+  bool has_tried_ = false;                 ///< FarTrial, in any rotation
   struct TriedNear {
     std::size_t returns, columns;
   } tried_near_{};           ///< near returns of the columns of this rotation's trial; {0, 0}: none
@@ -208,8 +208,9 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
     readNear(lasers, cells);
 }
 
-void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hints, std::size_t columns) {
-  partitions_[i].prepare(tolerance_, hints, columns);
+void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hints, std::size_t columns,
+                                            std::size_t room) {
+  partitions_[i].prepare(tolerance_, hints, columns, room);
   partitions_[i].collectNear();
 }
 
@@ -220,13 +221,15 @@ void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hi
 bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSource& cells) {
   if (parameters_.sensor.steps_per_turn == 0) return false;   // nothing to prepare
   partitions_.front().takeLargerMemory(unordered_.memory());  // not in use before the trial ends
+  const bool is_first_trial = !has_tried_;
   FarTrial trial;
   inParallel(partition_count_, [&](std::size_t i) {
     try {
-      // Until far returns prove worthwhile, one image takes no more memory than its trial needs.
       const std::size_t all = parts_[i].end - parts_[i].first;
-      const bool is_full = partition_count_ > 1 || was_far_worthwhile_;
-      preparePart(i, parameters_.sensor, is_full ? all : std::min(kTriedColumns, all));
+      const std::size_t expected = partition_count_ > 1 ? all : std::min(kTriedColumns, all);
+      // After a refused trial, the next one takes no more memory than it needs.
+      const bool has_room = is_first_trial || partitions_[i].hasMemoryFor(lasers, all, parameters_.sensor);
+      preparePart(i, parameters_.sensor, expected, has_room ? all : expected);
       if (partitions_[i].hasFar())
         readPart(i, lasers, cells, trial);
       else
@@ -285,8 +288,10 @@ void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, cons
     partition.readColumns(cells, first, count, lasers, static_cast<std::uint32_t>(first), subclusters_);
     if (partition_count_ > 1) balancer_.record(first, count, count * lasers + partition.workDone() - before);
     if (i == 0 && first + count == std::min(kTriedColumns, end)) {
-      const bool is_worthwhile = was_far_worthwhile_ = partition.isFarWorthwhile();
+      const bool is_worthwhile = partition.isFarWorthwhile();
       trial.decide(is_worthwhile);
+      if (!is_worthwhile && !has_tried_) partition.shrinkMemory();
+      has_tried_ = true;
       tried_near_ = {is_worthwhile ? partition.nearReturns().count : partition.runs.returns, first + count};
       if (!is_worthwhile) return;
       partition.expectColumns(end - begin);

@@ -75,6 +75,15 @@ class GrowingArray {
     if (size > size_) grow(withSpare(size));
   }
 
+  /// Gives back memory behind a size, if it is above; elements before stay where they are.
+  void shrink(std::size_t size) {
+    if (size >= size_ || size == 0) return;
+    void* const data = std::realloc(static_cast<void*>(data_), size * sizeof(T));
+    if (data == nullptr) return;  // all is there as before
+    data_ = static_cast<T*>(data);
+    size_ = size;
+  }
+
   /// Grows to a size, if it is below. Elements that are there keep their values, perhaps at another address.
   /// \throws std::bad_alloc, with nothing changed
   void grow(std::size_t size) {

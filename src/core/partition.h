@@ -27,7 +27,8 @@ class Partition {
   /// Starts without columns. Keeps its memory.
   /// \param hints if steps_per_turn is 0, all returns are near
   /// \param columns number of columns expected; more than a turn needs no more memory
-  void prepare(const Tolerance& tolerance, const SensorHints& hints, std::size_t columns);
+  /// \param room number of columns for which expectColumns () moves no returns, if it is larger
+  void prepare(const Tolerance& tolerance, const SensorHints& hints, std::size_t columns, std::size_t room = 0);
 
   /// See RangeImage::takeLargerMemory.
   void takeLargerMemory(NearReturns& near) noexcept { image_.takeLargerMemory(near.returns); }
@@ -39,10 +40,12 @@ class Partition {
   }
 
   /// Makes room for more columns than expected before.
-  void expectColumns(std::size_t columns) {
-    image_.expectColumns(columns);
-    segments_.forgetSectors();
+  void expectColumns(std::size_t columns) { image_.expectColumns(columns); }
+  /// See RangeImage.
+  bool hasMemoryFor(std::size_t lasers, std::size_t columns, const SensorHints& hints) const {
+    return image_.hasMemoryFor(lasers, columns, hints);
   }
+  void shrinkMemory() { image_.shrinkMemory(); }
 
   /// From now on near returns are collected, to be sorted by VoxelSorter, instead of put into voxels as they come.
   void collectNear() { collects_near_ = true; }

@@ -6,77 +6,167 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "core/growing_array.h"
 
 namespace lisco {
 
-/// The bins of a range image. A row has four planes, one after the other: x, y, z and the element of each bin. A bin
-/// has one index in all of them. Rows that are opened one after the other touch memory from its beginning on.
+/// The bins of a row of a range image, from one of them on. A row has four planes, one after the other: x, y, z and the
+/// element of each bin.
+template <typename Float, typename Element>
+struct BinPlanes {
+  Float* first;
+  std::size_t bins;  ///< of a plane
+
+  /// Metres; NaN where a bin is free.
+  Float* x() const { return first; }
+  Float* y() const { return first + bins; }
+  Float* z() const { return first + 2 * bins; }
+  Element* element() const { return reinterpret_cast<Element*>(first + 3 * bins); }
+
+  BinPlanes from(std::ptrdiff_t bin) const { return {first + bin, bins}; }
+};
+using RowBins = BinPlanes<const float, const std::uint32_t>;
+using WritableRowBins = BinPlanes<float, std::uint32_t>;
+
+/// The rows of a range image. Their memory is taken for many at once: a *chunk*. Rows with memory stay where they are
+/// when others get some. Rows that are opened one after the other touch a chunk from its beginning on.
 class ImageCells {
  public:
-  ImageCells() = default;
-  ImageCells(const ImageCells& other) : floats_(other.floats_) { setRowSize(other.row_size_); }
-  ImageCells& operator=(const ImageCells& other) {
-    floats_ = other.floats_;
-    setRowSize(other.row_size_);
-    return *this;
+  ImageCells() : chunks_(1) {}
+  ImageCells(const ImageCells& other)
+      : chunks_(other.chunks_),
+        rows_(other.rows_),
+        rows_with_memory_(other.rows_with_memory_),
+        current_(other.current_),
+        row_size_(other.row_size_) {
+    for (std::size_t i = 0; i < chunks_.size(); ++i) moveRows(other.chunks_[i], row_size_, chunks_[i]);
   }
+  ImageCells(ImageCells&&) noexcept = default;
+  ImageCells& operator=(const ImageCells& other) { return *this = ImageCells(other); }
+  ImageCells& operator=(ImageCells&&) noexcept = default;
 
-  /// Sets the bins of a row, which makes room for other rows than before.
-  void setRowSize(std::size_t bins) {
+  /// Starts without rows. Keeps its memory.
+  /// \param bins of a row
+  void clear(std::size_t bins) {
     row_size_ = bins;
-    float* const first = floats_.data();
-    if (first == nullptr) return;
-    x = first;
-    y = first + bins;
-    z = first + 2 * bins;
-    element = reinterpret_cast<std::uint32_t*>(first + 3 * bins);
+    rows_with_memory_ = current_ = 0;
+    for (Chunk& chunk : chunks_) chunk.rows = 0;
+    rows_.clear();
   }
 
-  /// Index of the first bin of a row.
-  std::size_t firstOf(std::size_t row) const { return row * kPlanes * row_size_; }
+  /// Adds rows without memory behind the last one.
+  void addRows(std::size_t count) { rows_.resize(rows_.size() + count, nullptr); }
+  /// Adds a row without memory behind each `layers` rows.
+  void addLayer(std::size_t layers) {
+    const std::size_t count = rows_.size() / layers;
+    rows_.resize(count * (layers + 1));
+    for (std::size_t i = count; i-- > 0;) {
+      float** const to = rows_.data() + i * (layers + 1);
+      std::memmove(to, rows_.data() + i * layers, layers * sizeof(float*));
+      to[layers] = nullptr;
+    }
+  }
+  std::size_t rowCount() const { return rows_.size(); }
+  std::size_t rowSize() const { return row_size_; }
 
-  /// Makes room for some rows, and for an eighth more than before if they come one by one. Their bins have no values
-  /// yet.
-  void reserveRows(std::size_t rows) {
-    if (firstOf(rows) <= floats_.size()) return;
-    floats_.grow(std::max(firstOf(rows), floats_.size() + floats_.size() / 8));
-    setRowSize(row_size_);
+  bool hasMemory(std::size_t row) const { return rows_[row] != nullptr; }
+  std::size_t rowsWithMemory() const { return rows_with_memory_; }
+  /// Gives a row memory; its bins have no values yet.
+  /// \param expected number of rows that will get some, this one included; where they come one by one, a chunk has an
+  ///        eighth of the rows before at least
+  void giveMemory(std::size_t row, std::size_t expected) {
+    const auto has_room = [this] { return sizeOf(chunks_[current_].rows + 1) <= chunks_[current_].floats.size(); };
+    while (!has_room() && current_ + 1 < chunks_.size()) ++current_;
+    if (!has_room()) {
+      if (chunks_[current_].rows > 0) {
+        chunks_.emplace_back();
+        ++current_;
+      }
+      chunks_[current_].floats.grow(sizeOf(std::max({expected, rows_with_memory_ / 8, std::size_t{1}})));
+    }
+    Chunk& chunk = chunks_[current_];
+    rows_[row] = chunk.floats.data() + sizeOf(chunk.rows++);
+    ++rows_with_memory_;
   }
 
-  /// Exchanges the memory of the bins, all free, with an array of other elements, whose values are lost. setRowSize ()
-  /// comes next.
-  template <typename Other>
-  void exchangeMemory(GrowingArray<Other>& other) noexcept {
-    floats_.exchangeMemory(other);
-    x = y = z = nullptr;
-    element = nullptr;
-  }
-  std::size_t bytes() const { return floats_.size() * sizeof(float); }
+  /// The bins of a row with memory, from one on.
+  RowBins at(std::size_t row, std::size_t bin) const { return {rows_[row] + bin, row_size_}; }
+  WritableRowBins at(std::size_t row, std::size_t bin) { return {rows_[row] + bin, row_size_}; }
 
-  /// Moves some rows apart, so that each has as many bins as setRowSize () says.
-  /// \param former number of bins of a row
-  /// \param used of these, from the first on; the others become free
-  void widenRows(std::size_t rows, std::size_t former, std::size_t used) {
-    reserveRows(rows);
-    for (std::size_t plane = kPlanes * rows; plane-- > 0;) {
-      float* const to = x + plane * row_size_;
-      std::memmove(to, x + plane * former, used * sizeof(float));
-      if (plane % kPlanes == 0) std::fill(to + used, to + row_size_, std::numeric_limits<float>::quiet_NaN());
+  /// Gives each row more bins.
+  /// \param bins of a row, more than before
+  /// \param used of those before, from the first on; the others become free
+  void widenRows(std::size_t bins, std::size_t used) {
+    const std::size_t former = std::exchange(row_size_, bins);
+    for (Chunk& chunk : chunks_) {
+      Chunk wider;
+      wider.floats.grow(sizeOf(chunk.rows));
+      wider.rows = chunk.rows;
+      float* const to = wider.floats.data();
+      for (std::size_t plane = 0; plane < kPlanes * chunk.rows; ++plane) {
+        std::memcpy(to + plane * bins, chunk.floats.data() + plane * former, used * sizeof(float));
+        if (plane % kPlanes == 0)
+          std::fill(to + plane * bins + used, to + (plane + 1) * bins, std::numeric_limits<float>::quiet_NaN());
+      }
+      moveRows(chunk, former, wider);
+      chunk = std::move(wider);
     }
   }
 
-  float *x = nullptr, *y = nullptr, *z = nullptr;
-  std::uint32_t* element = nullptr;
+  /// Removes all rows, and gives back the memory that as many rows of some bins each do not need.
+  void shrinkTo(std::size_t bins) {
+    row_size_ = bins;
+    for (Chunk& chunk : chunks_) chunk.floats.shrink(sizeOf(chunk.rows));
+    clear(bins);
+  }
+
+  /// Exchanges the memory of the first rows with an array of other elements. All values are lost; clear () comes next.
+  template <typename Other>
+  void exchangeMemory(GrowingArray<Other>& other) noexcept {
+    chunks_.front().floats.exchangeMemory(other);
+  }
+  /// Of the memory that exchangeMemory () exchanges.
+  std::size_t exchangedBytes() const { return bytesOf(chunks_.front()); }
+  static std::size_t bytesOf(std::size_t rows, std::size_t bins) { return rows * kPlanes * bins * sizeof(float); }
+  std::size_t bytes() const {
+    std::size_t sum = 0;
+    for (const Chunk& chunk : chunks_) sum += bytesOf(chunk);
+    return sum;
+  }
 
  private:
+  struct Chunk {
+    GrowingArray<float> floats;
+    std::size_t rows = 0;  ///< in use, from the first on
+  };
   static constexpr std::size_t kPlanes = 4;
   static_assert(sizeof(float) == sizeof(std::uint32_t), "the planes are of one size");
 
-  GrowingArray<float> floats_;
-  std::size_t row_size_ = 0;
+  /// Of some rows, in floats.
+  std::size_t sizeOf(std::size_t rows) const { return rows * kPlanes * row_size_; }
+  static std::size_t bytesOf(const Chunk& chunk) { return chunk.floats.size() * sizeof(float); }
+
+  /// Lets the rows of a chunk be those of another one, in the same order.
+  /// \param former bins of a row in the first one
+  void moveRows(const Chunk& from, std::size_t former, Chunk& to) {
+    const float* const begin = from.floats.data();
+    const std::size_t size = kPlanes * former;
+    constexpr std::less<const float*> isBefore;
+    for (float*& row : rows_)
+      if (row != nullptr && !isBefore(row, begin) && isBefore(row, begin + from.rows * size))
+        row = to.floats.data() + sizeOf(static_cast<std::size_t>(row - begin) / size);
+  }
+
+  std::vector<Chunk> chunks_;  ///< one at least
+  std::vector<float*> rows_;   ///< by number; nullptr: it has no memory
+  std::size_t rows_with_memory_ = 0;
+  std::size_t current_ = 0;   ///< chunk that may have room for another row
+  std::size_t row_size_ = 0;  ///< bins
 };
 
 }  // namespace lisco

@@ -143,8 +143,7 @@ class Placement {
         image_.addLayer();
       }
       const std::size_t number = image_.firstRowOf(laser_) + layer;
-      RangeImage::Row& row = image_.rows[number];
-      if (!row.is_open) image_.openRow(row);
+      if (!image_.rows[number].is_open) image_.openRow(number);
       left &= ~storeInRow(number, left);
     }
     return which & ~left;
@@ -153,18 +152,17 @@ class Placement {
   /// \return the returns that are stored
   ColumnBits storeInRow(std::size_t row, ColumnBits which) {
     ColumnBits stored = 0;
-    const std::size_t cell = image_.at(row, first_bin_);
+    const WritableRowBins bins = image_.at(row, first_bin_);
     for (std::size_t k = 0; k < RingBlock::kColumns; k += kLanes) {
       const std::uint64_t here = bitsAt(which, k);
       if (here == 0) continue;
-      const std::uint64_t free = bitsOf(hn::IsNaN(hn::LoadU(kFloats, &image_.cells.x[cell + k]))) & here;
+      const std::uint64_t free = bitsOf(hn::IsNaN(hn::LoadU(kFloats, bins.x() + k))) & here;
       stored |= free << k;
       const FloatMask mask = lanesOf(free);
-      hn::BlendedStore(hn::LoadU(kFloats, block_.x + RingBlock::kMargin + k), mask, kFloats, &image_.cells.x[cell + k]);
-      hn::BlendedStore(hn::LoadU(kFloats, block_.y + RingBlock::kMargin + k), mask, kFloats, &image_.cells.y[cell + k]);
-      hn::BlendedStore(hn::LoadU(kFloats, block_.z + RingBlock::kMargin + k), mask, kFloats, &image_.cells.z[cell + k]);
-      hn::BlendedStore(hn::LoadU(kWords, info_.run + k), hn::RebindMask(kWords, mask), kWords,
-                       &image_.cells.element[cell + k]);
+      hn::BlendedStore(hn::LoadU(kFloats, block_.x + RingBlock::kMargin + k), mask, kFloats, bins.x() + k);
+      hn::BlendedStore(hn::LoadU(kFloats, block_.y + RingBlock::kMargin + k), mask, kFloats, bins.y() + k);
+      hn::BlendedStore(hn::LoadU(kFloats, block_.z + RingBlock::kMargin + k), mask, kFloats, bins.z() + k);
+      hn::BlendedStore(hn::LoadU(kWords, info_.run + k), hn::RebindMask(kWords, mask), kWords, bins.element() + k);
     }
     return stored;
   }

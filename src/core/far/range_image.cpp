@@ -16,11 +16,18 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr RangeImage::Row kNewRow{RangeImage::kNoCell, false, kInfinity, -kInfinity, RangeImage::kNoBin, 0};
+/// Bins of a row for some columns, margins included; a few more than a turn has at most.
+std::size_t strideFor(std::size_t columns, std::size_t steps) {
+  constexpr std::size_t kSector = RangeImage::kSector;
+  return (std::min(columns, steps) + kSector - 1) / kSector * kSector + 6 * RangeImage::kMargin;
+}
+
+constexpr RangeImage::Row kNewRow{false, kInfinity, -kInfinity, RangeImage::kNoBin, 0};
 
 }  // namespace
 
-void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hints, std::size_t columns) {
+void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hints, std::size_t columns,
+                         std::size_t room) {
   tolerance = new_tolerance;
   started = false;
   linked = scheduled = 0;
@@ -55,14 +62,13 @@ void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hint
   const std::size_t lasers_before = laserCount();
   rows.clear();
   layers = 1;
-  rows_in_memory = 0;
+  cells.clear(std::max(stride, strideFor(room, steps)));
   addLasers(lasers_before);
 }
 
 void RangeImage::setBins(std::size_t columns) {
-  bins = (std::min(columns, steps) + kSector - 1) / kSector * kSector + 4 * kMargin;
-  stride = kMargin + bins + kMargin;
-  cells.setRowSize(stride);
+  stride = strideFor(columns, steps);
+  bins = stride - 2 * kMargin;
   const std::size_t directions = stride + 2 * kMargin;
   const double step = 2 * kPi / static_cast<double>(steps);
   cosine.reserve(directions);
@@ -78,37 +84,38 @@ void RangeImage::expectColumns(std::size_t columns) {
   if (!inUse()) return;
   const std::size_t former = stride;
   setBins(columns);
-  if (stride <= former) return;
-  cells.reserveRows(rowsExpected());
-  cells.widenRows(rows_in_memory, former, kMargin + end);
-  for (Row& row : rows)
-    if (row.first_cell != kNoCell) row.first_cell = row.first_cell / former * stride;
+  if (stride > cells.rowSize()) {
+    cells.widenRows(stride, kMargin + end);
+    return;
+  }
+  for (std::size_t row = 0; row < rows.size() && stride > former; ++row)
+    if (rows[row].is_open) std::fill_n(cells.at(row, former).x(), stride - former, kNan);
+}
+
+bool RangeImage::hasMemoryFor(std::size_t lasers, std::size_t columns, const SensorHints& hints) const {
+  const std::size_t row_size = strideFor(columns, static_cast<std::size_t>(hints.steps_per_turn));
+  return cells.exchangedBytes() >= ImageCells::bytesOf(lasers, row_size);
 }
 
 void RangeImage::addLasers(std::size_t count) {
   const std::size_t before = laserCount();
   if (count <= before) return;
   rows.resize(count * layers, kNewRow);
+  cells.addRows(rows.size() - before * layers);
   elevations_changed = true;
   // Side by side in the order of the lasers, though some see far returns later.
-  for (std::size_t laser = before; laser < count; ++laser) addMemory(rows[firstRowOf(laser)]);
+  for (std::size_t laser = before; laser < count; ++laser) addMemory(firstRowOf(laser));
 }
 
-std::size_t RangeImage::rowsExpected() const {
+void RangeImage::addMemory(std::size_t row) {
   // Most lasers need a second row where some do; few need more.
-  return layers <= 2 ? rows.size() : rows_in_memory;
+  cells.giveMemory(row, layers <= 2 ? rows.size() - cells.rowsWithMemory() : 1);
 }
 
-void RangeImage::addMemory(Row& row) {
-  row.first_cell = cells.firstOf(rows_in_memory);
-  ++rows_in_memory;
-  cells.reserveRows(rowsExpected());
-}
-
-void RangeImage::openRow(Row& row) {
-  if (row.first_cell == kNoCell) addMemory(row);
-  row.is_open = true;
-  std::fill_n(cells.x + row.first_cell, stride, kNan);
+void RangeImage::openRow(std::size_t row) {
+  if (!cells.hasMemory(row)) addMemory(row);
+  rows[row].is_open = true;
+  std::fill_n(cells.at(row, 0).x(), stride, kNan);
 }
 
 bool RangeImage::isLayerWorthwhile() const {
@@ -122,8 +129,9 @@ void RangeImage::addLayer() {
     const auto from = rows.begin() + static_cast<std::ptrdiff_t>(laser * layers);
     const auto to = rows.begin() + static_cast<std::ptrdiff_t>(laser * (layers + 1));
     std::copy_backward(from, from + static_cast<std::ptrdiff_t>(layers), to + static_cast<std::ptrdiff_t>(layers));
-    to[static_cast<std::ptrdiff_t>(layers)] = {kNoCell, false, to->lowest, to->highest, kNoBin, 0};
+    to[static_cast<std::ptrdiff_t>(layers)] = {false, to->lowest, to->highest, kNoBin, 0};
   }
+  cells.addLayer(layers);
   ++layers;
   elevations_changed = true;
 }

@@ -32,14 +32,12 @@ struct RangeImage {
   static constexpr std::size_t kMargin = 64;  ///< bins before the first return's, for staggered lasers
   static constexpr std::size_t kMaxLayers = 4;
   static constexpr std::size_t kNoRow = ~std::size_t{0};
-  static constexpr std::size_t kNoCell = ~std::size_t{0};
   static constexpr std::int64_t kNoBin = std::numeric_limits<std::int64_t>::min();
 
   struct Row {
-    std::size_t first_cell;  ///< of bin -kMargin; kNoCell: it has no memory yet
-    bool is_open;            ///< false: its bins have no values yet, and hold no returns
-    float lowest, highest;   ///< slopes measured on its laser so far: (z - tilt_x x - tilt_y y) / rho
-    std::int64_t next_bin;   ///< after the laser's last return, in its first row; kNoBin: there was none
+    bool is_open;           ///< false: its bins have no values yet, and hold no returns
+    float lowest, highest;  ///< slopes measured on its laser so far: (z - tilt_x x - tilt_y y) / rho
+    std::int64_t next_bin;  ///< after the laser's last return, in its first row; kNoBin: there was none
     std::uint32_t next_column;
   };
   struct Unplaced {
@@ -57,21 +55,27 @@ struct RangeImage {
 
   /// Starts a rotation, or a part of one. Keeps its memory.
   /// \param columns number of columns expected; more than a turn needs no more memory
-  void prepare(const Tolerance& new_tolerance, const SensorHints& hints, std::size_t columns);
+  /// \param room number of columns for which expectColumns () moves no returns; untouched memory, so far
+  void prepare(const Tolerance& new_tolerance, const SensorHints& hints, std::size_t columns, std::size_t room = 0);
 
-  /// Exchanges the memory of the bins with that of an array, if the array's is larger, or if it is smaller. All values
-  /// are lost; prepare () comes next.
+  /// Exchanges the memory of the first rows with that of an array, if the array's is larger, or if it is smaller. All
+  /// values are lost; prepare () comes next.
   template <typename Element>
   void takeLargerMemory(GrowingArray<Element>& array) noexcept {
-    if (cells.bytes() < array.size() * sizeof(Element)) cells.exchangeMemory(array);
+    if (cells.exchangedBytes() < array.size() * sizeof(Element)) cells.exchangeMemory(array);
   }
   template <typename Element>
   void leaveLargerMemory(GrowingArray<Element>& array) noexcept {
-    if (cells.bytes() > array.size() * sizeof(Element)) cells.exchangeMemory(array);
+    if (cells.exchangedBytes() > array.size() * sizeof(Element)) cells.exchangeMemory(array);
   }
 
   /// Makes room for more columns than expected before, once returns are placed.
   void expectColumns(std::size_t columns);
+
+  /// Whether the first rows of some lasers have memory for a number of columns, from rotations before.
+  bool hasMemoryFor(std::size_t lasers, std::size_t columns, const SensorHints& hints) const;
+  /// Gives back the memory of columns that are not expected. All values are lost; prepare () comes next.
+  void shrinkMemory() { cells.shrinkTo(stride); }
 
   /// False if the hints give no steps, or the tolerance joins nothing: then no return is far.
   bool inUse() const { return steps > 0; }
@@ -118,19 +122,19 @@ struct RangeImage {
   void setBins(std::size_t columns);
   /// Adds a layer: every laser gets one more row, without memory yet. Rows are numbered anew.
   void addLayer();
-  /// Rows with memory, and those that will have it.
-  std::size_t rowsExpected() const;
   /// Gives a row memory, without values yet.
-  void addMemory(Row& row);
-  /// Frees all bins of a row, before its first return.
-  void openRow(Row& row);
+  void addMemory(std::size_t row);
+  /// Gives a row memory, if it has none, and frees all its bins, before its first return.
+  void openRow(std::size_t row);
 
-  /// Index of a bin of a row among the cells.
+  /// The bins of an open row from one of them on.
   /// \param bin at least -kMargin
-  std::size_t at(std::size_t row, std::int64_t bin) const {
-    return rows[row].first_cell + static_cast<std::size_t>(bin + static_cast<std::int64_t>(kMargin));
+  RowBins at(std::size_t row, std::int64_t bin) const {
+    return cells.at(row, static_cast<std::size_t>(bin + static_cast<std::int64_t>(kMargin)));
   }
-  bool isFree(std::size_t cell) const { return cells.x[cell] != cells.x[cell]; }
+  WritableRowBins at(std::size_t row, std::int64_t bin) {
+    return cells.at(row, static_cast<std::size_t>(bin + static_cast<std::int64_t>(kMargin)));
+  }
   FromStart fromStart(float east, float north) const {
     return {east * start_cosine + north * start_sine, direction * (north * start_cosine - east * start_sine)};
   }
@@ -151,7 +155,7 @@ struct RangeImage {
   float slope_reach = 0;   ///< the same where heights are measured from the tilted horizon
   std::size_t steps = 0;   ///< bins of a turn
   std::size_t bins = 0;    ///< of a row: some more than columns, or than a turn
-  std::size_t stride = 0;  ///< cells of a row, margins included
+  std::size_t stride = 0;  ///< bins of a row in use, margins included
   float direction = 1;     ///< +1: azimuth grows with time
   float radians_per_bin = 0;
   double start_azimuth = 0;  ///< of bin 0
@@ -161,11 +165,10 @@ struct RangeImage {
   bool started = false;
   std::vector<float> cosine, sine;  ///< of each bin, from -kMargin on, and perhaps more
   std::size_t steps_of_tables = 0;  ///< for which they hold
-  ImageCells cells;                 ///< x is NaN where a bin is free
+  ImageCells cells;                 ///< of the rows
 
   std::vector<Row> rows;  ///< by laser and layer
   std::size_t layers = 1;
-  std::size_t rows_in_memory = 0;
   bool upside_down = false;                        ///< the rows come from bottom to top
   std::vector<float> lowest, highest;              ///< radians, of each row; turned over if upside down
   std::vector<float> lowest_above, highest_below;  ///< of all rows up to, and from, each one

@@ -9,7 +9,6 @@
 #define LISCO_SECTOR_INL_H
 #endif
 
-
 #include "core/bits.h"
 #include "core/disjoint_sets.h"
 #include "core/far/constants.h"
@@ -28,27 +27,26 @@ void cutSector(const RangeImage& image, std::int64_t number, float later, const 
   const std::int64_t first_bin = number * static_cast<std::int64_t>(RangeImage::kSector);
   const float offset = static_cast<float>(first_bin) + later;
   sector.number = Sector::kNone;
+  sector.first_bin = first_bin;
   std::uint32_t count = rows.begin == 0 ? 0 : sector.begin[rows.begin];
   for (std::size_t row = rows.begin; row < rows.end; ++row) {
     sector.begin[row] = count;
     if (!image.rows[row].is_open) continue;
-    const std::size_t cell = image.at(row, first_bin);
+    const RowBins bins = image.at(row, first_bin);
     ColumnBits returns = 0;  // bit i: bin i of the sector
     for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
-      const FloatVector x = hn::LoadU(kFloats, &image.cells.x[cell + k]);
+      const FloatVector x = hn::LoadU(kFloats, bins.x() + k);
       returns |= ColumnBits{bitsOf(hn::Eq(x, x))} << k;
     }
     if (returns == 0) continue;
     float rho[RangeImage::kSector];
     ColumnBits starts = 0;
     for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
-      const FloatVector x = hn::LoadU(kFloats, &image.cells.x[cell + k]);
+      const FloatVector x = hn::LoadU(kFloats, bins.x() + k);
       const FloatVector east = hn::Sub(x, hn::Set(kFloats, image.range.origin[0]));
-      const FloatVector north =
-          hn::Sub(hn::LoadU(kFloats, &image.cells.y[cell + k]), hn::Set(kFloats, image.range.origin[1]));
+      const FloatVector north = hn::Sub(hn::LoadU(kFloats, bins.y() + k), hn::Set(kFloats, image.range.origin[1]));
       hn::StoreU(hn::Sqrt(hn::Add(hn::Mul(east, east), hn::Mul(north, north))), kFloats, rho + k);
-      const FloatMask changes =
-          differ(&image.cells.element[cell + k - 1], hn::LoadU(kWords, &image.cells.element[cell + k]));
+      const FloatMask changes = differ(bins.element() + k - 1, hn::LoadU(kWords, bins.element() + k));
       starts |= ColumnBits{bitsOf(changes)} << k;
     }
     starts = returns & (starts | ~(returns << 1));
@@ -58,7 +56,7 @@ void cutSector(const RangeImage& image, std::int64_t number, float later, const 
       const auto end = static_cast<std::uint32_t>(endOfChain(ends, first));
       float nearest = rho[first];
       float farthest = rho[first];
-      float lowest = image.cells.z[cell + first];
+      float lowest = bins.z()[first];
       float highest = lowest;
       if (end - first > 1) {
         FloatVector low_rho = hn::Set(kFloats, nearest);
@@ -69,7 +67,7 @@ void cutSector(const RangeImage& image, std::int64_t number, float later, const 
         for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
           const FloatMask inside = lanesOf(lanes >> k);
           const FloatVector rho_here = hn::LoadU(kFloats, rho + k);
-          const FloatVector z_here = hn::LoadU(kFloats, &image.cells.z[cell + k]);
+          const FloatVector z_here = hn::LoadU(kFloats, bins.z() + k);
           low_rho = hn::IfThenElse(inside, hn::Min(low_rho, rho_here), low_rho);
           high_rho = hn::IfThenElse(inside, hn::Max(high_rho, rho_here), high_rho);
           low_z = hn::IfThenElse(inside, hn::Min(low_z, z_here), low_z);
@@ -86,8 +84,8 @@ void cutSector(const RangeImage& image, std::int64_t number, float later, const 
       sector.highest[count] = highest;
       sector.first[count] = offset + static_cast<float>(first);
       sector.last[count] = offset + static_cast<float>(end - 1);
-      sector.root[count] = subclusters.find(image.cells.element[cell + first]);
-      sector.cell[count] = static_cast<std::uint32_t>(cell) + first;
+      sector.root[count] = subclusters.find(bins.element()[first]);
+      sector.place[count] = static_cast<std::uint32_t>(row * RangeImage::kSector) + first;
       sector.count[count] = static_cast<std::uint8_t>(end - first);
       ++count;
     }

@@ -25,23 +25,24 @@ void linkSameBins(const RangeImage& image, std::size_t begin, std::size_t end, c
   for (std::size_t row = rows.begin; row < rows.end; ++row) {
     const std::size_t next = image.rowInSameBins(row);
     if (next == RangeImage::kNoRow || !image.rows[row].is_open || !image.rows[next].is_open) continue;
-    const std::size_t upper = image.at(row, 0);
-    const std::size_t lower = image.at(next, 0);
+    const RowBins upper = image.at(row, 0);
+    const RowBins lower = image.at(next, 0);
     // Pairs of the same two runs need one merge.
     std::uint32_t above = ~std::uint32_t{0};
     std::uint32_t below = ~std::uint32_t{0};
     for (std::size_t k = begin; k < end; k += kLanes) {
-      const auto apart = [&](const float* coordinate) {
-        return hn::Sub(hn::LoadU(kFloats, &coordinate[upper + k]), hn::LoadU(kFloats, &coordinate[lower + k]));
+      const auto apart = [k](const float* a, const float* b) {
+        return hn::Sub(hn::LoadU(kFloats, a + k), hn::LoadU(kFloats, b + k));
       };
-      std::uint32_t left = bitsOf(areNeighbours(apart(image.cells.x), apart(image.cells.y), apart(image.cells.z), r2));
+      std::uint32_t left = bitsOf(
+          areNeighbours(apart(upper.x(), lower.x()), apart(upper.y(), lower.y()), apart(upper.z(), lower.z()), r2));
       while (left != 0) {
-        left &= bitsOf(hn::Or(differ(&image.cells.element[upper + k], hn::Set(kWords, above)),
-                              differ(&image.cells.element[lower + k], hn::Set(kWords, below))));
+        left &= bitsOf(hn::Or(differ(upper.element() + k, hn::Set(kWords, above)),
+                              differ(lower.element() + k, hn::Set(kWords, below))));
         if (left == 0) break;
         const auto i = static_cast<std::size_t>(__builtin_ctz(left));
-        above = image.cells.element[upper + k + i];
-        below = image.cells.element[lower + k + i];
+        above = upper.element()[k + i];
+        below = lower.element()[k + i];
         subclusters.merge(above, below);
       }
     }
@@ -111,12 +112,13 @@ void searchOne(const RangeImage& image, const RangeImage::Unplaced& point, Disjo
       if (!image.rows[row].is_open || image.lowest[row] > elevation + around || image.highest[row] < elevation - around)
         continue;
       // Bins behind the last one are free.
-      for (std::size_t cell = image.at(row, from); cell <= image.at(row, to); cell += kLanes) {
-        const FloatMask near = areNeighbours(hn::Sub(hn::LoadU(kFloats, &image.cells.x[cell]), x),
-                                             hn::Sub(hn::LoadU(kFloats, &image.cells.y[cell]), y),
-                                             hn::Sub(hn::LoadU(kFloats, &image.cells.z[cell]), z), r2);
+      const RowBins bins = image.at(row, from);
+      for (std::int64_t k = 0; k <= to - from; k += std::int64_t{kLanes}) {
+        const FloatMask near =
+            areNeighbours(hn::Sub(hn::LoadU(kFloats, bins.x() + k), x), hn::Sub(hn::LoadU(kFloats, bins.y() + k), y),
+                          hn::Sub(hn::LoadU(kFloats, bins.z() + k), z), r2);
         for (std::uint32_t left = bitsOf(near); left != 0; left &= left - 1)
-          subclusters.merge(point.element, image.cells.element[cell + static_cast<std::size_t>(__builtin_ctz(left))]);
+          subclusters.merge(point.element, bins.element()[k + __builtin_ctz(left)]);
       }
     }
   }
@@ -157,7 +159,7 @@ void SegmentLinker::fit(const RangeImage& image) {
          {&sector.nearest, &sector.farthest, &sector.lowest, &sector.highest, &sector.first, &sector.last})
       bound->grow(segments);
     sector.root.grow(segments);
-    sector.cell.grow(segments);
+    sector.place.grow(segments);
     sector.count.grow(segments);
     sector.begin.resize(count + 1);
   };

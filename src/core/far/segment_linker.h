@@ -20,11 +20,12 @@ namespace lisco {
 struct Sector {
   static constexpr std::int64_t kNone = -1;
   std::int64_t number = kNone;
+  std::int64_t first_bin = 0;
   GrowingArray<float> nearest, farthest;  ///< horizontal distance
   GrowingArray<float> lowest, highest;    ///< z
   GrowingArray<float> first, last;        ///< bin
   GrowingArray<std::uint32_t> root;       ///< of its subcluster, perhaps outdated
-  GrowingArray<std::uint32_t> cell;       ///< index of its first return in the image
+  GrowingArray<std::uint32_t> place;      ///< of its first return: kSector times its row, and the bin in the sector
   GrowingArray<std::uint8_t> count;       ///< of returns
   std::vector<std::uint32_t> begin;       ///< of each row's segments, and the end
 };
@@ -59,9 +60,6 @@ class SegmentLinker : private SegmentLinkerState {
   /// Starts a rotation, or a part of one. Keeps its memory.
   void prepare(const RangeImage& image);
 
-  /// To be called once the image has room for more columns: its returns have moved.
-  void forgetSectors();
-
   /// Links what has come since the last call, as far as all lasers have passed it.
   void link(RangeImage& image, DisjointSets& subclusters);
 
@@ -94,6 +92,7 @@ class SegmentLinker : private SegmentLinkerState {
 
  private:
   void fit(const RangeImage& image);
+  void forgetSectors();
 
   std::size_t linked_parts_ = 0;  ///< of the sector at image.linked
 };

@@ -21,22 +21,22 @@ namespace HWY_NAMESPACE {
 
 /// The returns of a segment.
 struct Returns {
-  const RangeImage* image;
-  std::size_t cell, count;
+  RowBins bins;
+  std::size_t count;
 };
 
 /// Whether any return of one segment is a neighbour of any return of the other.
-bool haveNeighbours(Returns a, Returns b) {
+bool haveNeighbours(Returns a, Returns b, const Tolerance& tolerance) {
   if (a.count > b.count) std::swap(a, b);
-  const FloatVector r2 = hn::Set(kFloats, a.image->tolerance.squared());
-  for (std::size_t i = a.cell; i < a.cell + a.count; ++i) {
-    const FloatVector x = hn::Set(kFloats, a.image->cells.x[i]);
-    const FloatVector y = hn::Set(kFloats, a.image->cells.y[i]);
-    const FloatVector z = hn::Set(kFloats, a.image->cells.z[i]);
+  const FloatVector r2 = hn::Set(kFloats, tolerance.squared());
+  for (std::size_t i = 0; i < a.count; ++i) {
+    const FloatVector x = hn::Set(kFloats, a.bins.x()[i]);
+    const FloatVector y = hn::Set(kFloats, a.bins.y()[i]);
+    const FloatVector z = hn::Set(kFloats, a.bins.z()[i]);
     for (std::size_t k = 0; k < b.count; k += kLanes) {
-      const FloatMask near = areNeighbours(hn::Sub(x, hn::LoadU(kFloats, &b.image->cells.x[b.cell + k])),
-                                           hn::Sub(y, hn::LoadU(kFloats, &b.image->cells.y[b.cell + k])),
-                                           hn::Sub(z, hn::LoadU(kFloats, &b.image->cells.z[b.cell + k])), r2);
+      const FloatMask near =
+          areNeighbours(hn::Sub(x, hn::LoadU(kFloats, b.bins.x() + k)), hn::Sub(y, hn::LoadU(kFloats, b.bins.y() + k)),
+                        hn::Sub(z, hn::LoadU(kFloats, b.bins.z() + k)), r2);
       if ((bitsOf(near) & lanesBelow(b.count - k)) != 0) return true;
     }
   }
@@ -127,6 +127,12 @@ class SegmentSearch {
     return state_.sectors[static_cast<std::size_t>(number) % SegmentLinkerState::kSectorsKept];
   }
 
+  static Returns returnsOf(const RangeImage& image, const Sector& sector, std::uint32_t segment) {
+    constexpr auto kSector = static_cast<std::uint32_t>(RangeImage::kSector);
+    const std::uint32_t place = sector.place[segment];
+    return {image.at(place / kSector, sector.first_bin + place % kSector), sector.count[segment]};
+  }
+
   Sector& cut(std::int64_t number) {
     Sector& sector = sectorOf(number);
     if (sector.number != number) cutSector(image_, number, 0.0F, image_.allRows(), sector, subclusters_);
@@ -159,32 +165,31 @@ class SegmentSearch {
     const std::int64_t bin = sector * static_cast<std::int64_t>(RangeImage::kSector);
     const std::size_t compared = image_.rowInSameBins(row);
     for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {
-      const Bins own(image_.cells, image_.at(row, bin) + k);
+      const Registers own(image_.at(row, bin + static_cast<std::int64_t>(k)));
       for (std::uint32_t other = mask.first_row; other <= mask.last_row; ++other) {
         if (!image_.rows[other].is_open) continue;
-        const std::size_t same = image_.at(other, bin) + k;
+        const RowBins same = image_.at(other, bin + static_cast<std::int64_t>(k));
         const bool both_ways = other < row && !state_.masks[other].by_bins;
         const int first = both_ways ? -mask.before : other > row && other != compared ? 0 : 1;
         state_.work += static_cast<std::size_t>(mask.before + 1 - first) * kWorkOfBins;
-        for (int before = first; before <= mask.before; ++before)
-          compareBinsWith(own, same - static_cast<std::size_t>(static_cast<std::int64_t>(before)));
+        for (int before = first; before <= mask.before; ++before) compareBinsWith(own, same.from(-before));
       }
     }
   }
 
   /// Consecutive bins of a row.
-  struct Bins {
-    HWY_INLINE Bins(const ImageCells& cells, std::size_t cell)
-        : x(hn::LoadU(kFloats, cells.x + cell)),
-          y(hn::LoadU(kFloats, cells.y + cell)),
-          z(hn::LoadU(kFloats, cells.z + cell)),
-          element(hn::LoadU(kWords, cells.element + cell)) {}
+  struct Registers {
+    HWY_INLINE explicit Registers(const RowBins& bins)
+        : x(hn::LoadU(kFloats, bins.x())),
+          y(hn::LoadU(kFloats, bins.y())),
+          z(hn::LoadU(kFloats, bins.z())),
+          element(hn::LoadU(kWords, bins.element())) {}
     FloatVector x, y, z;
     hn::Vec<Words> element;
   };
 
-  HWY_INLINE void compareBinsWith(const Bins& own, std::size_t other) {
-    const Bins others(image_.cells, other);
+  HWY_INLINE void compareBinsWith(const Registers& own, const RowBins& bins) {
+    const Registers others(bins);
     const FloatMask near = areNeighbours(hn::Sub(own.x, others.x), hn::Sub(own.y, others.y), hn::Sub(own.z, others.z),
                                          hn::Set(kFloats, image_.tolerance.squared()));
     const FloatMask unlike = hn::RebindMask(kFloats, hn::Ne(own.element, others.element));
@@ -195,7 +200,7 @@ class SegmentSearch {
     for (; left != 0; left &= left - 1) {
       const auto i = static_cast<std::size_t>(__builtin_ctz(left));
       const std::uint32_t a = elements[i];
-      const std::uint32_t b = image_.cells.element[other + i];
+      const std::uint32_t b = bins.element()[i];
       if (a == last_a_ && b == last_b_) continue;
       last_a_ = a;
       last_b_ = b;
@@ -217,7 +222,7 @@ class SegmentSearch {
       const auto bins = static_cast<float>(segment.before);
       segment.index = i;
       segment.root = subclusters_.find(sector.root[i]);
-      segment.returns = {&image, sector.cell[i], sector.count[i]};
+      segment.returns = returnsOf(image, sector, i);
       segment.nearest = sector.nearest[i] - reach;
       segment.farthest = sector.farthest[i] + reach;
       segment.lowest = sector.lowest[i] - reach;
@@ -294,7 +299,7 @@ class SegmentSearch {
         other.root[candidate] = other_root;
         if (other_root == segment.root) continue;
         state_.work += kWorkOfPair;
-        if (haveNeighbours(segment.returns, {&image_, other.cell[candidate], other.count[candidate]}))
+        if (haveNeighbours(segment.returns, returnsOf(image_, other, candidate), image_.tolerance))
           other.root[candidate] = segment.root = subclusters_.merge(segment.root, other_root);
       }
     }
