@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include <hwy/highway.h>
 
@@ -33,9 +34,11 @@ using FloatMask = hn::Mask<Floats>;
 
 /// Bit i of the result is lane i of the mask.
 HWY_INLINE std::uint32_t bitsOf(FloatMask mask) {
-  std::uint8_t bytes[8] = {};
+  std::uint8_t bytes[(kLanes + 7) / 8];
   hn::StoreMaskBits(kFloats, mask, bytes);
-  std::uint32_t bits;
+  // An integer of their size: filling up a larger one takes two more instructions.
+  std::conditional_t<sizeof bytes == 1, std::uint8_t, std::uint16_t> bits;
+  static_assert(sizeof bits == sizeof bytes);
   std::memcpy(&bits, bytes, sizeof bits);
   return bits;
 }
