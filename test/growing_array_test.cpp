@@ -75,6 +75,29 @@ TEST(GrowingArray, TakesNoMoreThanItHolds) {
   }
 }
 
+TEST(GrowingArray, GivesBackWhatIsBehindASize) {
+  for (const std::size_t size : {100U, 200'000U, 700'000U, 2'000'000U}) {
+    Array array;
+    array.grow(size);
+    fill(array, 0);
+    const void* const memory = array.data();
+    array.shrink(array.size());
+    array.shrink(0);
+    EXPECT_GE(array.size(), size);
+    array.shrink(size / 3);
+    EXPECT_EQ(array.size(), size / 3);
+    EXPECT_EQ(array.data(), memory);
+    EXPECT_LE(malloc_usable_size(array.data()), array.size() * sizeof(std::uint32_t) + 4096);
+    expectFilled(array, size / 3);
+    array.grow(size);
+    expectFilled(array, size / 3);
+    EXPECT_GE(array.size(), size);
+  }
+  Array empty;
+  empty.shrink(5);
+  EXPECT_EQ(empty.size(), 0U);
+}
+
 TEST(GrowingArray, Copies) {
   for (const std::size_t size : {0U, 7U, 600'000U}) {
     Array array;
@@ -220,6 +243,18 @@ TEST(ImageCells, WidensRowsOfAllChunks) {
   addRows(cells, 25, 1);
   expectRows(cells, 8);
   for (std::size_t row = 0; row < cells.rowCount(); ++row) EXPECT_EQ(cells.at(row, 0).y(), cells.at(row, 0).x() + 25);
+}
+
+TEST(ImageCells, ShrinksToRowsOfFewerBins) {
+  ImageCells cells;
+  cells.clear(1000);
+  for (const std::size_t count : {3U, 4U}) addRows(cells, 10, count);
+  cells.shrinkTo(100);
+  EXPECT_EQ(cells.rowCount(), 0U);
+  EXPECT_EQ(cells.bytes(), ImageCells::bytesOf(7, 100));
+  for (const std::size_t count : {3U, 4U}) addRows(cells, 10, count);
+  expectRows(cells, 10);
+  EXPECT_EQ(cells.bytes(), ImageCells::bytesOf(7, 100));
 }
 
 TEST(ImageCells, ExchangesTheMemoryOfItsFirstRows) {

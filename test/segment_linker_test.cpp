@@ -703,6 +703,47 @@ TEST(RangeImage, TakesMemoryForRowsOfALayerAtOnce) {
   EXPECT_LE(image.cells.bytes(), 5 * two_layers / 4);
 }
 
+// With room for all columns, rows stay in place when more are expected; without, they move. Their bins are free.
+TEST(RangeImage, ExpectsMoreColumns) {
+  constexpr std::size_t kAll = 1024;
+  constexpr std::size_t kFirst = 128;
+  for (const bool has_room : {true, false}) {
+    lisco::RangeImage image;
+    for (int rotation = 0; rotation < 2; ++rotation) {
+      image.prepare(lisco::Tolerance(0.05F), kHints, kFirst, has_room ? kAll : 0);
+      EXPECT_EQ(image.hasMemoryFor(2, kAll, kHints), rotation == 1);
+      image.addLasers(2);
+      image.openRow(1);
+      const float* const row = image.at(1, 0).x();
+      const std::size_t first_bins = image.bins;
+      image.at(1, 5).x()[0] = 3.0F;
+      image.end = 6;
+      image.expectColumns(kAll);
+      EXPECT_EQ(image.at(1, 0).x() == row, has_room);
+      EXPECT_EQ(image.bins, first_bins + kAll - kFirst);
+      const auto margin = static_cast<std::int64_t>(lisco::RangeImage::kMargin);
+      for (std::int64_t bin = -margin; bin < static_cast<std::int64_t>(image.bins) + margin; ++bin) {
+        if (bin == 5)
+          EXPECT_EQ(*image.at(1, bin).x(), 3.0F);
+        else
+          ASSERT_TRUE(std::isnan(*image.at(1, bin).x())) << bin;
+      }
+      for (std::int64_t bin = 0; bin < static_cast<std::int64_t>(image.bins); ++bin)
+        *image.at(1, bin).x() = 1.0F;  // for the next rotation to find
+    }
+  }
+}
+
+TEST(RangeImage, GivesBackTheMemoryOfColumnsNotExpected) {
+  lisco::RangeImage image;
+  image.prepare(lisco::Tolerance(0.05F), kHints, 128, 1024);
+  image.addLasers(3);
+  EXPECT_TRUE(image.hasMemoryFor(3, 1024, kHints));
+  image.shrinkMemory();
+  EXPECT_FALSE(image.hasMemoryFor(3, 1024, kHints));
+  EXPECT_TRUE(image.hasMemoryFor(3, 128, kHints));
+}
+
 // One image is full of unplaced returns; returns placed in another image are linked with them.
 TEST(SegmentLinker, JoinsUnplacedReturnsOfAnotherImage) {
   Probe probe(kTolerance, kHints);
