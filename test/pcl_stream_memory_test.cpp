@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstddef>
 
+#include "lisco/column_clusterer.h"
 #include "pcl_stream.h"
 
 extern "C" {
@@ -96,6 +97,32 @@ TEST(PclStreamMemory, RotationsAllocateOnlyTheClusters) {
   EXPECT_GT(clusters.size(), 3U);
   const std::size_t of_clusters = clusters.size();  // for their indices; the vector of clusters has its capacity
   EXPECT_EQ(allocationsOf(rotate), of_clusters);
+}
+
+// The first columns of a rotation come at once, for which the engine has other paths than for those that follow.
+TEST(PclStreamMemory, RotationsInBatchesAllocateNothing) {
+  const Columns<PointXYZ> columns = columnsOfBoxes(1);
+  lisco::Parameters parameters;
+  parameters.tolerance = 0.3F;
+  parameters.sensor.steps_per_turn = 600;
+  parameters.sensor.clockwise = true;
+  parameters.sensor.elevation_step = 0.03F;
+  lisco::ColumnClusterer clusterer;
+  const auto rotate = [&] {
+    clusterer.begin(parameters);
+    for (const std::size_t first : {0U, 300U, 310U})
+      clusterer.addColumns(first == 0     ? 300
+                           : first == 300 ? 10
+                                          : 290,
+                           columns[0].size(), [&](std::size_t laser, std::size_t column) {
+                             const PointXYZ& point = columns[first + column][laser];
+                             return lisco::Return{point.x, point.y, point.z, 0};
+                           });
+    clusterer.update();
+  };
+  for (int turn = 0; turn < 2; ++turn) rotate();
+  EXPECT_EQ(allocationsOf(rotate), 0U);
+  EXPECT_GT(clusterer.subclusterCount(), 3U);
 }
 
 TEST(PclStreamMemory, WindowsAllocateOnlyTheClusters) {

@@ -221,15 +221,20 @@ void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hi
 bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSource& cells) {
   if (parameters_.sensor.steps_per_turn == 0) return false;   // nothing to prepare
   partitions_.front().takeLargerMemory(unordered_.memory());  // not in use before the trial ends
-  const bool is_first_trial = !has_tried_;
+  const bool has_tried = has_tried_;
   FarTrial trial;
   inParallel(partition_count_, [&](std::size_t i) {
     try {
       const std::size_t all = parts_[i].end - parts_[i].first;
       const std::size_t expected = partition_count_ > 1 ? all : std::min(kTriedColumns, all);
-      // After a refused trial, the next one takes no more memory than it needs.
-      const bool has_room = is_first_trial || partitions_[i].hasMemoryFor(lasers, all, parameters_.sensor);
-      preparePart(i, parameters_.sensor, expected, has_room ? all : expected);
+      // After a refused trial, the next one takes no more memory than it needs. Other columns may follow these.
+      const auto has_memory_for = [&](std::size_t columns) {
+        return partitions_[i].hasMemoryFor(lasers, columns, parameters_.sensor);
+      };
+      const std::size_t room = has_memory_for(kWholeTurn)          ? kWholeTurn
+                               : !has_tried || has_memory_for(all) ? all
+                                                                   : expected;
+      preparePart(i, parameters_.sensor, expected, room);
       if (partitions_[i].hasFar())
         readPart(i, lasers, cells, trial);
       else

@@ -55,7 +55,7 @@ struct RangeImage {
 
   /// Starts a rotation, or a part of one. Keeps its memory.
   /// \param columns number of columns expected; more than a turn needs no more memory
-  /// \param room number of columns for which expectColumns () moves no returns; untouched memory, so far
+  /// \param room number of columns up to which expectColumns () moves no returns
   void prepare(const Tolerance& new_tolerance, const SensorHints& hints, std::size_t columns, std::size_t room = 0);
 
   /// Exchanges the memory of the first rows with that of an array, if the array's is larger, or if it is smaller. All
