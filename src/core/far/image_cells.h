@@ -37,14 +37,15 @@ using WritableRowBins = BinPlanes<float, std::uint32_t>;
 /// when others get some. Rows that are opened one after the other touch a chunk from its beginning on.
 class ImageCells {
  public:
-  ImageCells() : chunks_(1) {}
+  ImageCells() = default;
   ImageCells(const ImageCells& other)
-      : chunks_(other.chunks_),
+      : first_chunk_(other.first_chunk_),
+        more_chunks_(other.more_chunks_),
         rows_(other.rows_),
         rows_with_memory_(other.rows_with_memory_),
         current_(other.current_),
         row_size_(other.row_size_) {
-    for (std::size_t i = 0; i < chunks_.size(); ++i) moveRows(other.chunks_[i], row_size_, chunks_[i]);
+    for (std::size_t i = 0; i < chunkCount(); ++i) moveRows(other.chunk(i), row_size_, chunk(i));
   }
   ImageCells(ImageCells&&) noexcept = default;
   ImageCells& operator=(const ImageCells& other) { return *this = ImageCells(other); }
@@ -55,7 +56,7 @@ class ImageCells {
   void clear(std::size_t bins) {
     row_size_ = bins;
     rows_with_memory_ = current_ = 0;
-    for (Chunk& chunk : chunks_) chunk.rows = 0;
+    for (std::size_t i = 0; i < chunkCount(); ++i) chunk(i).rows = 0;
     rows_.clear();
   }
 
@@ -80,17 +81,17 @@ class ImageCells {
   /// \param expected number of rows that will get some, this one included; where they come one by one, a chunk has an
   ///        eighth of the rows before at least
   void giveMemory(std::size_t row, std::size_t expected) {
-    const auto has_room = [this] { return sizeOf(chunks_[current_].rows + 1) <= chunks_[current_].floats.size(); };
-    while (!has_room() && current_ + 1 < chunks_.size()) ++current_;
+    const auto has_room = [this] { return sizeOf(chunk(current_).rows + 1) <= chunk(current_).floats.size(); };
+    while (!has_room() && current_ + 1 < chunkCount()) ++current_;
     if (!has_room()) {
-      if (chunks_[current_].rows > 0) {
-        chunks_.emplace_back();
+      if (chunk(current_).rows > 0) {
+        more_chunks_.emplace_back();
         ++current_;
       }
-      chunks_[current_].floats.grow(sizeOf(std::max({expected, rows_with_memory_ / 8, std::size_t{1}})));
+      chunk(current_).floats.grow(sizeOf(std::max({expected, rows_with_memory_ / 8, std::size_t{1}})));
     }
-    Chunk& chunk = chunks_[current_];
-    rows_[row] = chunk.floats.data() + sizeOf(chunk.rows++);
+    Chunk& taken = chunk(current_);
+    rows_[row] = taken.floats.data() + sizeOf(taken.rows++);
     ++rows_with_memory_;
   }
 
@@ -103,39 +104,42 @@ class ImageCells {
   /// \param used of those before, from the first on; the others become free
   void widenRows(std::size_t bins, std::size_t used) {
     const std::size_t former = std::exchange(row_size_, bins);
-    for (Chunk& chunk : chunks_) {
-      Chunk wider;
-      wider.floats.grow(sizeOf(chunk.rows));
-      wider.rows = chunk.rows;
-      float* const to = wider.floats.data();
-      for (std::size_t plane = 0; plane < kPlanes * chunk.rows; ++plane) {
-        std::memcpy(to + plane * bins, chunk.floats.data() + plane * former, used * sizeof(float));
+    for (std::size_t i = 0; i < chunkCount(); ++i) {
+      Chunk& narrow = chunk(i);
+      Chunk wide;
+      wide.floats.grow(sizeOf(narrow.rows));
+      wide.rows = narrow.rows;
+      float* const to = wide.floats.data();
+      for (std::size_t plane = 0; plane < kPlanes * narrow.rows; ++plane) {
+        std::memcpy(to + plane * bins, narrow.floats.data() + plane * former, used * sizeof(float));
         if (plane % kPlanes == 0)
           std::fill(to + plane * bins + used, to + (plane + 1) * bins, std::numeric_limits<float>::quiet_NaN());
       }
-      moveRows(chunk, former, wider);
-      chunk = std::move(wider);
+      moveRows(narrow, former, wide);
+      narrow = std::move(wide);
     }
   }
 
   /// Removes all rows, and gives back the memory that as many rows of some bins each do not need.
   void shrinkTo(std::size_t bins) {
     row_size_ = bins;
-    for (Chunk& chunk : chunks_) chunk.floats.shrink(sizeOf(chunk.rows));
+    for (std::size_t i = 0; i < chunkCount(); ++i) chunk(i).floats.shrink(sizeOf(chunk(i).rows));
     clear(bins);
   }
 
-  /// Exchanges the memory of the first rows with an array of other elements. All values are lost; clear () comes next.
+  /// Removes all rows, and exchanges the memory of the first ones with an array of other elements, whose values are
+  /// lost.
   template <typename Other>
   void exchangeMemory(GrowingArray<Other>& other) noexcept {
-    chunks_.front().floats.exchangeMemory(other);
+    clear(row_size_);
+    first_chunk_.floats.exchangeMemory(other);
   }
   /// Of the memory that exchangeMemory () exchanges.
-  std::size_t exchangedBytes() const { return bytesOf(chunks_.front()); }
+  std::size_t exchangedBytes() const { return bytesOf(first_chunk_); }
   static std::size_t bytesOf(std::size_t rows, std::size_t bins) { return rows * kPlanes * bins * sizeof(float); }
   std::size_t bytes() const {
     std::size_t sum = 0;
-    for (const Chunk& chunk : chunks_) sum += bytesOf(chunk);
+    for (std::size_t i = 0; i < chunkCount(); ++i) sum += bytesOf(chunk(i));
     return sum;
   }
 
@@ -146,6 +150,10 @@ class ImageCells {
   };
   static constexpr std::size_t kPlanes = 4;
   static_assert(sizeof(float) == sizeof(std::uint32_t), "the planes are of one size");
+
+  std::size_t chunkCount() const { return 1 + more_chunks_.size(); }
+  Chunk& chunk(std::size_t i) { return i == 0 ? first_chunk_ : more_chunks_[i - 1]; }
+  const Chunk& chunk(std::size_t i) const { return i == 0 ? first_chunk_ : more_chunks_[i - 1]; }
 
   /// Of some rows, in floats.
   std::size_t sizeOf(std::size_t rows) const { return rows * kPlanes * row_size_; }
@@ -162,8 +170,9 @@ class ImageCells {
         row = to.floats.data() + sizeOf(static_cast<std::size_t>(row - begin) / size);
   }
 
-  std::vector<Chunk> chunks_;  ///< one at least
-  std::vector<float*> rows_;   ///< by number; nullptr: it has no memory
+  Chunk first_chunk_;  ///< outside of the vector, so that an image without rows has no memory
+  std::vector<Chunk> more_chunks_;
+  std::vector<float*> rows_;  ///< by number; nullptr: it has no memory
   std::size_t rows_with_memory_ = 0;
   std::size_t current_ = 0;   ///< chunk that may have room for another row
   std::size_t row_size_ = 0;  ///< bins
