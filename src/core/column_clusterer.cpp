@@ -221,7 +221,7 @@ void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hi
 bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSource& cells) {
   if (parameters_.sensor.steps_per_turn == 0) return false;   // nothing to prepare
   partitions_.front().takeLargerMemory(unordered_.memory());  // not in use before the trial ends
-  const bool has_tried = has_tried_;
+  const bool has_tried = has_tried_;  // set by one of the threads
   FarTrial trial;
   inParallel(partition_count_, [&](std::size_t i) {
     try {
