@@ -232,6 +232,21 @@ TEST(ImageCells, UsesItsMemoryAgain) {
   }
 }
 
+// Few times the memory of the largest rotation, whatever comes before.
+TEST(ImageCells, TakesLittleMoreThanTheLargestImage) {
+  ImageCells cells;
+  for (std::size_t bins = 100; bins < 300; ++bins)
+    for (const std::size_t rows : {1U, 8U}) {
+      cells.clear(bins);
+      addRows(cells, 10, rows);
+      if (bins % 3 == 0) cells.widenRows(bins + 50, 10);
+      expectRows(cells, 10);
+      EXPECT_LE(cells.bytes(), 3 * 8 * (bins + 50) * 16) << bins;
+      cells.clear(bins);
+      EXPECT_GE(cells.capacityFor(bins), rows);
+    }
+}
+
 TEST(ImageCells, WidensRowsOfAllChunks) {
   ImageCells cells;
   cells.clear(10);
@@ -251,10 +266,10 @@ TEST(ImageCells, ShrinksToRowsOfFewerBins) {
   for (const std::size_t count : {3U, 4U}) addRows(cells, 10, count);
   cells.shrinkTo(100);
   EXPECT_EQ(cells.rowCount(), 0U);
-  EXPECT_EQ(cells.bytes(), ImageCells::bytesOf(7, 100));
+  EXPECT_EQ(cells.bytes(), 7U * 100 * 16);
   for (const std::size_t count : {3U, 4U}) addRows(cells, 10, count);
   expectRows(cells, 10);
-  EXPECT_EQ(cells.bytes(), ImageCells::bytesOf(7, 100));
+  EXPECT_EQ(cells.bytes(), 7U * 100 * 16);
 }
 
 TEST(ImageCells, ExchangesTheMemoryOfItsFirstRows) {

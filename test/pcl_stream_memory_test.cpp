@@ -4,6 +4,7 @@
 // operator new and Eigen call, too.
 #include <malloc.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstddef>
@@ -108,20 +109,20 @@ TEST(PclStreamMemory, RotationsInBatchesAllocateNothing) {
   parameters.sensor.clockwise = true;
   parameters.sensor.elevation_step = 0.03F;
   lisco::ColumnClusterer clusterer;
-  const auto rotate = [&] {
+  const auto rotate = [&](std::size_t lasers) {
     clusterer.begin(parameters);
-    for (const std::size_t first : {0U, 300U, 310U})
-      clusterer.addColumns(first == 0     ? 300
-                           : first == 300 ? 10
-                                          : 290,
-                           columns[0].size(), [&](std::size_t laser, std::size_t column) {
-                             const PointXYZ& point = columns[first + column][laser];
-                             return lisco::Return{point.x, point.y, point.z, 0};
-                           });
+    constexpr std::array<std::size_t, 4> kFirst{0, 300, 310, 600};
+    for (std::size_t i = 0; i + 1 < kFirst.size(); ++i)
+      clusterer.addColumns(kFirst[i + 1] - kFirst[i], lasers, [&](std::size_t laser, std::size_t column) {
+        const PointXYZ& point = columns[kFirst[i] + column][laser];
+        return lisco::Return{point.x, point.y, point.z, 0};
+      });
     clusterer.update();
   };
-  for (int turn = 0; turn < 2; ++turn) rotate();
-  EXPECT_EQ(allocationsOf(rotate), 0U);
+  for (const std::size_t lasers : {std::size_t{1}, columns[0].size()}) {
+    for (int turn = 0; turn < 2; ++turn) rotate(lasers);
+    EXPECT_EQ(allocationsOf([&] { rotate(lasers); }), 0U) << lasers;
+  }
   EXPECT_GT(clusterer.subclusterCount(), 3U);
 }
 

@@ -78,7 +78,6 @@ class ColumnClusterer::Rotation {
   std::vector<LoadBalancer::Part> parts_;  ///< of the threads
   bool comes_at_once_ = false;             ///< the latest columns, of this rotation or the one before
   bool is_prepared_ = false;               ///< the last partition, for columns that follow
-  bool has_tried_ = false;                 ///< FarTrial, in any rotation
   struct TriedNear {
     std::size_t returns, columns;
   } tried_near_{};           ///< near returns of the columns of this rotation's trial; {0, 0}: none
@@ -221,7 +220,7 @@ void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hi
 bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSource& cells) {
   if (parameters_.sensor.steps_per_turn == 0) return false;   // nothing to prepare
   partitions_.front().takeLargerMemory(unordered_.memory());  // not in use before the trial ends
-  const bool has_tried = has_tried_;  // set by one of the threads
+  const bool is_new = !partitions_.front().hasMemory();
   FarTrial trial;
   inParallel(partition_count_, [&](std::size_t i) {
     try {
@@ -231,9 +230,7 @@ bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSou
       const auto has_memory_for = [&](std::size_t columns) {
         return partitions_[i].hasMemoryFor(lasers, columns, parameters_.sensor);
       };
-      const std::size_t room = has_memory_for(kWholeTurn)          ? kWholeTurn
-                               : !has_tried || has_memory_for(all) ? all
-                                                                   : expected;
+      const std::size_t room = has_memory_for(kWholeTurn) ? kWholeTurn : is_new || has_memory_for(all) ? all : expected;
       preparePart(i, parameters_.sensor, expected, room);
       if (partitions_[i].hasFar())
         readPart(i, lasers, cells, trial);
@@ -244,7 +241,9 @@ bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSou
       throw;
     }
   });
-  return trial.await();
+  const bool is_worthwhile = trial.await();
+  if (!is_worthwhile && is_new) partitions_.front().shrinkMemory();
+  return is_worthwhile;
 }
 
 /// Makes room for the near returns of some columns: half of what the trial predicts, as scenes differ around the
@@ -295,8 +294,6 @@ void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, cons
     if (i == 0 && first + count == std::min(kTriedColumns, end)) {
       const bool is_worthwhile = partition.isFarWorthwhile();
       trial.decide(is_worthwhile);
-      if (!is_worthwhile && !has_tried_) partition.shrinkMemory();
-      has_tried_ = true;
       tried_near_ = {is_worthwhile ? partition.nearReturns().count : partition.runs.returns, first + count};
       if (!is_worthwhile) return;
       partition.expectColumns(end - begin);

@@ -42,6 +42,7 @@ class Partition {
   /// Makes room for more columns than expected before.
   void expectColumns(std::size_t columns) { image_.expectColumns(columns); }
   /// See RangeImage.
+  bool hasMemory() const { return image_.hasMemory(); }
   bool hasMemoryFor(std::size_t lasers, std::size_t columns, const SensorHints& hints) const {
     return image_.hasMemoryFor(lasers, columns, hints);
   }

@@ -45,7 +45,7 @@ class ImageCells {
         rows_with_memory_(other.rows_with_memory_),
         current_(other.current_),
         row_size_(other.row_size_) {
-    for (std::size_t i = 0; i < chunkCount(); ++i) moveRows(other.chunk(i), row_size_, chunk(i));
+    for (std::size_t i = 0; i < chunkCount(); ++i) moveRows(other.chunk(i), chunk(i));
   }
   ImageCells(ImageCells&&) noexcept = default;
   ImageCells& operator=(const ImageCells& other) { return *this = ImageCells(other); }
@@ -81,14 +81,11 @@ class ImageCells {
   /// \param expected number of rows that will get some, this one included; where they come one by one, a chunk has an
   ///        eighth of the rows before at least
   void giveMemory(std::size_t row, std::size_t expected) {
-    const auto has_room = [this] { return sizeOf(chunk(current_).rows + 1) <= chunk(current_).floats.size(); };
-    while (!has_room() && current_ + 1 < chunkCount()) ++current_;
-    if (!has_room()) {
-      if (chunk(current_).rows > 0) {
+    while (sizeOf(chunk(current_).rows + 1) > chunk(current_).floats.size()) {
+      if (chunk(current_).rows == 0)  // its memory may move
+        chunk(current_).floats.grow(sizeOf(std::max({expected, rows_with_memory_ / 8, std::size_t{1}})));
+      else if (++current_ == chunkCount())
         more_chunks_.emplace_back();
-        ++current_;
-      }
-      chunk(current_).floats.grow(sizeOf(std::max({expected, rows_with_memory_ / 8, std::size_t{1}})));
     }
     Chunk& taken = chunk(current_);
     rows_[row] = taken.floats.data() + sizeOf(taken.rows++);
@@ -99,25 +96,24 @@ class ImageCells {
   RowBins at(std::size_t row, std::size_t bin) const { return {rows_[row] + bin, row_size_}; }
   WritableRowBins at(std::size_t row, std::size_t bin) { return {rows_[row] + bin, row_size_}; }
 
-  /// Gives each row more bins.
+  /// Gives each row more bins, all of them in one chunk.
   /// \param bins of a row, more than before
   /// \param used of those before, from the first on; the others become free
   void widenRows(std::size_t bins, std::size_t used) {
-    const std::size_t former = std::exchange(row_size_, bins);
-    for (std::size_t i = 0; i < chunkCount(); ++i) {
-      Chunk& narrow = chunk(i);
-      Chunk wide;
-      wide.floats.grow(sizeOf(narrow.rows));
-      wide.rows = narrow.rows;
-      float* const to = wide.floats.data();
-      for (std::size_t plane = 0; plane < kPlanes * narrow.rows; ++plane) {
-        std::memcpy(to + plane * bins, narrow.floats.data() + plane * former, used * sizeof(float));
-        if (plane % kPlanes == 0)
-          std::fill(to + plane * bins + used, to + (plane + 1) * bins, std::numeric_limits<float>::quiet_NaN());
-      }
-      moveRows(narrow, former, wide);
-      narrow = std::move(wide);
+    Chunk wide;
+    wide.floats.grow(rows_with_memory_ * kPlanes * bins);
+    for (float*& row : rows_) {
+      if (row == nullptr) continue;
+      float* const to = wide.floats.data() + wide.rows++ * kPlanes * bins;
+      for (std::size_t plane = 0; plane < kPlanes; ++plane)
+        std::memcpy(to + plane * bins, row + plane * row_size_, used * sizeof(float));
+      std::fill(to + used, to + bins, std::numeric_limits<float>::quiet_NaN());
+      row = to;
     }
+    first_chunk_ = std::move(wide);
+    more_chunks_.clear();
+    current_ = 0;
+    row_size_ = bins;
   }
 
   /// Removes all rows, and gives back the memory that as many rows of some bins each do not need.
@@ -134,9 +130,14 @@ class ImageCells {
     clear(row_size_);
     first_chunk_.floats.exchangeMemory(other);
   }
+  /// Number of rows for which there is memory, if they have so many bins.
+  std::size_t capacityFor(std::size_t bins) const {
+    std::size_t rows = 0;
+    for (std::size_t i = 0; i < chunkCount(); ++i) rows += chunk(i).floats.size() / (kPlanes * bins);
+    return rows;
+  }
   /// Of the memory that exchangeMemory () exchanges.
   std::size_t exchangedBytes() const { return bytesOf(first_chunk_); }
-  static std::size_t bytesOf(std::size_t rows, std::size_t bins) { return rows * kPlanes * bins * sizeof(float); }
   std::size_t bytes() const {
     std::size_t sum = 0;
     for (std::size_t i = 0; i < chunkCount(); ++i) sum += bytesOf(chunk(i));
@@ -159,15 +160,13 @@ class ImageCells {
   std::size_t sizeOf(std::size_t rows) const { return rows * kPlanes * row_size_; }
   static std::size_t bytesOf(const Chunk& chunk) { return chunk.floats.size() * sizeof(float); }
 
-  /// Lets the rows of a chunk be those of another one, in the same order.
-  /// \param former bins of a row in the first one
-  void moveRows(const Chunk& from, std::size_t former, Chunk& to) {
+  /// Lets the rows of a chunk be those of its copy.
+  void moveRows(const Chunk& from, Chunk& to) {
     const float* const begin = from.floats.data();
-    const std::size_t size = kPlanes * former;
     constexpr std::less<const float*> isBefore;
     for (float*& row : rows_)
-      if (row != nullptr && !isBefore(row, begin) && isBefore(row, begin + from.rows * size))
-        row = to.floats.data() + sizeOf(static_cast<std::size_t>(row - begin) / size);
+      if (row != nullptr && !isBefore(row, begin) && isBefore(row, begin + sizeOf(from.rows)))
+        row = to.floats.data() + (row - begin);
   }
 
   Chunk first_chunk_;  ///< outside of the vector, so that an image without rows has no memory

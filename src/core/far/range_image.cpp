@@ -83,18 +83,19 @@ void RangeImage::setBins(std::size_t columns) {
 void RangeImage::expectColumns(std::size_t columns) {
   if (!inUse()) return;
   const std::size_t former = stride;
+  if (strideFor(columns, steps) <= former) return;
   setBins(columns);
   if (stride > cells.rowSize()) {
     cells.widenRows(stride, kMargin + end);
     return;
   }
-  for (std::size_t row = 0; row < rows.size() && stride > former; ++row)
+  for (std::size_t row = 0; row < rows.size(); ++row)
     if (rows[row].is_open) std::fill_n(cells.at(row, former).x(), stride - former, kNan);
 }
 
 bool RangeImage::hasMemoryFor(std::size_t lasers, std::size_t columns, const SensorHints& hints) const {
   const std::size_t row_size = strideFor(columns, static_cast<std::size_t>(hints.steps_per_turn));
-  return cells.exchangedBytes() >= ImageCells::bytesOf(lasers, row_size);
+  return cells.capacityFor(row_size) >= std::max({lasers, laserCount(), cells.rowsWithMemory()});
 }
 
 void RangeImage::addLasers(std::size_t count) {

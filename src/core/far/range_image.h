@@ -72,7 +72,9 @@ struct RangeImage {
   /// Makes room for more columns than expected before, once returns are placed.
   void expectColumns(std::size_t columns);
 
-  /// Whether the first rows of some lasers have memory for a number of columns, from rotations before.
+  /// Whether rotations before have left memory: any, or enough for the rows of some lasers, and for as many rows as
+  /// there are, in a number of columns.
+  bool hasMemory() const { return cells.bytes() > 0; }
   bool hasMemoryFor(std::size_t lasers, std::size_t columns, const SensorHints& hints) const;
   /// Gives back the memory of columns that are not expected. All values are lost; prepare () comes next.
   void shrinkMemory() { cells.shrinkTo(stride); }
