@@ -75,7 +75,8 @@ class GrowingArray {
     if (size > size_) grow(withSpare(size));
   }
 
-  /// Gives back memory behind a size, if it is above; elements before stay where they are.
+  /// Gives back the memory behind a size, if it is above. Elements before keep their values, perhaps at another
+  /// address.
   void shrink(std::size_t size) {
     if (size >= size_ || size == 0) return;
     void* const data = std::realloc(static_cast<void*>(data_), size * sizeof(T));
