@@ -301,6 +301,36 @@ void mapCoordinates(Random& random, Cloud& cloud) {
   fillBox(random, cloud, {5e5, 5.4e6, 100}, {size, size, height}, someCount(random));
 }
 
+// Floats along one axis are about as far apart as the tolerance, and twice as far above a power of two.
+void slices(Random& random, Cloud& cloud) {
+  const std::size_t axis = random.below(3);
+  const auto exponent = static_cast<int>(random.below(40)) - 10;
+  const double step = std::ldexp(1.0, exponent - 23);
+  const double ratio = random.chance(0.5) ? 1 : random.magnitude(0.2, 1.2);
+  cloud.tolerance = nudged(random, static_cast<float>(ratio * step), 1);
+  const auto tolerance = static_cast<double>(cloud.tolerance);
+  Position corner{}, sides;
+  for (double& side : sides) side = tolerance * random.magnitude(0.5, 12);
+  sides[axis] = step * static_cast<double>(20 + random.below(60));
+  corner[axis] = std::ldexp(random.chance(0.3) ? 2.0 : random.between(1, 2), exponent) - sides[axis] * random.unit();
+  if (random.chance(0.5)) corner[axis] = -corner[axis] - sides[axis];
+  fillBox(random, cloud, corner, sides, 2 + 2 * someCount(random));
+  if (random.chance(0.5)) {
+    // In few slices, on the borders of voxels.
+    const double side = lisco::kSliceVoxelSide * lisco::Tolerance(cloud.tolerance).reach();
+    const std::vector<Point> some(cloud.points.begin(), cloud.points.begin() + 2);
+    for (std::size_t i = 2; i < cloud.points.size(); ++i)
+      for (float Point::*const along : {&Point::x, &Point::y, &Point::z}) {
+        const bool is_across = std::fabs(cloud.points[i].*along) < std::ldexp(1.0F, exponent - 1);
+        if (is_across)
+          cloud.points[i].*along = nudged(
+              random, static_cast<float>(side * std::floor(static_cast<double>(cloud.points[i].*along) / side)), 2);
+        else if (random.chance(0.8))
+          cloud.points[i].*along = random.oneOf(some).*along;
+      }
+  }
+}
+
 // Several clouds so far apart that keys are long, or too long.
 void farApart(Random& random, Cloud& cloud) {
   cloud.tolerance = static_cast<float>(random.magnitude(0.001, 1));
@@ -428,7 +458,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, VoxelSorterClouds,
                          testing::Values(Kind{"boxes", boxes, 1}, Kind{"sheets", sheets, 1}, Kind{"lines", lines, 1},
                                          Kind{"borders", borders, 1}, Kind{"duplicates", duplicates, 1},
                                          Kind{"pairs", pairs, 1}, Kind{"map_coordinates", mapCoordinates, 1},
-                                         Kind{"far_apart", farApart, 0.5},
+                                         Kind{"slices", slices, 1}, Kind{"far_apart", farApart, 0.5},
                                          Kind{"huge_coordinates", hugeCoordinates, 0.2},
                                          Kind{"ends_of_tolerances", endsOfTolerances, 0.4},
                                          Kind{"dense_runs", denseRuns, 1}, Kind{"few", few, 1}),

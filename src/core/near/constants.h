@@ -30,6 +30,11 @@ inline constexpr std::size_t kNearStep = 4;
 /// Metres: between these, squares in float neither vanish nor overflow.
 inline constexpr double kMinSortedTolerance = 1e-18;
 inline constexpr double kMaxSortedTolerance = 1e18;
+/// Side of a voxel over eps in a slice, whose returns differ along two axes: a little less than 1 / sqrt (2).
+inline constexpr double kSliceVoxelSide = 0.9999 / 1.4142135623730951;
+/// Slices from which on they are told from each other; threads share out planes, and so need a number of them. With
+/// slices, clouds in UTM coordinates take 0.8 to 0.95 times as long at tolerances below 0.5 m (recordings --cloud UTM).
+inline constexpr double kMinSlices = 32;
 /// Largest number of a voxel along an axis: fits a signed 32-bit conversion.
 inline constexpr double kMaxVoxelNumber = 2147480000.0;
 /// Work of a fragment beyond that of its returns, in returns: for dividing it among threads (threads).

@@ -11,27 +11,35 @@ namespace lisco {
 inline constexpr std::size_t kNearBricks = 27;
 inline constexpr std::size_t kOwnBrick = kNearBricks / 2;
 
-/// What is around one of 4 x 4 x 4 places. Bit x + 4 y + 16 z of a word is a place.
+/// What is around one of the places in a box of at most 64, each of them a bit of a word: the lowest bits of its number
+/// count along x, the next along y, the highest along z.
 /// \tparam kReach by which numbers along an axis differ, at most
-template <int kReach>
+/// \tparam kX bits of the number along x; kY and kZ likewise. Along an axis of no bits, words have nothing in common.
+template <int kReach, int kX = 2, int kY = 2, int kZ = 2>
 struct Neighbourhood {
+  static_assert(kX + kY + kZ <= 6, "a word holds 64 places");
   /// of[place][i]: the places around a place of the own word that are in near word i, numbered as near bricks are.
   std::uint64_t of[64][kNearBricks] = {};
 
   constexpr Neighbourhood() {
-    for (int place = 0; place < 64; ++place)
-      for (int dz = -kReach; dz <= kReach; ++dz)
-        for (int dy = -kReach; dy <= kReach; ++dy)
-          for (int dx = -kReach; dx <= kReach; ++dx) {
-            const int x = (place & 3) + dx;
-            const int y = (place >> 2 & 3) + dy;
-            const int z = (place >> 4) + dz;
-            const int word = (z + 4) / 4 * 9 + (y + 4) / 4 * 3 + (x + 4) / 4;
-            of[place][word] |= std::uint64_t{1} << ((x & 3) | (y & 3) << 2 | (z & 3) << 4);
+    constexpr int kSize[3] = {1 << kX, 1 << kY, 1 << kZ};
+    constexpr int kAlong[3] = {kX == 0 ? 0 : kReach, kY == 0 ? 0 : kReach, kZ == 0 ? 0 : kReach};
+    for (int place = 0; place < kSize[0] * kSize[1] * kSize[2]; ++place)
+      for (int dz = -kAlong[2]; dz <= kAlong[2]; ++dz)
+        for (int dy = -kAlong[1]; dy <= kAlong[1]; ++dy)
+          for (int dx = -kAlong[0]; dx <= kAlong[0]; ++dx) {
+            // Counted from the word before.
+            const int x = place % kSize[0] + dx + kSize[0];
+            const int y = place / kSize[0] % kSize[1] + dy + kSize[1];
+            const int z = place / kSize[0] / kSize[1] + dz + kSize[2];
+            const int word = z / kSize[2] * 9 + y / kSize[1] * 3 + x / kSize[0];
+            const int around = x % kSize[0] + kSize[0] * (y % kSize[1] + kSize[1] * (z % kSize[2]));
+            of[place][word] |= std::uint64_t{1} << around;
           }
   }
 };
-inline constexpr Neighbourhood<2> kNeighbourhood;       ///< of voxels that may hold neighbours
-inline constexpr Neighbourhood<1> kBrickNeighbourhood;  ///< of bricks with such voxels
+inline constexpr Neighbourhood<2> kNeighbourhood;                ///< of voxels that may hold neighbours
+inline constexpr Neighbourhood<2, 3, 2, 0> kSliceNeighbourhood;  ///< the same in slices (VoxelNumbering)
+inline constexpr Neighbourhood<1> kBrickNeighbourhood;           ///< of bricks with such voxels
 
 }  // namespace lisco

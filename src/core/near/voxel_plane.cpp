@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/near/constants.h"
-#include "core/near/neighbourhood.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/near/voxel_plane.cpp"
@@ -192,7 +191,7 @@ class PlaneLinker {
     const bool are_numbered = !brick.holdsFewReturns() && !near.holdsFewReturns();
     std::uint64_t numbers = brick.occupied;
     for (std::uint32_t voxel = brick.first_voxel; voxel < endOf(brick); ++voxel, numbers &= numbers - 1) {
-      if (are_numbered && (near.occupied & kNeighbourhood.of[__builtin_ctzll(numbers)][number]) == 0) continue;
+      if (are_numbered && (near.occupied & layout_.around[__builtin_ctzll(numbers)][number]) == 0) continue;
       std::uint32_t root = subclusters_.find(plane.root[voxel]);
       const std::uint64_t joined = linkVoxel(plane, voxel, other, near.first_voxel, allOf(near), root);
       plane.root[voxel] = root;

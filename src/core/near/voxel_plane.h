@@ -13,6 +13,7 @@
 #include "core/near/brick_map.h"
 #include "core/near/constants.h"
 #include "core/near/near_returns.h"
+#include "core/near/neighbourhood.h"
 #include "core/neighbour.h"
 
 namespace lisco {
@@ -171,6 +172,7 @@ struct PlaneLayout {
   unsigned minor_bits;   ///< of a brick's key
   unsigned brick_bits;   ///< the same, middle and minor
   float squared_tolerance;
+  const std::uint64_t (*around)[kNearBricks];  ///< Neighbourhood::of, of the voxels of a brick
 
   std::uint64_t nextRow() const { return std::uint64_t{1} << minor_bits; }  ///< in a brick's key
 };

@@ -3,10 +3,13 @@
 #include "core/near/voxel_sorter.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/bits.h"
 #include "core/near/constants.h"
+#include "core/near/neighbourhood.h"
 #include "core/parallel.h"
 #include "core/radix_sort.h"
 
@@ -66,20 +69,24 @@ void keysOf(const VoxelNumbering& numbering, const float (&coordinates)[3][kBatc
   const hn::Rebind<std::int32_t, decltype(kDoubles)> half_integers;
   const hn::Rebind<std::uint32_t, decltype(kDoubles)> half_words;
   const hn::Rebind<std::uint64_t, decltype(kDoubles)> words;
-  const auto per_metre = hn::Set(kDoubles, numbering.per_metre);
-  const int brick_shifts[3] = {6, static_cast<int>(6 + numbering.minor_bits),
-                               static_cast<int>(6 + numbering.minor_bits + numbering.middle_bits)};
+  const unsigned voxel_shifts[3] = {0, numbering.voxel_bits[0], numbering.voxel_bits[0] + numbering.voxel_bits[1]};
+  const unsigned brick_shifts[3] = {6, 6 + numbering.minor_bits, 6 + numbering.minor_bits + numbering.middle_bits};
   for (std::size_t i = 0; i < kBatch; i += hn::MaxLanes(kDoubles)) {
     auto key = hn::Zero(words);
     for (int along = 0; along < 3; ++along) {
       const std::size_t axis = numbering.axis[along];
       const auto coordinate = hn::PromoteTo(kDoubles, hn::LoadU(half_floats, &coordinates[axis][i]));
-      const auto scaled = hn::Mul(hn::Sub(coordinate, hn::Set(kDoubles, numbering.corner[axis])), per_metre);
+      const auto scaled = hn::Mul(hn::Sub(coordinate, hn::Set(kDoubles, numbering.corner[axis])),
+                                  hn::Set(kDoubles, numbering.per_metre[axis]));
       const auto number = hn::BitCast(half_words, hn::DemoteTo(half_integers, scaled));
+      const auto voxel = hn::And(number, hn::Set(half_words, (1U << numbering.voxel_bits[along]) - 1));
       // Bricks begin with 1, so that those before and after one have keys too.
-      const auto brick = hn::PromoteTo(words, hn::Add(hn::ShiftRight<2>(number), hn::Set(half_words, 1)));
-      const auto voxel = hn::PromoteTo(words, hn::And(number, hn::Set(half_words, 3)));
-      key = hn::Or(key, hn::Or(hn::ShiftLeftSame(brick, brick_shifts[along]), hn::ShiftLeftSame(voxel, 2 * along)));
+      const auto brick =
+          hn::Add(hn::ShiftRightSame(number, static_cast<int>(numbering.voxel_bits[along])), hn::Set(half_words, 1));
+      const auto shifted = [&](auto bits, unsigned shift) {
+        return hn::ShiftLeftSame(hn::PromoteTo(words, bits), static_cast<int>(shift));
+      };
+      key = hn::Or(key, hn::Or(shifted(brick, brick_shifts[along]), shifted(voxel, voxel_shifts[along])));
     }
     hn::StoreU(key, words, keys + i);
   }
@@ -142,6 +149,31 @@ namespace {
 
 HWY_EXPORT(boundReturns);
 HWY_EXPORT(cutPart);
+
+/// The least difference of unlike floats of which all are at least lo and at most hi, and of one sign; else 0.
+float leastStep(float lo, float hi) {
+  if (lo <= 0 && hi >= 0) return 0;
+  const float least = std::min(std::fabs(lo), std::fabs(hi));
+  return std::nextafter(least, std::numeric_limits<float>::infinity()) - least;
+}
+
+constexpr std::size_t kAxes = 3;
+
+/// The axis with most slices; kAxes if there are few.
+std::size_t axisOfSlices(const Box& box, const Tolerance& tolerance) {
+  std::size_t found = kAxes;
+  double most = kMinSlices;
+  for (std::size_t axis = 0; axis < kAxes; ++axis) {
+    const float step = leastStep(box.lo[axis], box.hi[axis]);
+    if (squaredDistance(step, 0, 0) < tolerance.squared()) continue;
+    const double slices =
+        (static_cast<double>(box.hi[axis]) - static_cast<double>(box.lo[axis])) / static_cast<double>(step);
+    if (slices < most) continue;
+    found = axis;
+    most = slices;
+  }
+  return found;
+}
 
 unsigned bitsFor(std::uint64_t values) {
   unsigned bits = 1;
@@ -220,12 +252,8 @@ void VoxelSorter::numberReturns(const Slab& slab) {
   }
 }
 
-/// Chooses the axes and the bits of the keys.
-bool VoxelSorter::chooseNumbering(const Tolerance& tolerance) {
-  if (tolerance.reach() < kMinSortedTolerance || tolerance.reach() > kMaxSortedTolerance) return false;
-  if (fragments_.end > VoxelPlane::kInItems) return false;
-  numbering_.per_metre = 1 / (kVoxelSide * tolerance.reach());
-  double bricks[3];
+/// The box around all returns.
+Box VoxelSorter::boxOfAll() {
   part_boxes_.resize(fragments_.parts.size());
   inParallel(fragments_.parts.size(), [&](std::size_t i) {
     const NearReturns& near = *fragments_.parts[i].near;
@@ -233,19 +261,37 @@ bool VoxelSorter::chooseNumbering(const Tolerance& tolerance) {
   });
   Box all = part_boxes_.front();
   for (const Box& box : part_boxes_) all.add(box);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    numbering_.corner[axis] = static_cast<double>(all.lo[axis]);
-    const double voxels =
-        (static_cast<double>(all.hi[axis]) - static_cast<double>(all.lo[axis])) * numbering_.per_metre;
-    if (!(voxels < kMaxVoxelNumber)) return false;
-    bricks[axis] = voxels / 4;
+  return all;
+}
+
+/// Chooses the voxels, the axes and the bits of the keys.
+bool VoxelSorter::chooseNumbering(const Tolerance& tolerance) {
+  if (tolerance.reach() < kMinSortedTolerance || tolerance.reach() > kMaxSortedTolerance) return false;
+  if (fragments_.end > VoxelPlane::kInItems) return false;
+  const Box all = boxOfAll();
+  const std::size_t sliced = axisOfSlices(all, tolerance);
+  numbering_.has_slices = sliced < kAxes;
+  constexpr unsigned kVoxelBits[2][kAxes] = {{2, 2, 2}, {3, 2, 0}};
+  std::copy_n(kVoxelBits[numbering_.has_slices ? 1 : 0], kAxes, numbering_.voxel_bits);
+  const double voxel = (numbering_.has_slices ? kSliceVoxelSide : kVoxelSide) * tolerance.reach();
+  double sides[kAxes];  // of the box, in voxels
+  for (std::size_t axis = 0; axis < kAxes; ++axis) {
+    const auto lo = static_cast<double>(all.lo[axis]);
+    const auto hi = static_cast<double>(all.hi[axis]);
+    numbering_.corner[axis] = lo;
+    numbering_.per_metre[axis] =
+        1 / (axis == sliced ? static_cast<double>(leastStep(all.lo[axis], all.hi[axis])) : voxel);
+    sides[axis] = (hi - lo) * numbering_.per_metre[axis];
+    if (!(sides[axis] < kMaxVoxelNumber)) return false;
+    numbering_.axis[axis] = axis;
   }
-  numbering_.axis[0] = 0;
-  numbering_.axis[1] = 1;
-  numbering_.axis[2] = 2;
-  std::sort(numbering_.axis, numbering_.axis + 3, [&](std::size_t a, std::size_t b) { return bricks[a] < bricks[b]; });
+  // The sliced axis comes last.
+  if (numbering_.has_slices) std::swap(numbering_.axis[sliced], numbering_.axis[kAxes - 1]);
+  std::sort(numbering_.axis, numbering_.axis + (numbering_.has_slices ? kAxes - 1 : kAxes),
+            [&](std::size_t a, std::size_t b) { return sides[a] < sides[b]; });
   const auto bitsAlong = [&](std::size_t i) {
-    return bitsFor(static_cast<std::uint64_t>(bricks[numbering_.axis[i]]) + 3);
+    const auto last = static_cast<std::uint64_t>(sides[numbering_.axis[i]]);
+    return bitsFor((last >> numbering_.voxel_bits[i]) + 3);
   };
   numbering_.minor_bits = bitsAlong(0);
   numbering_.middle_bits = bitsAlong(1);
@@ -359,12 +405,12 @@ void VoxelSorter::addVoxels(std::size_t slab, const VoxelPlane& plane, std::size
 /// Links the planes of a slab within and with the next ones, the first of the next slab included.
 void VoxelSorter::linkSlab(std::size_t slab, const Tolerance& tolerance, DisjointSets& subclusters) {
   const PlaneLayout layout{number_bits_, numbering_.minor_bits, numbering_.minor_bits + numbering_.middle_bits,
-                           tolerance.squared()};
+                           tolerance.squared(), numbering_.has_slices ? kSliceNeighbourhood.of : kNeighbourhood.of};
   VoxelPlane* plane = &planes_[2 * slab];
   VoxelPlane* last = plane + 1;
   std::uint64_t last_number = ~std::uint64_t{0} - 1;
   std::size_t first_voxel = slabs_[slab].begin;
-  const std::size_t end_of_all = slabs_.back().end;
+  const std::size_t end_of_all = numbering_.has_slices ? slabs_[slab].end : slabs_.back().end;
   for (std::size_t begin = slabs_[slab].begin; begin < end_of_all;) {
     const std::uint64_t number = planeOf(items_[begin]);
     const bool is_own = begin < slabs_[slab].end;
@@ -380,7 +426,7 @@ void VoxelSorter::linkSlab(std::size_t slab, const Tolerance& tolerance, Disjoin
       fillPlaneFromRuns(*plane, &items_[begin], end - begin, layout, fragments_, subclusters);
     }
     if (is_own) linkPlane(*plane, layout, subclusters);
-    if (number == last_number + 1) linkPlanes(*last, *plane, layout, subclusters);
+    if (number == last_number + 1 && !numbering_.has_slices) linkPlanes(*last, *plane, layout, subclusters);
     if (!is_own) return;
     std::swap(plane, last);
     last_number = number;

@@ -16,10 +16,16 @@ namespace lisco {
 
 /// How voxels are numbered: from a corner of the box around all returns, in double, so that returns of the same number
 /// are neighbours and neighbours differ by 2 at most along each axis. The longest side of the box is the major axis.
+///
+/// Far from the origin, as in map coordinates, floats are so coarse that unlike coordinates along an axis may be eps
+/// apart. The returns of one coordinate are a *slice* then: neighbours lie in the same one, and differ along two axes
+/// only, so that voxels are larger. That axis is the major one, and a plane of bricks is a slice.
 struct VoxelNumbering {
-  std::size_t axis[3];  ///< minor, middle and major: 0 for x, 1 for y, 2 for z
-  double corner[3];     ///< of the box, metres, by x, y and z
-  double per_metre;     ///< voxels
+  std::size_t axis[3];     ///< minor, middle and major: 0 for x, 1 for y, 2 for z
+  double corner[3];        ///< of the box, metres, by x, y and z
+  double per_metre[3];     ///< voxels, by x, y and z
+  unsigned voxel_bits[3];  ///< of a voxel's number in its brick, along the minor, middle and major axis
+  bool has_slices;
   /// Of a key: from the highest bit on, a brick's number along the major, middle and minor axis, and the voxel's in it.
   unsigned minor_bits, middle_bits, bits;
 };
@@ -27,8 +33,8 @@ struct VoxelNumbering {
 /// Algorithm 4 on near returns that are read at once: sorts them by voxel and joins neighbours plane by plane.
 ///
 /// The returns of a run in a voxel are a *fragment*. Fragments are sorted by key (radix sort), so that the returns of a
-/// voxel, of a brick of 4 x 4 x 4 voxels, and of a plane of bricks across the major axis lie side by side. Each plane
-/// is linked within and with the plane before. Each thread links a slab of consecutive planes.
+/// voxel, of a brick of 4 x 4 x 4 voxels (8 x 4 in a slice), and of a plane of bricks across the major axis lie side by
+/// side. Each plane is linked within and with the plane before. Each thread links a slab of consecutive planes.
 class VoxelSorter {
  public:
   /// Joins all neighbours among some returns.
@@ -69,6 +75,7 @@ class VoxelSorter {
 
   bool sortFragments(const Tolerance& tolerance);
   bool chooseNumbering(const Tolerance& tolerance);
+  Box boxOfAll();
   void cutFragments();
   void divide();
   void sort(const Slab& slab);
