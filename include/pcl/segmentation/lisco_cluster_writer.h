@@ -164,7 +164,8 @@ class LiscoClusterWriter {
     place += stepOf(place);
   }
 
-  index_t* addCluster(std::uint32_t size) {
+  /** \brief Not inlined, so that place (), which is called for each run, is. */
+  [[gnu::noinline]] index_t* addCluster(std::uint32_t size) {
     static_assert(std::is_nothrow_move_constructible<PointIndices>::value, "clusters that move keep their indices");
     clusters_.emplace_back();
     clusters_.back().header = header_;

@@ -410,7 +410,8 @@ void VoxelSorter::linkSlab(std::size_t slab, const Tolerance& tolerance, Disjoin
   VoxelPlane* last = plane + 1;
   std::uint64_t last_number = ~std::uint64_t{0} - 1;
   std::size_t first_voxel = slabs_[slab].begin;
-  const std::size_t end_of_all = numbering_.has_slices ? slabs_[slab].end : slabs_.back().end;
+  const bool links_planes = !numbering_.has_slices;
+  const std::size_t end_of_all = links_planes ? slabs_.back().end : slabs_[slab].end;
   for (std::size_t begin = slabs_[slab].begin; begin < end_of_all;) {
     const std::uint64_t number = planeOf(items_[begin]);
     const bool is_own = begin < slabs_[slab].end;
@@ -426,7 +427,7 @@ void VoxelSorter::linkSlab(std::size_t slab, const Tolerance& tolerance, Disjoin
       fillPlaneFromRuns(*plane, &items_[begin], end - begin, layout, fragments_, subclusters);
     }
     if (is_own) linkPlane(*plane, layout, subclusters);
-    if (number == last_number + 1 && !numbering_.has_slices) linkPlanes(*last, *plane, layout, subclusters);
+    if (links_planes && number == last_number + 1) linkPlanes(*last, *plane, layout, subclusters);
     if (!is_own) return;
     std::swap(plane, last);
     last_number = number;

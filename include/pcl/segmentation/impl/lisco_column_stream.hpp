@@ -45,15 +45,16 @@ class LiscoColumnStore {
    */
   std::uint32_t add(const PointT* points, std::size_t rows, double position = 0) {
     reserve(rows);
-    columns_[slotOf(end_column_)] = {end_cell_, static_cast<std::uint32_t>(rows), position};
-    for (std::size_t row = 0; row < rows; ++row) {
-      const std::size_t slot = (end_cell_ + row) & (points_.size() - 1);
-      points_[slot] = points[row];
-      column_of_cell_[slot] = static_cast<std::uint32_t>(end_column_);
-    }
+    if (size() == 0)
+      rows_of_each_ = rows;
+    else if (rows != rows_of_each_ && rows_of_each_ != kUnlike)
+      enterColumns();
     const std::uint32_t first = end_cell_;
+    columns_[slotOf(end_column_)] = {first, static_cast<std::uint32_t>(rows), position};
+    for (std::size_t row = 0; row < rows; ++row) points_[(first + row) & (points_.size() - 1)] = points[row];
     end_cell_ += static_cast<std::uint32_t>(rows);
     ++end_column_;
+    if (rows_of_each_ == kUnlike) enterColumn(end_column_ - 1);
     return (first);
   }
 
@@ -77,6 +78,11 @@ class LiscoColumnStore {
   }
   const PointT& pointOf(std::uint32_t id) const { return (points_[id & (points_.size() - 1)]); }
   Cell cellOf(std::uint32_t id) const {
+    if (rows_of_each_ != kUnlike) {
+      const auto rows = static_cast<std::uint32_t>(rows_of_each_);
+      const std::uint32_t cell = id - first_cell_;
+      return {first_column_ + cell / rows, cell % rows};
+    }
     const std::uint32_t low_bits = column_of_cell_[id & (points_.size() - 1)];
     const std::uint64_t column = first_column_ + (low_bits - static_cast<std::uint32_t>(first_column_));
     return {column, id - columns_[slotOf(column)].first_cell};
@@ -124,25 +130,34 @@ class LiscoColumnStore {
     std::size_t capacity = std::max(2 * points_.size(), std::size_t{4096});
     while (capacity < cells + rows) capacity *= 2;
     std::vector<PointT> points(capacity);
-    std::vector<std::uint32_t> column_of_cell(capacity);
-    for (std::size_t cell = 0; cell < cells; ++cell) {
-      const std::size_t from = (first_cell_ + cell) & (points_.size() - 1);
-      const std::size_t to = (first_cell_ + cell) & (capacity - 1);
-      points[to] = points_[from];
-      column_of_cell[to] = column_of_cell_[from];
-    }
+    for (std::size_t cell = 0; cell < cells; ++cell)
+      points[(first_cell_ + cell) & (capacity - 1)] = points_[(first_cell_ + cell) & (points_.size() - 1)];
     points_.swap(points);
-    column_of_cell_.swap(column_of_cell);
+    if (rows_of_each_ == kUnlike) enterColumns();
+  }
+
+  /** \brief Enters the columns of all cells, whose ids do not tell them. */
+  void enterColumns() {
+    column_of_cell_.resize(points_.size());
+    rows_of_each_ = kUnlike;
+    for (std::uint64_t column = first_column_; column < end_column_; ++column) enterColumn(column);
+  }
+  void enterColumn(std::uint64_t column) {
+    const Column& entered = columns_[slotOf(column)];
+    for (std::uint32_t row = 0; row < entered.rows; ++row)
+      column_of_cell_[(entered.first_cell + row) & (points_.size() - 1)] = static_cast<std::uint32_t>(column);
   }
 
   /// Any value is right; of this one, ids wrap around in nearly every stream, so that nearly every test covers it.
   static constexpr std::uint32_t kFirstId = ~std::uint32_t{0} - 100;
+  static constexpr std::size_t kUnlike = ~std::size_t{0};
 
   std::uint64_t first_column_ = 0, end_column_ = 0;
   std::uint32_t first_cell_ = kFirstId, end_cell_ = kFirstId;  ///< ids
   std::vector<Column> columns_;
   std::vector<PointT> points_;
-  std::vector<std::uint32_t> column_of_cell_;  ///< its lowest 32 bits
+  std::size_t rows_of_each_ = 0;               ///< of the columns held; kUnlike if they differ
+  std::vector<std::uint32_t> column_of_cell_;  ///< its lowest 32 bits; only if they differ
 };
 
 /** \brief The columns received by LiscoStreamExtraction, LiscoWindowExtraction and LiscoEndlessExtraction: base of
