@@ -119,7 +119,8 @@ void Shape::readRecording(Input& input, float unit, std::size_t lasers, std::siz
   const bool is_dual = (flags & 4U) != 0;
   const bool is_moving = (flags & 8U) != 0;
   const bool has_gaps = (flags & 16U) != 0;
-  const double map = (flags & 32U) != 0 ? 1.0 : 0.0;
+  // A multiple of UTM coordinates: of four times these, floats are a unit or two apart.
+  const double map = (flags & 32U) == 0 ? 0.0 : (flags & 64U) == 0 ? 1.0 : 4.0;
   const unsigned order = input.byte();
   const auto wide = static_cast<double>(unit);
   std::size_t firing = 0;
