@@ -33,6 +33,19 @@ struct BinPlanes {
 using RowBins = BinPlanes<const float, const std::uint32_t>;
 using WritableRowBins = BinPlanes<float, std::uint32_t>;
 
+/// Inserts a row behind each `layers` rows: the next layer of each laser.
+/// \param next_of callable as Row (const Row& first), of the first row of a laser
+template <typename Row, typename NextOf>
+void insertLayer(std::vector<Row>& rows, std::size_t layers, NextOf&& next_of) {
+  const std::size_t lasers = rows.size() / layers;
+  rows.resize(lasers * (layers + 1));
+  for (std::size_t laser = lasers; laser-- > 0;) {
+    Row* const to = rows.data() + laser * (layers + 1);
+    for (std::size_t layer = layers; layer-- > 0;) to[layer] = rows[laser * layers + layer];
+    to[layers] = next_of(*to);
+  }
+}
+
 /// The rows of a range image. Their memory is taken for many at once: a *chunk*. Rows with memory stay where they are
 /// when others get some. Rows that are opened one after the other touch a chunk from its beginning on.
 class ImageCells {
@@ -64,13 +77,7 @@ class ImageCells {
   void addRows(std::size_t count) { rows_.resize(rows_.size() + count, nullptr); }
   /// Adds a row without memory behind each `layers` rows.
   void addLayer(std::size_t layers) {
-    const std::size_t count = rows_.size() / layers;
-    rows_.resize(count * (layers + 1));
-    for (std::size_t i = count; i-- > 0;) {
-      float** const to = rows_.data() + i * (layers + 1);
-      std::memmove(to, rows_.data() + i * layers, layers * sizeof(float*));
-      to[layers] = nullptr;
-    }
+    insertLayer(rows_, layers, [](const float*) { return nullptr; });
   }
   std::size_t rowCount() const { return rows_.size(); }
   std::size_t rowSize() const { return row_size_; }

@@ -124,14 +124,7 @@ bool RangeImage::isLayerWorthwhile() const {
 }
 
 void RangeImage::addLayer() {
-  const std::size_t lasers = laserCount();
-  rows.resize(lasers * (layers + 1));
-  for (std::size_t laser = lasers; laser-- > 0;) {
-    const auto from = rows.begin() + static_cast<std::ptrdiff_t>(laser * layers);
-    const auto to = rows.begin() + static_cast<std::ptrdiff_t>(laser * (layers + 1));
-    std::copy_backward(from, from + static_cast<std::ptrdiff_t>(layers), to + static_cast<std::ptrdiff_t>(layers));
-    to[static_cast<std::ptrdiff_t>(layers)] = {false, to->lowest, to->highest, kNoBin, 0};
-  }
+  insertLayer(rows, layers, [](const Row& first) { return Row{false, first.lowest, first.highest, kNoBin, 0}; });
   cells.addLayer(layers);
   ++layers;
   elevations_changed = true;
