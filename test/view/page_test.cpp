@@ -431,7 +431,7 @@ TEST_F(PageTest, LoadsAndTurns200000PointsInTime) {
   browser_->evaluate("delete lisco.view.renderer.adapt");
   std::printf("processor time of the page's thread: %.2f s to load, %.1f ms a frame\n", load, 1000 * per_frame);
   EXPECT_GT(per_frame, 0.0001);
-  EXPECT_LT(per_frame, 1.0 / 30);
+  EXPECT_LT(per_frame, 0.1);  // on any machine, which may be a third as fast as that of benchmarks/view.sh
 
   // Wall time, as a user has it; other programs delay it, so that benchmarks/view.sh alone sets its limits.
   const double loaded = browser_->evaluate("lisco.view.shown_at");

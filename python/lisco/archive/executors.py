@@ -143,8 +143,7 @@ class Distributed:
 
     def close(self) -> None:
         """Ends the embedded scheduler and its workers."""
-        if self._client is not None:
-            self._client.close(timeout=10)
+        self._close_client(timeout=10)
         if self._cluster is not None:
             self._cluster.close(timeout=10)
             self._folder.cleanup()
@@ -167,9 +166,17 @@ class Distributed:
         with open(str(self._address), encoding="utf-8") as file:
             return str(json.load(file)["address"])
 
+    def _close_client(self, timeout: float) -> None:
+        """Leaves the scheduler; a lost one may not answer in time."""
+        if self._client is None:
+            return
+        try:
+            self._client.close(timeout=timeout)
+        except (OSError, TimeoutError, self._distributed.TimeoutError):
+            pass
+
     def _connect(self) -> None:
-        if self._client is not None:
-            self._client.close(timeout=5)
+        self._close_client(timeout=5)
         deadline = time.monotonic() + self._patience
         while True:
             try:
