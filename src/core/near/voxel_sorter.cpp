@@ -402,7 +402,8 @@ void VoxelSorter::addVoxels(std::size_t slab, const VoxelPlane& plane, std::size
   std::copy_n(plane.begins_voxel.data(), end - begin, &begins_voxel_[begin]);
 }
 
-/// Links the planes of a slab within and with the next ones, the first of the next slab included.
+/// Links the planes of a slab within and, unless they are slices, with the next ones, the first of the next slab
+/// included.
 void VoxelSorter::linkSlab(std::size_t slab, const Tolerance& tolerance, DisjointSets& subclusters) {
   const PlaneLayout layout{number_bits_, numbering_.minor_bits, numbering_.minor_bits + numbering_.middle_bits,
                            tolerance.squared(), numbering_.has_slices ? kSliceNeighbourhood.of : kNeighbourhood.of};

@@ -34,7 +34,8 @@ struct VoxelNumbering {
 ///
 /// The returns of a run in a voxel are a *fragment*. Fragments are sorted by key (radix sort), so that the returns of a
 /// voxel, of a brick of 4 x 4 x 4 voxels (8 x 4 in a slice), and of a plane of bricks across the major axis lie side by
-/// side. Each plane is linked within and with the plane before. Each thread links a slab of consecutive planes.
+/// side. Each plane is linked within and, unless it is a slice, with the plane before. Each thread links a slab of
+/// consecutive planes.
 class VoxelSorter {
  public:
   /// Joins all neighbours among some returns.
