@@ -170,15 +170,17 @@ bool isRight(const Case& one, const Rotation& rotation, const std::string& whose
 /// PCL's vectors from what clusterers found. Keeps its memory, as the classes for PCL do.
 class Collector {
  public:
-  template <typename Clusterer, typename IndexOf>
-  Clusters collect(Clusterer& clusterer, const Problem& problem, IndexOf&& index_of) {
+  /// \param width columns of the cloud that the clusters are of
+  template <typename Clusterer>
+  Clusters collect(Clusterer& clusterer, const Problem& problem, std::size_t width) {
     Clusters clusters;
     pcl::detail::LiscoClusterWriter writer(clusterer, problem.cloud->header, problem.min_size, problem.max_size,
                                            places_, clusters);
-    clusterer.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-      writer.append(lisco::RunVisitor::From::kFirst, subcluster, count,
-                    [&](std::size_t i) { return index_of(cells[i]); });
-    });
+    const auto point_at = [width](std::size_t laser, std::size_t column) {
+      return static_cast<pcl::index_t>(laser * width + column);
+    };
+    clusterer.forEachRun(pcl::detail::LiscoRunAppender<decltype(writer), decltype(point_at)>{writer, point_at},
+                         writer.acceptedSizes());
     pcl::detail::sortLiscoClusters(clusters);
     return clusters;
   }
@@ -193,6 +195,7 @@ lisco::Parameters parametersAfter(const Rotation& rotation) {
   lisco::Parameters parameters;
   parameters.sensor =
       lisco::estimateSensor(rotation.columns.size(), rotation.lasers, {0, 0, 0}, lisco::CellSource(cell_at));
+  parameters.keep_source_indices = false;
   parameters.expected_returns = rotation.columns.size() * rotation.lasers;
   return parameters;
 }
@@ -218,8 +221,7 @@ class RotationFeeder {
     }
     const Timer::time_point begin = Timer::now();
     clusterer_.update();
-    const Clusters clusters =
-        collector_.collect(clusterer_, rotation.problem, [](std::uint32_t cell) { return static_cast<int>(cell); });
+    const Clusters clusters = collector_.collect(clusterer_, rotation.problem, rotation.columns.size());
     const double time = microsecondsSince(begin);
     if (ends != nullptr) ends->push_back(time / 1000);
     return isRight(one, rotation, "Lisco, column by column,", clusters);
@@ -466,8 +468,7 @@ class WindowsTable {
           const auto& cells = rotation.columns[column % width];
           const Timer::time_point begin = Timer::now();
           const bool ends = clusterer.addColumn(cells.data(), cells.size());
-          if (ends)
-            clusters = collectWindow(clusterer, collector, rotation, column + 1 - clusterer.columnCount(), width);
+          if (ends) clusters = collector.collect(clusterer, rotation.problem, clusterer.columnCount());
           time += microsecondsSince(begin) / 1000;
         }
         if (window < kParts[k]) continue;
@@ -519,14 +520,6 @@ class WindowsTable {
         point.z = cell.z;
       }
     return cloud;
-  }
-
-  static Clusters collectWindow(lisco::WindowClusterer& clusterer, Collector& collector, const Rotation& rotation,
-                                std::size_t first, std::size_t width) {
-    const std::size_t all = rotation.columns.size();
-    return collector.collect(clusterer, rotation.problem, [&](std::uint32_t cell) {
-      return static_cast<int>(cell / all * width + (cell % all + width - first % width) % width);
-    });
   }
 
   static bool same(const Clusters& a, const Clusters& b) {

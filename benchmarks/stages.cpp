@@ -61,6 +61,7 @@ class StagedExtraction {
     latest_ = Clock::now();
     lisco::Parameters parameters;
     parameters.sensor = lisco::estimateSensor(columns, lasers, sensor, lisco::CellSource(cell_at));
+    parameters.keep_source_indices = false;
     parameters.expected_returns = columns * lasers;
     finish(kSensor);
     parameters.tolerance = static_cast<float>(problem.tolerance);
@@ -97,7 +98,11 @@ class StagedExtraction {
   void collect(const Problem& problem, Clusters& clusters) {
     pcl::detail::LiscoClusterWriter writer(clusterer_, problem.cloud->header, problem.min_size, problem.max_size,
                                            places_, clusters);
-    clusterer_.forEachRun(pcl::detail::LiscoRunAppender<decltype(writer)>{writer});
+    const auto point_at = [width = problem.cloud->width](std::size_t laser, std::size_t column) {
+      return static_cast<pcl::index_t>(laser * width + column);
+    };
+    clusterer_.forEachRun(pcl::detail::LiscoRunAppender<decltype(writer), decltype(point_at)>{writer, point_at},
+                          writer.acceptedSizes());
   }
 
   lisco::ColumnClusterer clusterer_;

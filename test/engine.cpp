@@ -106,18 +106,63 @@ SimdLevel::~SimdLevel() {
 
 namespace {
 
+/// Where a return was measured, and its subcluster.
+struct Place {
+  std::uint32_t laser, column, subcluster;
+  bool operator==(const Place& other) const {
+    return laser == other.laser && column == other.column && subcluster == other.subcluster;
+  }
+};
+
+template <typename Clusterer>
+std::vector<Place> placesOf(Clusterer& clusterer, const lisco::SizeRange& sizes = {}) {
+  std::vector<Place> places;
+  clusterer.forEachRun(
+      [&](std::uint32_t laser, std::uint32_t column, std::size_t count, std::uint32_t subcluster) {
+        for (std::uint32_t i = 0; i < count; ++i) places.push_back({laser, column + i, subcluster});
+      },
+      sizes);
+  return places;
+}
+
+/// Visits by place are those by source index, in the order of lasers and columns; those of some sizes leave out none
+/// of these.
+template <typename Clusterer>
+void expectSamePlaces(Clusterer& clusterer, const std::vector<std::uint32_t>& subclusters) {
+  std::vector<Place> places = placesOf(clusterer);
+  ASSERT_EQ(places.size(), subclusters.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    ASSERT_EQ(places[i].subcluster, subclusters[i]) << i;
+    if (i == 0) continue;
+    const Place& before = places[i - 1];
+    ASSERT_TRUE(before.laser < places[i].laser || (before.laser == places[i].laser && before.column < places[i].column))
+        << i;
+  }
+  const lisco::SizeRange sizes{2, static_cast<std::uint32_t>(places.size() / 2)};
+  const auto isOther = [&](const Place& place) {
+    const std::uint32_t size = clusterer.sizeOf(place.subcluster);
+    return size < sizes.min || size > sizes.max;
+  };
+  std::vector<Place> some = placesOf(clusterer, sizes);
+  for (auto* list : {&some, &places}) list->erase(std::remove_if(list->begin(), list->end(), isOther), list->end());
+  EXPECT_TRUE(some == places);
+}
+
 template <typename Clusterer>
 Clustering visitedBy(Clusterer& clusterer) {
   Clustering clusters(clusterer.subclusterCount());
   std::size_t returns = 0;
+  std::vector<std::uint32_t> subclusters;  // in the order of the visits
   clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster) {
     ASSERT_LT(subcluster, clusters.size());
+    subclusters.insert(subclusters.end(), count, subcluster);
     EXPECT_GT(count, 0U);
     std::vector<std::uint32_t>& members = clusters[subcluster].members;
     members.insert(members.end(), source_indices, source_indices + count);
     returns += count;
   });
   EXPECT_EQ(returns, clusterer.returnCount());
+  expectSamePlaces(clusterer, subclusters);
   for (std::uint32_t i = 0; i < clusters.size(); ++i) {
     EXPECT_FALSE(clusters[i].members.empty()) << "subcluster " << i << " holds no return";
     clusters[i].reported_size = clusterer.sizeOf(i);

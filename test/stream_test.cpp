@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -148,12 +149,45 @@ TEST(Stream, GivesTheSubclusterOfACell) {
     clusterer.forEachRun([&](const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster) {
       for (std::size_t i = 0; i < count; ++i) subclusters[source_indices[i]] = subcluster;
     });
+    clusterer.forEachRun([&](std::uint32_t laser, std::uint32_t column, std::size_t count, std::uint32_t subcluster) {
+      for (std::size_t i = 0; i < count; ++i)
+        ASSERT_EQ(subclusters[laser * scan.columns + column + i], subcluster)
+            << "laser " << laser << " from " << column;
+    });
     for (std::size_t laser = 0; laser < scan.lasers + 2; ++laser)
       for (std::size_t column = 0; column < scan.columns + 70; ++column)
         ASSERT_EQ(clusterer.subclusterAt(laser, column), laser < scan.lasers && column < scan.columns
                                                              ? subclusters[laser * scan.columns + column]
                                                              : lisco::ColumnClusterer::kNone)
             << "laser " << laser << ", column " << column;
+  });
+}
+
+TEST(Stream, VisitsPlacesWithoutSourceIndices) {
+  lisco::ColumnClusterer clusterer;
+  lisco::ColumnClusterer keeping;
+  forScans(7400, 200, [&](Random& random, const Scan& scan, float tolerance, const Setting& setting) {
+    lisco::Parameters parameters = withTolerance(setting, tolerance);
+    const Random state = random;
+    keeping.begin(parameters);
+    feed(keeping, random, scan);
+    keeping.update();
+    parameters.keep_source_indices = false;
+    random = state;
+    clusterer.begin(parameters);
+    feed(clusterer, random, scan);
+    clusterer.update();
+    std::vector<std::array<std::size_t, 4>> expected, actual;
+    const auto into = [](auto& runs) {
+      return [&runs](std::uint32_t laser, std::uint32_t column, std::size_t count, std::uint32_t subcluster) {
+        runs.push_back({laser, column, count, subcluster});
+      };
+    };
+    keeping.forEachRun(into(expected));
+    clusterer.forEachRun(into(actual));
+    ASSERT_EQ(actual, expected);
+    ASSERT_EQ(clusterer.subclusterAt(0, 0), keeping.subclusterAt(0, 0));
+    EXPECT_THROW(clusterer.forEachRun([](const std::uint32_t*, std::size_t, std::uint32_t) {}), std::logic_error);
   });
 }
 

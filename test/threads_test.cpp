@@ -79,6 +79,21 @@ struct ReturnVisit {
   }
 };
 
+/// The same by place, of a cloud of one laser.
+struct PlaceVisit {
+  ReturnVisit& visit;
+
+  void operator()(std::uint32_t laser, std::uint32_t column, std::size_t count, std::uint32_t subcluster) const {
+    EXPECT_EQ(laser, 0U);
+    for (std::uint32_t i = 0; i < count; ++i) visit.returns.push_back({column + i, subcluster});
+  }
+  void operator()(std::uint32_t laser, const std::uint32_t* columns, std::size_t count,
+                  const std::uint32_t* subclusters) const {
+    EXPECT_EQ(laser, 0U);
+    visit(columns, count, subclusters);
+  }
+};
+
 TEST(Visits, HandOnSingleReturnsTogether) {
   constexpr std::size_t kReturns = 5001;
   Random random(1);
@@ -103,6 +118,10 @@ TEST(Visits, HandOnSingleReturnsTogether) {
   EXPECT_EQ(one_by_one.returns.size(), kReturns);
   EXPECT_EQ(at_once.returns, one_by_one.returns);
   EXPECT_EQ(at_once.taken_at_once, kReturns);
+  ReturnVisit by_place;
+  clusterer.forEachRun(PlaceVisit{by_place});
+  EXPECT_EQ(by_place.returns, one_by_one.returns);
+  EXPECT_EQ(by_place.taken_at_once, kReturns);
 }
 
 // One object with changing numbers of threads, some of them more than the lasers.

@@ -26,7 +26,7 @@ class LISCO_EXPORT ClusterOrder {
   template <typename Clusterer>
   void assign(Clusterer& clusterer, std::size_t min_size, std::size_t max_size) {
     start(clusterer.subclusterCount());
-    clusterer.forEachRun([&](const std::uint32_t*, std::size_t, std::uint32_t subcluster) {
+    clusterer.forEachRun([&](std::uint32_t, std::uint32_t, std::size_t, std::uint32_t subcluster) {
       if (label_of_[subcluster] != kUnseen) return;
       label_of_[subcluster] = kNoCluster;
       const std::uint32_t size = clusterer.sizeOf(subcluster);

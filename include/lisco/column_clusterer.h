@@ -75,18 +75,22 @@ class LISCO_EXPORT ColumnClusterer {
 
   /// Calls visit(source_indices, count, subcluster) for all returns, in groups of the same subcluster, of one laser and
   /// of consecutive columns: laser by laser, and the returns of each in the order of their columns. After update().
-  /// If visit takes const std::uint32_t* subclusters, too, that receives groups of one return each, several at once.
+  /// Or calls visit(laser, column, count, subcluster), with the place of the first return: column counted from begin().
+  /// See RunVisitor for visits of several groups of one return each at once.
+  /// \param sizes groups of subclusters of other sizes may be left out, which saves time where these are many
+  /// \throws std::logic_error if visit takes source indices and Parameters::keep_source_indices is false
   template <typename Visit>
-  void forEachRun(Visit&& visit) {
+  void forEachRun(Visit&& visit, const SizeRange& sizes = {}) {
     const RunVisitor::WithoutFrom<Visit> visit_run{visit};
-    visitRuns(RunVisitor(visit_run), false);
+    visitRuns(RunVisitor(visit_run), sizes, false);
   }
 
-  /// The same by two threads at once, which meet in the middle: calls visit(from, source_indices, count, subcluster),
-  /// one with RunVisitor::From::kFirst from the first group on, the other with kLast from the last group backwards.
+  /// The same by two threads at once, which meet in the middle: calls visit(from, source_indices, count, subcluster), or
+  /// visit(from, laser, column, count, subcluster), one with RunVisitor::From::kFirst from the first group on, the other
+  /// with kLast from the last group backwards.
   template <typename Visit>
-  void forEachRunFromBothEnds(Visit&& visit) {
-    visitRuns(RunVisitor(visit), true);
+  void forEachRunFromBothEnds(Visit&& visit, const SizeRange& sizes = {}) {
+    visitRuns(RunVisitor(visit), sizes, true);
   }
 
   /// Number of threads that share the columns of the last rotation; 1 if there are few columns.
@@ -96,7 +100,7 @@ class LISCO_EXPORT ColumnClusterer {
 
  private:
   void receive(std::size_t columns, std::size_t lasers, const CellSource& cells);
-  void visitRuns(const RunVisitor& visit, bool from_both_ends);
+  void visitRuns(const RunVisitor& visit, const SizeRange& sizes, bool from_both_ends);
 
   class LISCO_HIDDEN Rotation;
   std::unique_ptr<Rotation> rotation_;
@@ -118,6 +122,8 @@ struct Parameters {
   /// the update () after it; 0: one for each core. No more are used than kMaxThreads, nor more than one for 64 columns.
   /// Columns that come one by one, or after these, are the work of one thread.
   std::size_t threads = 1;
+  /// False: forEachRun () gives the places of returns only, which takes less memory and time.
+  bool keep_source_indices = true;
 
   static constexpr std::size_t kMaxThreads = 256;  ///< of a rotation
 };

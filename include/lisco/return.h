@@ -92,11 +92,38 @@ class CellSource {
   void (*read_)(const void* context, std::size_t laser, std::size_t first, std::size_t count, const Destination& to);
 };
 
+/// Sizes of subclusters, in returns, from the least to the most.
+struct SizeRange {
+  std::uint32_t min = 0;
+  std::uint32_t max = std::numeric_limits<std::uint32_t>::max();
+};
+
 /// Returns of one subcluster, one laser and consecutive columns.
 struct Run {
-  std::uint32_t first_cell;  ///< where its source indices begin
+  std::uint32_t first_cell;  ///< of its cells, in the order in which they were read
   std::uint32_t count;       ///< number of returns
   std::uint32_t subcluster;  ///< 0..subclusterCount ()-1
+};
+
+/// The runs of a laser in a block of columns.
+struct RunBlock {
+  const Run* runs;
+  std::size_t count;                    ///< of runs
+  std::uint32_t laser;                  ///< 0, 1, ...
+  std::uint32_t first_column;           ///< of the block, 0, 1, ...
+  std::uint32_t first_cell;             ///< that of first_column
+  const std::uint32_t* source_indices;  ///< of all cells; nullptr: they are not kept
+
+  std::uint32_t columnOf(const Run& run) const { return first_column + (run.first_cell - first_cell); }
+};
+
+/// The same where each run is of one return.
+struct SingleRunBlock {
+  const std::uint32_t* subclusters;  ///< of each
+  std::size_t count;                 ///< of runs
+  std::uint32_t laser;
+  const std::uint32_t* columns;         ///< of each; only where RunVisitor::takesPlaces ()
+  const std::uint32_t* source_indices;  ///< of each; only elsewhere
 };
 
 /// Receives runs laser by laser, from the first on or from the last backwards: one function call per laser and block of
@@ -107,28 +134,39 @@ class RunVisitor {
   enum class From { kFirst, kLast };
 
   /// \param visit callable as void (From from, const std::uint32_t* source_indices, std::size_t count,
-  ///        std::uint32_t subcluster). If it is callable as void (From from, const std::uint32_t* source_indices,
-  ///        std::size_t count, const std::uint32_t* subclusters), too, that receives runs of one return each, several
-  ///        at once; from the last backwards, they are to be taken from the last on
+  ///        std::uint32_t subcluster), or with the place of the first return of a run, as void (From from,
+  ///        std::uint32_t laser, std::uint32_t column, std::size_t count, std::uint32_t subcluster). If it is callable
+  ///        as void (From from, const std::uint32_t* source_indices, std::size_t count,
+  ///        const std::uint32_t* subclusters), too, or with places as void (From from, std::uint32_t laser,
+  ///        const std::uint32_t* columns, std::size_t count, const std::uint32_t* subclusters), that receives runs of
+  ///        one return each, several at once; from the last backwards, they are to be taken from the last on
   template <typename Visit>
   explicit RunVisitor(Visit& visit)
       : context_(std::addressof(visit)),
-        visit_([](const void* context, From from, const Run* runs, std::size_t count,
-                  const std::uint32_t* source_indices) {
+        takes_places_(kTakesPlaces<Visit>),
+        visit_([](const void* context, From from, const RunBlock& block) {
           Visit& visit_run = *static_cast<Visit*>(const_cast<void*>(context));
-          forEach(from, count, [&](std::size_t i) {
-            const Run& run = runs[i];
-            visit_run(from, source_indices + run.first_cell, std::size_t{run.count}, run.subcluster);
+          forEach(from, block.count, [&](std::size_t i) {
+            const Run& run = block.runs[i];
+            if constexpr (kTakesPlaces<Visit>)
+              visit_run(from, block.laser, block.columnOf(run), std::size_t{run.count}, run.subcluster);
+            else
+              visit_run(from, block.source_indices + run.first_cell, std::size_t{run.count}, run.subcluster);
           });
         }),
-        visit_single_([](const void* context, From from, const std::uint32_t* subclusters, std::size_t count,
-                         const std::uint32_t* source_indices) {
+        visit_single_([](const void* context, From from, const SingleRunBlock& block) {
           Visit& visit_run = *static_cast<Visit*>(const_cast<void*>(context));
-          if constexpr (std::is_invocable_v<Visit&, From, const std::uint32_t*, std::size_t, const std::uint32_t*>)
-            visit_run(from, source_indices, count, subclusters);
+          constexpr std::size_t kOne = 1;
+          if constexpr (std::is_invocable_v<Visit&, From, std::uint32_t, Words, std::size_t, Words>)
+            visit_run(from, block.laser, block.columns, block.count, block.subclusters);
+          else if constexpr (std::is_invocable_v<Visit&, From, Words, std::size_t, Words>)
+            visit_run(from, block.source_indices, block.count, block.subclusters);
+          else if constexpr (kTakesPlaces<Visit>)
+            forEach(from, block.count,
+                    [&](std::size_t i) { visit_run(from, block.laser, block.columns[i], kOne, block.subclusters[i]); });
           else
-            forEach(from, count,
-                    [&](std::size_t i) { visit_run(from, source_indices + i, std::size_t{1}, subclusters[i]); });
+            forEach(from, block.count,
+                    [&](std::size_t i) { visit_run(from, block.source_indices + i, kOne, block.subclusters[i]); });
         }) {}
 
   /// A visit, as RunVisitor takes it, that leaves out From.
@@ -137,31 +175,27 @@ class RunVisitor {
   struct WithoutFrom {
     Visit& visit;  ///< which is called
 
-    /// Visits a run.
-    void operator()(From, const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster) const {
-      visit(source_indices, count, subcluster);
-    }
-    /// Visits several runs of one return each, if `visit` takes them at once.
-    template <typename Called = Visit, typename = std::enable_if_t<std::is_invocable_v<
-                                           Called&, const std::uint32_t*, std::size_t, const std::uint32_t*>>>
-    void operator()(From, const std::uint32_t* source_indices, std::size_t count,
-                    const std::uint32_t* subclusters) const {
-      visit(source_indices, count, subclusters);
+    /// Visits a run, or several at once: whatever `visit` takes.
+    template <typename... Arguments, typename = std::enable_if_t<std::is_invocable_v<Visit&, const Arguments&...>>>
+    void operator()(From, const Arguments&... arguments) const {
+      visit(arguments...);
     }
   };
 
-  /// Visits `count` runs, whose cells index `source_indices`.
-  void operator()(From from, const Run* runs, std::size_t count, const std::uint32_t* source_indices) const {
-    visit_(context_, from, runs, count, source_indices);
-  }
+  /// Whether it receives places instead of source indices.
+  bool takesPlaces() const { return takes_places_; }
 
-  /// Visits `count` runs of one return each, given by their subclusters.
-  void visitSingle(From from, const std::uint32_t* subclusters, std::size_t count,
-                   const std::uint32_t* source_indices) const {
-    visit_single_(context_, from, subclusters, count, source_indices);
-  }
+  /// Visits runs. Only one that takes places may be called without source indices.
+  void operator()(From from, const RunBlock& block) const { visit_(context_, from, block); }
+  /// Visits runs of one return each.
+  void operator()(From from, const SingleRunBlock& block) const { visit_single_(context_, from, block); }
 
  private:
+  using Words = const std::uint32_t*;
+  template <typename Visit>
+  static constexpr bool kTakesPlaces =
+      std::is_invocable_v<Visit&, From, std::uint32_t, std::uint32_t, std::size_t, std::uint32_t>;
+
   template <typename VisitAt>
   static void forEach(From from, std::size_t count, VisitAt&& visit_at) {
     if (from == From::kFirst)
@@ -171,10 +205,9 @@ class RunVisitor {
   }
 
   const void* context_;
-  void (*visit_)(const void* context, From from, const Run* runs, std::size_t count,
-                 const std::uint32_t* source_indices);
-  void (*visit_single_)(const void* context, From from, const std::uint32_t* subclusters, std::size_t count,
-                        const std::uint32_t* source_indices);
+  bool takes_places_;
+  void (*visit_)(const void* context, From from, const RunBlock& block);
+  void (*visit_single_)(const void* context, From from, const SingleRunBlock& block);
 };
 
 }  // namespace lisco

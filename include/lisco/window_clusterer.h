@@ -61,15 +61,16 @@ class LISCO_EXPORT WindowClusterer {
   std::uint32_t sizeOf(std::uint32_t subcluster) const { return sizes()[subcluster]; }
   const std::uint32_t* sizes() const;  ///< of all subclusters of the last window, until the next one ends
 
-  /// Visits all returns of the last window as ColumnClusterer::forEachRun does, until the next window ends.
+  /// Visits all returns of the last window as ColumnClusterer::forEachRun does, until the next window ends. Columns are
+  /// counted from the window's first.
   template <typename Visit>
-  void forEachRun(Visit&& visit) {
+  void forEachRun(Visit&& visit, const SizeRange& sizes = {}) {
     const RunVisitor::WithoutFrom<Visit> visit_run{visit};
-    visitRuns(RunVisitor(visit_run));
+    visitRuns(RunVisitor(visit_run), sizes);
   }
 
  private:
-  void visitRuns(const RunVisitor& visit);
+  void visitRuns(const RunVisitor& visit, const SizeRange& sizes);
 
   class LISCO_HIDDEN Window;
   std::unique_ptr<Window> window_;

@@ -15,6 +15,7 @@
 #include "core/near/voxel_sorter.h"
 #include "core/parallel.h"
 #include "core/partition.h"
+#include "core/run_selection.h"
 #include "core/runs.h"
 #include "core/simd.h"
 #include "core/unordered_returns.h"
@@ -42,7 +43,7 @@ class ColumnClusterer::Rotation {
   std::size_t returnCount() const;
   std::uint32_t subclusterAt(std::size_t laser, std::size_t column);
   std::size_t threadCount() const { return parts_.empty() ? 1 : parts_.size(); }
-  void visitRuns(const RunVisitor& visit, bool from_both_ends);
+  void visitRuns(const RunVisitor& visit, const SizeRange& sizes, bool from_both_ends);
 
  private:
   void divide(std::size_t columns, std::size_t lasers, const CellSource& cells);
@@ -458,11 +459,13 @@ void ColumnClusterer::Rotation::numberSubclusters() {
 void ColumnClusterer::Rotation::usePartitions(std::size_t count) {
   if (partitions_.size() < count) partitions_.resize(count);
   partition_count_ = count;
+  for (std::size_t i = 0; i < count; ++i) partitions_[i].runs.keeps_source_indices = parameters_.keep_source_indices;
 }
 
 /// Makes room for the runs of one of the partitions, which get equal shares of the returns expected.
 void ColumnClusterer::Rotation::reserveRuns(Partition& partition) {
-  partition.runs.source_index.reserve(parameters_.expected_returns / partition_count_);
+  if (parameters_.keep_source_indices)
+    partition.runs.source_index.reserve(parameters_.expected_returns / partition_count_);
 }
 
 // --- Results --------------------------------------------------------------------------------------------------------
@@ -479,14 +482,19 @@ void ColumnClusterer::Rotation::sortRuns() {
   is_sorted_ = true;
 }
 
-void ColumnClusterer::Rotation::visitRuns(const RunVisitor& visit, bool from_both_ends) {
+void ColumnClusterer::Rotation::visitRuns(const RunVisitor& visit, const SizeRange& sizes, bool from_both_ends) {
+  if (!visit.takesPlaces() && !parameters_.keep_source_indices)
+    throw std::logic_error("lisco::ColumnClusterer: source indices are not kept");
   if (is_unordered_) {
     unordered_.visit(sorter_, visit, from_both_ends);
     return;
   }
   sortRuns();
+  std::size_t run_count = 0;
+  for (std::size_t i = 0; i < partition_count_; ++i) run_count += runsOf(i).run_count;
+  const RunSelection selection(visit, sizes, sizes_.data(), sizes_.size(), run_count);
   const auto visitBlock = [&](RunVisitor::From from, std::size_t, const Runs& runs, const Runs::Block& block) {
-    visit(from, runs.runs.data() + block.first_run, block.count, runs.source_index.data());
+    selection.visit(from, runs.blockOf(block));
   };
   order_.forEachBlock(
       from_both_ends, [this](std::size_t i) -> const Runs& { return runsOf(i); }, visitBlock);
@@ -555,8 +563,8 @@ std::size_t ColumnClusterer::threadCount() const {
   return rotation_->threadCount();
 }
 
-void ColumnClusterer::visitRuns(const RunVisitor& visit, bool from_both_ends) {
-  if (rotation_->isUsable()) rotation_->visitRuns(visit, from_both_ends);
+void ColumnClusterer::visitRuns(const RunVisitor& visit, const SizeRange& sizes, bool from_both_ends) {
+  if (rotation_->isUsable()) rotation_->visitRuns(visit, sizes, from_both_ends);
 }
 
 }  // namespace lisco

@@ -38,28 +38,22 @@ std::size_t ClusterLabeller::labelAll(std::size_t count, const CellSource& cells
   if (count == 0) return 0;
   std::fill_n(labels, count, ClusterOrder::kNoCluster);
   const std::size_t columns = count / parameters.lasers;
-  const auto numbered_cells = [&](std::size_t laser, std::size_t first, std::size_t number,
-                                  const CellSource::Destination& to) {
-    cells.read(laser, first, number, to);
-    const auto first_point = static_cast<std::uint32_t>(laser * columns + first);
-    for (std::uint32_t i = 0; i < number; ++i) to.source_index[i] = first_point + i;
-  };
 
   Parameters engine;
   engine.tolerance = parameters.tolerance;
-  engine.sensor = estimateSensor(columns, parameters.lasers, parameters.origin, CellSource(numbered_cells));
+  engine.sensor = estimateSensor(columns, parameters.lasers, parameters.origin, cells);
   engine.expected_returns = count;
   engine.threads = parameters.threads;
+  engine.keep_source_indices = false;
   ColumnClusterer& clusterer = state_->clusterer;
   clusterer.begin(engine);
-  clusterer.addColumns(columns, parameters.lasers, numbered_cells);
+  clusterer.addColumns(columns, parameters.lasers, cells);
   clusterer.update();
 
   ClusterOrder& order = state_->order;
   order.assign(clusterer, parameters.min_size, parameters.max_size);
-  clusterer.forEachRun([&](const std::uint32_t* points, std::size_t size, std::uint32_t subcluster) {
-    const std::int32_t label = order.labelOf(subcluster);
-    for (std::size_t i = 0; i < size; ++i) labels[points[i]] = label;
+  clusterer.forEachRun([&](std::uint32_t laser, std::uint32_t column, std::size_t size, std::uint32_t subcluster) {
+    std::fill_n(labels + laser * columns + column, size, order.labelOf(subcluster));
   });
   return order.count();
 }

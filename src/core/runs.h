@@ -24,14 +24,26 @@ struct Runs {
     std::uint32_t count;
   };
 
-  std::vector<std::uint32_t> source_index;  ///< of each cell of the blocks with returns
-  GrowingArray<Run> runs;                   ///< Run::first_cell counts in source_index; the first run_count are used
+  bool keeps_source_indices = true;
+  std::vector<std::uint32_t> source_index;  ///< of each cell of the blocks with returns, if it is kept
+  std::size_t cell_count = 0;               ///< of these cells
+  GrowingArray<Run> runs;                   ///< Run::first_cell counts these cells; the first run_count are used
   std::size_t run_count = 0;
   std::vector<Block> blocks;
   std::size_t returns = 0;
 
-  /// Forgets all. Keeps its memory.
+  /// Forgets all but whether it keeps source indices. Keeps its memory.
   void clear();
+
+  /// The runs of one of the blocks.
+  RunBlock blockOf(const Block& block) const {
+    return {runs.data() + block.first_run,
+            block.count,
+            block.laser,
+            block.first_column,
+            block.first_cell,
+            keeps_source_indices ? source_index.data() : nullptr};
+  }
 
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   /// The run of a cell of a block, kNone if it is no return.

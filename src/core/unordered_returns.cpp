@@ -149,12 +149,17 @@ void UnorderedReturns::visit(const VoxelSorter& sorter, const RunVisitor& visit,
     const std::size_t first = numbered_[number].first + block.first_return;
     const std::uint32_t count = countBits(block.returns);
     std::uint32_t sets[RingBlock::kColumns];
-    std::uint32_t source_index[RingBlock::kColumns];
-    for (std::size_t i = 0; i < count; ++i) {
-      sets[i] = sorter.setOf(first + i);
-      source_index[i] = returns[i].element;
+    for (std::size_t i = 0; i < count; ++i) sets[i] = sorter.setOf(first + i);
+    std::uint32_t columns[RingBlock::kColumns];
+    std::uint32_t source_indices[RingBlock::kColumns];
+    if (visit.takesPlaces()) {
+      std::size_t i = 0;
+      forEachBit(block.returns,
+                 [&](std::size_t column) { columns[i++] = block.first_column + static_cast<std::uint32_t>(column); });
+    } else {
+      for (std::size_t i = 0; i < count; ++i) source_indices[i] = returns[i].element;
     }
-    visit.visitSingle(from, sets, count, source_index);
+    visit(from, SingleRunBlock{sets, count, block.laser, columns, source_indices});
   };
   order_.forEachBlock(from_both_ends, partAt, visitBlock);
 }

@@ -10,6 +10,7 @@
 #include "core/disjoint_sets.h"
 #include "core/laser_order.h"
 #include "core/partition.h"
+#include "core/run_selection.h"
 #include "core/runs.h"
 #include "core/simd.h"
 
@@ -26,7 +27,7 @@ class WindowClusterer::Window {
   std::size_t returnCount() const { return returns_; }
   std::size_t subclusterCount() const { return sizes_.size(); }
   const std::uint32_t* sizes() const { return sizes_.data(); }
-  void visitRuns(const RunVisitor& visit);
+  void visitRuns(const RunVisitor& visit, const SizeRange& sizes);
 
  private:
   /// A subcluster of an older pane and one of a newer pane that hold neighbours.
@@ -216,15 +217,20 @@ void WindowClusterer::Window::numberSubclusters() {
   }
 }
 
-void WindowClusterer::Window::visitRuns(const RunVisitor& visit) {
+void WindowClusterer::Window::visitRuns(const RunVisitor& visit, const SizeRange& sizes) {
   if (columns_ == 0) return;
   const auto runsOf = [this](std::size_t i) -> const Runs& { return pane(oldest_ + i).runs; };
+  std::size_t run_count = 0;
+  for (std::size_t i = 0; i < newest_ - oldest_; ++i) run_count += runsOf(i).run_count;
+  const RunSelection selection(visit, sizes, sizes_.data(), sizes_.size(), run_count);
   order_.sort(newest_ - oldest_, runsOf);
   order_.forEachBlock(false, runsOf, [&](RunVisitor::From from, std::size_t i, const Runs&, const Runs::Block& block) {
     Pane& own = pane(oldest_ + i);
     for (std::uint32_t run = block.first_run; run < block.first_run + block.count; ++run)
       own.runs.runs[run].subcluster = subcluster_of_element_[own.first_in_window + own.subcluster[run]];
-    visit(from, own.runs.runs.data() + block.first_run, block.count, own.runs.source_index.data());
+    RunBlock visited = own.runs.blockOf(block);
+    visited.first_column += static_cast<std::uint32_t>(i * parameters_.hop_columns);
+    selection.visit(from, visited);
   });
 }
 
@@ -263,8 +269,8 @@ const std::uint32_t* WindowClusterer::sizes() const {
   return window_->sizes();
 }
 
-void WindowClusterer::visitRuns(const RunVisitor& visit) {
-  if (window_->isUsable()) window_->visitRuns(visit);
+void WindowClusterer::visitRuns(const RunVisitor& visit, const SizeRange& sizes) {
+  if (window_->isUsable()) window_->visitRuns(visit, sizes);
 }
 
 }  // namespace lisco

@@ -17,6 +17,8 @@ class LiscoCloudClusterer::State {
  public:
   lisco::ColumnClusterer clusterer;
   lisco::SensorHints sensor;                       ///< estimated for the latest cloud
+  std::size_t columns = 0;                         ///< of that cloud
+  bool has_few_points = false;                     ///< of which few_points are selected
   std::vector<char> is_selected;                   ///< per point of the cloud; where many are selected
   Indices few_points;                              ///< ascending; where few are selected
   std::vector<std::uint32_t> subcluster_of_point;  ///< only where the order of the indices is needed
@@ -60,6 +62,8 @@ bool LiscoCloudClusterer::clusterPoints(const Layout& layout, const lisco::CellS
   const bool organized = !few && layout.height > 1 && layout.width * layout.height == layout.points;
   const std::size_t lasers = organized ? layout.height : 1;
   const std::size_t columns = (few ? few_points.size() : layout.points) / lasers;
+  state_->columns = columns;
+  state_->has_few_points = few;
   const auto cluster = [&](const auto& cells) {
     lisco::Parameters parameters;
     parameters.tolerance = tolerance;
@@ -68,6 +72,7 @@ bool LiscoCloudClusterer::clusterPoints(const Layout& layout, const lisco::CellS
     parameters.sensor = state_->sensor;
     parameters.expected_returns = columns * lasers;
     parameters.threads = threads;
+    parameters.keep_source_indices = false;
     state_->clusterer.begin(parameters);
     state_->clusterer.addColumns(columns, lasers, cells);
     state_->clusterer.update();
@@ -103,6 +108,22 @@ bool LiscoCloudClusterer::clusterPoints(const Layout& layout, const lisco::CellS
 
 void LiscoCloudClusterer::collect(const Indices* indices, const PCLHeader& header, uindex_t min_size, uindex_t max_size,
                                   std::vector<PointIndices>& clusters) {
+  const auto collect_points = [&](const auto& point_at) {
+    collectPoints(indices, header, min_size, max_size, point_at, clusters);
+  };
+  if (state_->has_few_points)
+    collect_points([points = state_->few_points.data()](std::size_t, std::size_t column) { return points[column]; });
+  else
+    collect_points([columns = state_->columns](std::size_t laser, std::size_t column) {
+      return static_cast<index_t>(laser * columns + column);
+    });
+}
+
+/** \brief collect () of a cloud whose point at each laser and column is given. */
+template <typename PointAt>
+void LiscoCloudClusterer::collectPoints(const Indices* indices, const PCLHeader& header, uindex_t min_size,
+                                        uindex_t max_size, const PointAt& point_at,
+                                        std::vector<PointIndices>& clusters) {
   lisco::ColumnClusterer& clusterer = state_->clusterer;
   std::vector<std::uint32_t>& subcluster_of_point = state_->subcluster_of_point;
   LiscoClusterWriter writer(clusterer, header, min_size, max_size, state_->places, clusters);
@@ -114,21 +135,22 @@ void LiscoCloudClusterer::collect(const Indices* indices, const PCLHeader& heade
     for (const auto& index : *indices) points = std::max(points, static_cast<std::uint32_t>(index) + 1);
     constexpr std::uint32_t kNone = lisco::ColumnClusterer::kNone;
     subcluster_of_point.assign(points, kNone);
-    clusterer.forEachRun([&](const std::uint32_t* cells, std::size_t count, std::uint32_t subcluster) {
-      for (std::size_t i = 0; i < count; ++i) subcluster_of_point[cells[i]] = subcluster;
+    clusterer.forEachRun([&](std::uint32_t laser, std::uint32_t column, std::size_t count, std::uint32_t subcluster) {
+      for (std::size_t i = 0; i < count; ++i)
+        subcluster_of_point[static_cast<std::size_t>(point_at(laser, column + i))] = subcluster;
     });
     for (const auto& index : *indices) {
       const std::uint32_t subcluster = subcluster_of_point[static_cast<std::size_t>(index)];
       if (subcluster != kNone) writer.place(subcluster);
     }
   }
-  const LiscoRunAppender<decltype(writer)> append{writer};
+  const LiscoRunAppender<decltype(writer), PointAt> append{writer, point_at};
   if (clusterer.threadCount() > 1) {
     writer.placeAll();
-    clusterer.forEachRunFromBothEnds(append);
+    clusterer.forEachRunFromBothEnds(append, writer.acceptedSizes());
     if (is_sorted) writer.orderByFirstPoints();
   } else {
-    clusterer.forEachRun(append);
+    clusterer.forEachRun(append, writer.acceptedSizes());
   }
 }
 

@@ -71,8 +71,18 @@ class Socket {
     return head;
   }
 
-  /// A message from the server. \return its kind (2: binary, 8: close) and bytes
+  /// A message from the server, after any pings, which it sends when it waits for long. \return its kind (2: binary,
+  /// 8: close) and bytes
   std::pair<int, std::string> receiveMessage() {
+    constexpr int kPing = 9;
+    for (;;) {
+      std::pair<int, std::string> message = receiveAnyMessage();
+      if (message.first != kPing) return message;
+    }
+  }
+
+ private:
+  std::pair<int, std::string> receiveAnyMessage() {
     const auto number = [this](std::size_t bytes) {
       std::size_t value = 0;
       for (const char c : receive(bytes)) value = value << 8U | static_cast<unsigned char>(c);
@@ -85,7 +95,6 @@ class Socket {
     return {static_cast<int>(first & 15U), receive(size)};
   }
 
- private:
   int descriptor_;
   std::string received_;
 };

@@ -77,6 +77,10 @@ class LISCO_EXPORT LiscoCloudClusterer {
   bool clusterPoints(const Layout& layout, const lisco::CellSource& points, const Indices* indices, float tolerance,
                      unsigned int threads, const char* caller);
 
+  template <typename PointAt>
+  void collectPoints(const Indices* indices, const PCLHeader& header, uindex_t min_size, uindex_t max_size,
+                     const PointAt& point_at, std::vector<PointIndices>& clusters);
+
   class State;
   std::unique_ptr<State> state_;
 };

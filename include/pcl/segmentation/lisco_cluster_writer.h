@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -43,7 +44,12 @@ class LiscoClusterWriter {
   /** \param[in] clusterer lisco::ColumnClusterer after update (), or lisco::WindowClusterer after a window */
   LiscoClusterWriter(const Clusterer& clusterer, const PCLHeader& header, uindex_t min_size, uindex_t max_size,
                      LiscoClusterPlaces& places, std::vector<PointIndices>& clusters)
-      : sizes_(clusterer.sizes()), header_(header), places_(places), clusters_(clusters), first_own_(clusters.size()) {
+      : accepted_{inWord(min_size), inWord(max_size)},
+        sizes_(clusterer.sizes()),
+        header_(header),
+        places_(places),
+        clusters_(clusters),
+        first_own_(clusters.size()) {
     const std::size_t count = clusterer.subclusterCount();
     places_.next.resize(count);
     for (std::size_t i = 0; i < count; ++i)
@@ -51,6 +57,9 @@ class LiscoClusterWriter {
   }
   LiscoClusterWriter(const LiscoClusterWriter&) = delete;
   LiscoClusterWriter& operator=(const LiscoClusterWriter&) = delete;
+
+  /** \brief The sizes accepted: points of subclusters of other sizes need not be appended. */
+  const lisco::SizeRange& acceptedSizes() const { return (accepted_); }
 
   /** \brief Gives the cluster of a subcluster the next place, unless it has one or its size is not accepted. */
   void place(std::uint32_t subcluster) {
@@ -119,6 +128,11 @@ class LiscoClusterWriter {
   /// Longest run of a size that is not accepted which is written there; longer ones are skipped by a branch.
   static constexpr std::size_t kMaxIgnored = 64;
 
+  /** \brief A size, of those that subclusters may have; larger ones become the largest. */
+  static std::uint32_t inWord(uindex_t size) {
+    return (static_cast<std::uint32_t>(std::min<uindex_t>(size, std::numeric_limits<std::uint32_t>::max())));
+  }
+
   /** \brief The place of points of sizes that are not accepted. */
   index_t* ignored(From from) { return (from == From::kFirst ? ignored_ : ignored_from_last_ + kMaxIgnored); }
 
@@ -173,6 +187,7 @@ class LiscoClusterWriter {
     return (clusters_.back().indices.data());
   }
 
+  const lisco::SizeRange accepted_;
   const std::uint32_t* const sizes_;  ///< of subclusters
   const PCLHeader& header_;
   LiscoClusterPlaces& places_;
@@ -182,22 +197,27 @@ class LiscoClusterWriter {
   const std::size_t first_own_;  ///< of the clusters, the first that this writer adds
 };
 
-/** \brief Appends what lisco::ColumnClusterer::forEachRun () visits; source indices are points. */
-template <typename Writer>
+/** \brief Appends what lisco::ColumnClusterer::forEachRun () visits, by place.
+ * \tparam PointAt callable as index_t (std::size_t laser, std::size_t column)
+ */
+template <typename Writer, typename PointAt>
 struct LiscoRunAppender {
   using From = lisco::RunVisitor::From;
 
   Writer& writer;
+  PointAt point_at;
 
-  void operator()(From from, const std::uint32_t* points, std::size_t count, std::uint32_t subcluster) const {
-    writer.append(from, subcluster, count, [points](std::size_t i) { return static_cast<index_t>(points[i]); });
+  void operator()(From from, std::uint32_t laser, std::uint32_t column, std::size_t count,
+                  std::uint32_t subcluster) const {
+    writer.append(from, subcluster, count, [&](std::size_t i) { return point_at(laser, column + i); });
   }
-  void operator()(From from, const std::uint32_t* points, std::size_t count, const std::uint32_t* subclusters) const {
-    writer.appendSingle(from, subclusters, count, [points](std::size_t i) { return static_cast<index_t>(points[i]); });
+  void operator()(From from, std::uint32_t laser, const std::uint32_t* columns, std::size_t count,
+                  const std::uint32_t* subclusters) const {
+    writer.appendSingle(from, subclusters, count, [&](std::size_t i) { return point_at(laser, columns[i]); });
   }
-  template <typename Subcluster>
-  void operator()(const std::uint32_t* points, std::size_t count, Subcluster subcluster) const {
-    (*this)(From::kFirst, points, count, subcluster);
+  template <typename Columns, typename Subclusters>
+  void operator()(std::uint32_t laser, Columns columns, std::size_t count, Subclusters subclusters) const {
+    (*this)(From::kFirst, laser, columns, count, subclusters);
   }
 };
 

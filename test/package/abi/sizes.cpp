@@ -45,8 +45,11 @@ int main() {
   PRINT(lisco::Parameters);
   PRINT(lisco::Return);
   PRINT(lisco::Run);
+  PRINT(lisco::RunBlock);
   PRINT(lisco::RunVisitor);
   PRINT(lisco::SensorHints);
+  PRINT(lisco::SingleRunBlock);
+  PRINT(lisco::SizeRange);
   PRINT(lisco::WindowClusterer);
   PRINT(lisco::WindowParameters);
   PRINT(pcl::LiscoClusterExtraction<pcl::PointXYZ>);

@@ -220,15 +220,14 @@ class LiscoReceivedColumns {
       clusters.clear();
       return;
     }
-    const std::uint64_t width = end_column - first_column;
+    const auto width = static_cast<std::size_t>(end_column - first_column);
     LiscoClusterWriter writer(clusterer, settings.getHeader(), settings.getMinClusterSize(),
                               settings.getMaxClusterSize(), places_, clusters);
-    clusterer.forEachRun([&](const std::uint32_t* ids, std::size_t count, std::uint32_t subcluster) {
-      const auto cell = store.cellOf(ids[0]);  // the others follow it in its row
-      const auto first = static_cast<index_t>(cell.row * width + (cell.column - first_column));
-      writer.append(lisco::RunVisitor::From::kFirst, subcluster, count,
-                    [first](std::size_t i) { return static_cast<index_t>(first + static_cast<index_t>(i)); });
-    });
+    const auto point_at = [width](std::size_t row, std::size_t column) {
+      return (static_cast<index_t>(row * width + column));
+    };
+    clusterer.forEachRun(LiscoRunAppender<decltype(writer), decltype(point_at)>{writer, point_at},
+                         writer.acceptedSizes());
     sortLiscoClusters(clusters);
   }
 

@@ -67,6 +67,7 @@ void pcl::LiscoStreamExtraction<PointT>::beginRotation() {
   parameters.tolerance = static_cast<float>(cluster_tolerance_);
   parameters.sensor = state_->hints;
   parameters.block_columns = block_columns_;
+  parameters.keep_source_indices = false;
   state_->clusterer.begin(parameters);
   state_->clear();
   state_->begun = true;
