@@ -85,9 +85,9 @@ class LISCO_EXPORT ColumnClusterer {
     visitRuns(RunVisitor(visit_run), sizes, false);
   }
 
-  /// The same by two threads at once, which meet in the middle: calls visit(from, source_indices, count, subcluster), or
-  /// visit(from, laser, column, count, subcluster), one with RunVisitor::From::kFirst from the first group on, the other
-  /// with kLast from the last group backwards.
+  /// The same by two threads at once, which meet in the middle: calls visit(from, source_indices, count, subcluster)
+  /// or visit(from, laser, column, count, subcluster), one with RunVisitor::From::kFirst from the first group on, the
+  /// other with kLast from the last group backwards.
   template <typename Visit>
   void forEachRunFromBothEnds(Visit&& visit, const SizeRange& sizes = {}) {
     visitRuns(RunVisitor(visit), sizes, true);

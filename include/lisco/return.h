@@ -92,10 +92,10 @@ class CellSource {
   void (*read_)(const void* context, std::size_t laser, std::size_t first, std::size_t count, const Destination& to);
 };
 
-/// Sizes of subclusters, in returns, from the least to the most.
+/// Sizes of subclusters, in returns.
 struct SizeRange {
-  std::uint32_t min = 0;
-  std::uint32_t max = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t min = 0;                                          ///< the least
+  std::uint32_t max = std::numeric_limits<std::uint32_t>::max();  ///< the largest
 };
 
 /// Returns of one subcluster, one laser and consecutive columns.
@@ -107,21 +107,22 @@ struct Run {
 
 /// The runs of a laser in a block of columns.
 struct RunBlock {
-  const Run* runs;
+  const Run* runs;                      ///< `count` of them, by column
   std::size_t count;                    ///< of runs
   std::uint32_t laser;                  ///< 0, 1, ...
   std::uint32_t first_column;           ///< of the block, 0, 1, ...
   std::uint32_t first_cell;             ///< that of first_column
-  const std::uint32_t* source_indices;  ///< of all cells; nullptr: they are not kept
+  const std::uint32_t* source_indices;  ///< by Run::first_cell; nullptr: they are not kept
 
+  /// The column of a run's first return.
   std::uint32_t columnOf(const Run& run) const { return first_column + (run.first_cell - first_cell); }
 };
 
-/// The same where each run is of one return.
+/// The runs of a laser in a block of columns, if each is of one return.
 struct SingleRunBlock {
-  const std::uint32_t* subclusters;  ///< of each
-  std::size_t count;                 ///< of runs
-  std::uint32_t laser;
+  const std::uint32_t* subclusters;     ///< of each, by column
+  std::size_t count;                    ///< of runs
+  std::uint32_t laser;                  ///< 0, 1, ...
   const std::uint32_t* columns;         ///< of each; only where RunVisitor::takesPlaces ()
   const std::uint32_t* source_indices;  ///< of each; only elsewhere
 };
