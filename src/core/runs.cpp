@@ -11,7 +11,7 @@ namespace lisco {
 
 void Runs::clear() {
   source_index.clear();
-  cell_count = run_count = 0;
+  run_count = 0;
   blocks.clear();
   returns = 0;
 }
@@ -19,11 +19,10 @@ void Runs::clear() {
 void Runs::add(const RingBlock& block, RingBlockInfo& info, std::size_t laser, std::uint32_t first_column,
                std::size_t columns, std::uint32_t first_element, DisjointSets& subclusters) {
   const auto first_run = static_cast<std::uint32_t>(run_count);
-  const auto first_cell = static_cast<std::uint32_t>(cell_count);
+  const auto first_cell = static_cast<std::uint32_t>(source_index.size());
   const std::uint32_t end_run = first_run + countBits(info.starts);
   subclusters.grow(first_element + end_run);
   runs.growInSteps(end_run);
-  cell_count += columns;
   if (keeps_source_indices) source_index.insert(source_index.end(), block.source_index, block.source_index + columns);
   returns += countBits(info.returns);
   std::uint32_t number = first_run;

@@ -26,8 +26,8 @@ struct Runs {
 
   bool keeps_source_indices = true;
   std::vector<std::uint32_t> source_index;  ///< of each cell of the blocks with returns, if it is kept
-  std::size_t cell_count = 0;               ///< of these cells
-  GrowingArray<Run> runs;                   ///< Run::first_cell counts these cells; the first run_count are used
+  /// Run::first_cell counts in source_index, or, if that is not kept, in the run's block; the first run_count are used.
+  GrowingArray<Run> runs;
   std::size_t run_count = 0;
   std::vector<Block> blocks;
   std::size_t returns = 0;
