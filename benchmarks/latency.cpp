@@ -176,11 +176,8 @@ class Collector {
     Clusters clusters;
     pcl::detail::LiscoClusterWriter writer(clusterer, problem.cloud->header, problem.min_size, problem.max_size,
                                            places_, clusters);
-    const auto point_at = [width](std::size_t laser, std::size_t column) {
-      return static_cast<pcl::index_t>(laser * width + column);
-    };
-    clusterer.forEachRun(pcl::detail::LiscoRunAppender<decltype(writer), decltype(point_at)>{writer, point_at},
-                         writer.acceptedSizes());
+    const pcl::detail::LiscoRowMajorIndex point_at{width};
+    clusterer.forEachRun(pcl::detail::LiscoRunAppender{writer, point_at}, writer.acceptedSizes());
     pcl::detail::sortLiscoClusters(clusters);
     return clusters;
   }

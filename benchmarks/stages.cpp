@@ -98,11 +98,8 @@ class StagedExtraction {
   void collect(const Problem& problem, Clusters& clusters) {
     pcl::detail::LiscoClusterWriter writer(clusterer_, problem.cloud->header, problem.min_size, problem.max_size,
                                            places_, clusters);
-    const auto point_at = [width = problem.cloud->width](std::size_t laser, std::size_t column) {
-      return static_cast<pcl::index_t>(laser * width + column);
-    };
-    clusterer_.forEachRun(pcl::detail::LiscoRunAppender<decltype(writer), decltype(point_at)>{writer, point_at},
-                          writer.acceptedSizes());
+    const pcl::detail::LiscoRowMajorIndex point_at{problem.cloud->width};
+    clusterer_.forEachRun(pcl::detail::LiscoRunAppender{writer, point_at}, writer.acceptedSizes());
   }
 
   lisco::ColumnClusterer clusterer_;

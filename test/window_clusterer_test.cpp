@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -64,6 +65,35 @@ TEST(WindowClusterer, WindowsOfLatticesAndExtremesAreExact) {
     const Scan extreme = extremeScan(random);
     expectEachWindowExact(clusterer, random, extreme, criticalTolerance(random, extreme));
     if (HasFailure()) return;
+  }
+}
+
+TEST(WindowClusterer, VisitsPlacesWithoutSourceIndices) {
+  lisco::WindowClusterer keeping, clusterer;
+  for (std::uint64_t seed = 5000; seed < 5000 + timesEffort(100); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const Scan scan = random.chance(0.2) ? randomScan(random, 1500) : randomScan(random);
+    const std::size_t hop = 1 + random.below(80);
+    lisco::WindowParameters parameters{criticalTolerance(random, scan), hop * (1 + random.below(4)), hop};
+    keeping.begin(parameters);
+    parameters.keep_source_indices = false;
+    clusterer.begin(parameters);
+    for (std::size_t column = 0; column < scan.columns; ++column) {
+      const bool ends = keeping.addColumn(scan.column(column).data(), scan.lasers);
+      ASSERT_EQ(clusterer.addColumn(scan.column(column).data(), scan.lasers), ends);
+      if (!ends) continue;
+      std::vector<std::array<std::size_t, 4>> expected, actual;
+      const auto into = [](auto& runs) {
+        return [&runs](std::uint32_t laser, std::uint32_t first, std::size_t count, std::uint32_t subcluster) {
+          runs.push_back({laser, first, count, subcluster});
+        };
+      };
+      keeping.forEachRun(into(expected));
+      clusterer.forEachRun(into(actual));
+      ASSERT_EQ(actual, expected);
+    }
+    EXPECT_THROW(clusterer.forEachRun([](const std::uint32_t*, std::size_t, std::uint32_t) {}), std::logic_error);
   }
 }
 

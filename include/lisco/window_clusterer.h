@@ -14,10 +14,11 @@ namespace lisco {
 
 /// How sliding windows are clustered.
 struct WindowParameters {
-  float tolerance = 0.0F;          ///< eps, metres; see Parameters::tolerance for 0, negative, NaN and infinite values
-  std::size_t window_columns = 0;  ///< W: number of columns of a window; a multiple of the hop
-  std::size_t hop_columns = 0;     ///< H: a window ends after every H columns
-  std::size_t lasers = 0;          ///< largest number of cells of a column; 0: any number
+  float tolerance = 0.0F;           ///< eps, metres; see Parameters::tolerance for 0, negative, NaN and infinite values
+  std::size_t window_columns = 0;   ///< W: number of columns of a window; a multiple of the hop
+  std::size_t hop_columns = 0;      ///< H: a window ends after every H columns
+  std::size_t lasers = 0;           ///< largest number of cells of a column; 0: any number
+  bool keep_source_indices = true;  ///< see Parameters::keep_source_indices
 };
 
 /// The clusters of the last W columns, every H columns, without clustering from scratch: each equals what
@@ -63,6 +64,7 @@ class LISCO_EXPORT WindowClusterer {
 
   /// Visits all returns of the last window as ColumnClusterer::forEachRun does, until the next window ends. Columns are
   /// counted from the window's first.
+  /// \throws std::logic_error if visit takes source indices and WindowParameters::keep_source_indices is false
   template <typename Visit>
   void forEachRun(Visit&& visit, const SizeRange& sizes = {}) {
     const RunVisitor::WithoutFrom<Visit> visit_run{visit};

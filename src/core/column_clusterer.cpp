@@ -490,14 +490,12 @@ void ColumnClusterer::Rotation::visitRuns(const RunVisitor& visit, const SizeRan
     return;
   }
   sortRuns();
-  std::size_t run_count = 0;
-  for (std::size_t i = 0; i < partition_count_; ++i) run_count += runsOf(i).run_count;
-  const RunSelection selection(visit, sizes, sizes_.data(), sizes_.size(), run_count);
+  const auto runs_of = [this](std::size_t i) -> const Runs& { return runsOf(i); };
+  const RunSelection selection(visit, sizes, sizes_, partition_count_, runs_of);
   const auto visitBlock = [&](RunVisitor::From from, std::size_t, const Runs& runs, const Runs::Block& block) {
     selection.visit(from, runs.blockOf(block));
   };
-  order_.forEachBlock(
-      from_both_ends, [this](std::size_t i) -> const Runs& { return runsOf(i); }, visitBlock);
+  order_.forEachBlock(from_both_ends, runs_of, visitBlock);
 }
 
 std::uint32_t ColumnClusterer::Rotation::subclusterAt(std::size_t laser, std::size_t column) {

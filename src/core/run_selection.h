@@ -4,8 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "core/ring_block.h"
+#include "core/runs.h"
 #include "lisco/return.h"
 
 namespace lisco {
@@ -15,11 +17,18 @@ class RunSelection {
  public:
   /// \param sizes wanted
   /// \param size_of the size of each subcluster
-  /// \param runs number of runs of all subclusters
-  RunSelection(const RunVisitor& visit, const SizeRange& sizes, const std::uint32_t* size_of, std::size_t subclusters,
-               std::size_t runs)
-      : visit_(visit), sizes_(sizes), size_of_(size_of), selects_(sizes.min > 1 && subclusters * kMaxRuns > runs) {}
+  /// \param partitions those that have the runs
+  /// \param runsOf callable as const Runs& (std::size_t partition)
+  template <typename RunsOf>
+  RunSelection(const RunVisitor& visit, const SizeRange& sizes, const std::vector<std::uint32_t>& size_of,
+               std::size_t partitions, RunsOf&& runsOf)
+      : visit_(visit), sizes_(sizes), size_of_(size_of.data()) {
+    std::size_t runs = 0;
+    for (std::size_t i = 0; i < partitions; ++i) runs += runsOf(i).run_count;
+    selects_ = sizes.min > 1 && size_of.size() * kMaxRuns > runs;
+  }
 
+  /// Visits a block's runs that are wanted; perhaps others, too.
   void visit(RunVisitor::From from, RunBlock block) const {
     if (!selects_) return visit_(from, block);
     Run selected[RingBlock::kColumns];

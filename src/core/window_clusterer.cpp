@@ -106,6 +106,7 @@ bool WindowClusterer::Window::addColumn(const Return* cells, std::size_t lasers)
 
 void WindowClusterer::Window::startPane() {
   pane(newest_).prepare(tolerance_, SensorHints(), 0);
+  pane(newest_).runs.keeps_source_indices = parameters_.keep_source_indices;
   pane(newest_).edges.clear();
   pane_columns_ = 0;
 }
@@ -218,12 +219,13 @@ void WindowClusterer::Window::numberSubclusters() {
 }
 
 void WindowClusterer::Window::visitRuns(const RunVisitor& visit, const SizeRange& sizes) {
+  if (!visit.takesPlaces() && !parameters_.keep_source_indices)
+    throw std::logic_error("lisco::WindowClusterer: source indices are not kept");
   if (columns_ == 0) return;
   const auto runsOf = [this](std::size_t i) -> const Runs& { return pane(oldest_ + i).runs; };
-  std::size_t run_count = 0;
-  for (std::size_t i = 0; i < newest_ - oldest_; ++i) run_count += runsOf(i).run_count;
-  const RunSelection selection(visit, sizes, sizes_.data(), sizes_.size(), run_count);
-  order_.sort(newest_ - oldest_, runsOf);
+  const std::size_t panes = newest_ - oldest_;
+  const RunSelection selection(visit, sizes, sizes_, panes, runsOf);
+  order_.sort(panes, runsOf);
   order_.forEachBlock(false, runsOf, [&](RunVisitor::From from, std::size_t i, const Runs&, const Runs::Block& block) {
     Pane& own = pane(oldest_ + i);
     for (std::uint32_t run = block.first_run; run < block.first_run + block.count; ++run)

@@ -114,9 +114,7 @@ void LiscoCloudClusterer::collect(const Indices* indices, const PCLHeader& heade
   if (state_->has_few_points)
     collect_points([points = state_->few_points.data()](std::size_t, std::size_t column) { return points[column]; });
   else
-    collect_points([columns = state_->columns](std::size_t laser, std::size_t column) {
-      return static_cast<index_t>(laser * columns + column);
-    });
+    collect_points(LiscoRowMajorIndex{state_->columns});
 }
 
 /** \brief collect () of a cloud whose point at each laser and column is given. */
@@ -144,7 +142,7 @@ void LiscoCloudClusterer::collectPoints(const Indices* indices, const PCLHeader&
       if (subcluster != kNone) writer.place(subcluster);
     }
   }
-  const LiscoRunAppender<decltype(writer), PointAt> append{writer, point_at};
+  const LiscoRunAppender append{writer, point_at};
   if (clusterer.threadCount() > 1) {
     writer.placeAll();
     clusterer.forEachRunFromBothEnds(append, writer.acceptedSizes());

@@ -197,6 +197,15 @@ class LiscoClusterWriter {
   const std::size_t first_own_;  ///< of the clusters, the first that this writer adds
 };
 
+/** \brief Indices of the points of a cloud stored row by row, a row per laser. */
+struct LiscoRowMajorIndex {
+  std::size_t width;  ///< of the cloud
+
+  index_t operator()(std::size_t laser, std::size_t column) const {
+    return (static_cast<index_t>(laser * width + column));
+  }
+};
+
 /** \brief Appends what lisco::ColumnClusterer::forEachRun () visits, by place.
  * \tparam PointAt callable as index_t (std::size_t laser, std::size_t column)
  */
@@ -220,5 +229,7 @@ struct LiscoRunAppender {
     (*this)(From::kFirst, laser, columns, count, subclusters);
   }
 };
+template <typename Writer, typename PointAt>
+LiscoRunAppender(Writer&, PointAt) -> LiscoRunAppender<Writer, PointAt>;
 
 }  // namespace pcl::detail

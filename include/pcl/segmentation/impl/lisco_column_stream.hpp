@@ -223,11 +223,7 @@ class LiscoReceivedColumns {
     const auto width = static_cast<std::size_t>(end_column - first_column);
     LiscoClusterWriter writer(clusterer, settings.getHeader(), settings.getMinClusterSize(),
                               settings.getMaxClusterSize(), places_, clusters);
-    const auto point_at = [width](std::size_t row, std::size_t column) {
-      return (static_cast<index_t>(row * width + column));
-    };
-    clusterer.forEachRun(LiscoRunAppender<decltype(writer), decltype(point_at)>{writer, point_at},
-                         writer.acceptedSizes());
+    clusterer.forEachRun(LiscoRunAppender{writer, LiscoRowMajorIndex{width}}, writer.acceptedSizes());
     sortLiscoClusters(clusters);
   }
 

@@ -48,7 +48,7 @@ bool pcl::LiscoWindowExtraction<PointT>::beginStream() {
   const bool begun = state_->begun;
   state_->begun = false;  // stays so after an exception, here and below
   try {
-    state_->clusterer.begin({static_cast<float>(cluster_tolerance_), window_size_, hop_, 0});
+    state_->clusterer.begin({static_cast<float>(cluster_tolerance_), window_size_, hop_, 0, false});
   } catch (const std::invalid_argument&) {
     PCL_ERROR("[pcl::LiscoWindowExtraction::beginStream] A window of %zu columns is no multiple of a hop of %zu.\n",
               window_size_, hop_);
