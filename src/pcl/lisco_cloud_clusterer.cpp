@@ -114,7 +114,9 @@ void LiscoCloudClusterer::collect(const Indices* indices, const PCLHeader& heade
   if (state_->has_few_points)
     collect_points([points = state_->few_points.data()](std::size_t, std::size_t column) { return points[column]; });
   else
-    collect_points(LiscoRowMajorIndex{state_->columns});
+    collect_points([index = LiscoRowMajorIndex{state_->columns}](std::size_t laser, std::size_t column) {
+      return index(laser, column);  // in a lambda: instances of named types would be exported
+    });
 }
 
 /** \brief collect () of a cloud whose point at each laser and column is given. */
