@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -52,6 +54,16 @@ Clustering clustersOf(lisco::ColumnClusterer& clusterer);
 
 /// The clusters of the last window, in order.
 Clustering clustersOf(lisco::WindowClusterer& clusterer);
+
+/// The laser, column, number of returns and subcluster of each run that a clusterer visits by place.
+template <typename Clusterer>
+std::vector<std::array<std::size_t, 4>> placesOf(Clusterer& clusterer) {
+  std::vector<std::array<std::size_t, 4>> places;
+  clusterer.forEachRun([&](std::uint32_t laser, std::uint32_t column, std::size_t count, std::uint32_t subcluster) {
+    places.push_back({laser, column, count, subcluster});
+  });
+  return places;
+}
 
 /// Clusters the scan with one setting.
 Clustering cluster(lisco::ColumnClusterer& clusterer, const Scan& scan, float tolerance, const Setting& setting);

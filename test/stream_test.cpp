@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -177,15 +176,7 @@ TEST(Stream, VisitsPlacesWithoutSourceIndices) {
     clusterer.begin(parameters);
     feed(clusterer, random, scan);
     clusterer.update();
-    std::vector<std::array<std::size_t, 4>> expected, actual;
-    const auto into = [](auto& runs) {
-      return [&runs](std::uint32_t laser, std::uint32_t column, std::size_t count, std::uint32_t subcluster) {
-        runs.push_back({laser, column, count, subcluster});
-      };
-    };
-    keeping.forEachRun(into(expected));
-    clusterer.forEachRun(into(actual));
-    ASSERT_EQ(actual, expected);
+    ASSERT_EQ(placesOf(clusterer), placesOf(keeping));
     ASSERT_EQ(clusterer.subclusterAt(0, 0), keeping.subclusterAt(0, 0));
     EXPECT_THROW(clusterer.forEachRun([](const std::uint32_t*, std::size_t, std::uint32_t) {}), std::logic_error);
   });

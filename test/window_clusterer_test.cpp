@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -83,15 +82,7 @@ TEST(WindowClusterer, VisitsPlacesWithoutSourceIndices) {
       const bool ends = keeping.addColumn(scan.column(column).data(), scan.lasers);
       ASSERT_EQ(clusterer.addColumn(scan.column(column).data(), scan.lasers), ends);
       if (!ends) continue;
-      std::vector<std::array<std::size_t, 4>> expected, actual;
-      const auto into = [](auto& runs) {
-        return [&runs](std::uint32_t laser, std::uint32_t first, std::size_t count, std::uint32_t subcluster) {
-          runs.push_back({laser, first, count, subcluster});
-        };
-      };
-      keeping.forEachRun(into(expected));
-      clusterer.forEachRun(into(actual));
-      ASSERT_EQ(actual, expected);
+      ASSERT_EQ(placesOf(clusterer), placesOf(keeping));
     }
     EXPECT_THROW(clusterer.forEachRun([](const std::uint32_t*, std::size_t, std::uint32_t) {}), std::logic_error);
   }
