@@ -554,6 +554,27 @@ TEST(VoxelSorter, LinksSlabsWithEachOther) {
     }
 }
 
+// Lines across the parts of threads, which lie side by side along the shorter side, in the order of threads or reversed.
+TEST(VoxelSorter, LinksPartsThatLieSideBySide) {
+  lisco::VoxelSorter sorter;
+  for (std::size_t parts = 2; parts <= 4; ++parts)
+    for (const float sign : {1.0F, -1.0F}) {
+      Random random(parts);
+      std::vector<Point> points;
+      const double length = 40 * static_cast<double>(parts);
+      const double width = 25 * static_cast<double>(parts);
+      for (std::size_t line = 0; line < 12; ++line) {
+        const double x = line == 0 ? 0 : line == 1 ? length : random.between(0, length);
+        for (double y = 0; y < width; y += random.between(0.9, 1.01))
+          points.push_back({static_cast<float>(x), sign * static_cast<float>(y), 1});
+      }
+      std::sort(points.begin(), points.end(), [&](const Point& a, const Point& b) { return sign * a.y < sign * b.y; });
+      std::vector<std::size_t> part_ends;
+      for (std::size_t part = 1; part <= parts; ++part) part_ends.push_back(points.size() * part / parts);
+      EXPECT_TRUE(expectTrueSets(sorter, cloudOf(points, 1.0F, part_ends)));
+    }
+}
+
 // Neighbours of random sets in all slabs: threads join the same sets at the same time.
 TEST(VoxelSorter, LosesNoJoinOfAnotherThread) {
   constexpr std::size_t kSets = 4000;

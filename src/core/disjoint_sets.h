@@ -45,6 +45,7 @@ class DisjointSets {
     std::uint32_t parent = parentOf(element);
     while (parent != element) {
       const std::uint32_t grandparent = parentOf(parent);
+      if (grandparent == parent) return parent;  // without a store, which would take the cache line from other threads
       __atomic_store_n(&parents_[element], grandparent, __ATOMIC_RELAXED);
       element = parent;
       parent = grandparent;

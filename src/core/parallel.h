@@ -7,6 +7,9 @@
 
 namespace lisco {
 
+/// Bytes between what different threads write, so that they exchange no cache lines: two, as processors fetch pairs.
+constexpr std::size_t kSeparate = 128;
+
 /// One thread for each core.
 std::size_t allThreads();
 

@@ -13,6 +13,7 @@
 #include "core/near/voxel_grid.h"
 #include "core/near/voxel_linker.h"
 #include "core/neighbour.h"
+#include "core/parallel.h"
 #include "core/ring_block.h"
 #include "core/runs.h"
 #include "lisco/return.h"
@@ -22,7 +23,7 @@ namespace lisco {
 
 /// Consecutive columns that are read and linked together: a thread's part of a rotation, or a stream's pane. Linking
 /// with other partitions comes later. Run i is element first_element + i of a forest of subclusters.
-class Partition {
+class alignas(kSeparate) Partition {
  public:
   /// Starts without columns. Keeps its memory.
   /// \param hints if steps_per_turn is 0, all returns are near

@@ -39,6 +39,10 @@ inline constexpr double kMinSlices = 32;
 inline constexpr double kMaxVoxelNumber = 2147480000.0;
 /// Work of a fragment beyond that of its returns, in returns: for dividing it among threads (threads).
 inline constexpr std::uint32_t kWorkOfFragment = 2;
+/// Side of the box, in voxels for each thread, from which on threads may share out planes across it: fewer planes divide
+/// the work less evenly. How much less their parts must overlap along it, of what they could (threads).
+inline constexpr double kMinSharedSide = 32;
+inline constexpr double kMinOverlapGain = 0.25;
 /// Single returns of a brick that are compared with each other instead of by voxels: one vector, at most.
 inline constexpr std::size_t kFewReturns = 16;
 /// Fragments between a prefetch and its use, and readable behind the last: measured on shuffled clouds, flat from 16 to

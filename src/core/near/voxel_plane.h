@@ -15,6 +15,7 @@
 #include "core/near/near_returns.h"
 #include "core/near/neighbourhood.h"
 #include "core/neighbour.h"
+#include "core/parallel.h"
 
 namespace lisco {
 
@@ -117,7 +118,7 @@ class BoxLanes {
 };
 
 /// The voxels of a plane of bricks, ordered by brick and voxel, each with the box around its returns.
-struct VoxelPlane {
+struct alignas(kSeparate) VoxelPlane {
   static constexpr std::uint32_t kSeveral = ~std::uint32_t{0};
   static constexpr std::uint32_t kInItems = std::uint32_t{1} << 31;  ///< bit of `place`
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "core/bits.h"
@@ -175,6 +176,17 @@ std::size_t axisOfSlices(const Box& box, const Tolerance& tolerance) {
   return found;
 }
 
+/// How far the boxes of some parts overlap along an axis: 0 if they lie side by side, 1 for each but one if all span the
+/// whole.
+double overlapAlong(std::size_t axis, const std::vector<Box>& parts, const Box& all) {
+  const auto lengthOf = [axis](const Box& box) {
+    return static_cast<double>(box.hi[axis]) - static_cast<double>(box.lo[axis]);
+  };
+  double sum = 0;
+  for (const Box& box : parts) sum += lengthOf(box);
+  return sum / lengthOf(all) - 1;
+}
+
 unsigned bitsFor(std::uint64_t values) {
   unsigned bits = 1;
   while (values >> bits != 0) ++bits;
@@ -216,15 +228,16 @@ bool VoxelSorter::sortFragments(const Tolerance& tolerance) {
   if (!chooseNumbering(tolerance)) return false;
   cutFragments();
   divide();
+  assignSlabs();
   if (planes_.size() < 2 * slabs_.size()) planes_.resize(2 * slabs_.size());
-  inParallel(slabs_.size(), [&](std::size_t slab) { sort(slabs_[slab]); });
+  inParallel(slabs_.size(), [&](std::size_t thread) { sort(slabs_[slab_of_[thread]]); });
   std::fill_n(&items_[slabs_.back().end], kPrefetch, 0);
   return true;
 }
 
 void VoxelSorter::linkSlabs(const Tolerance& tolerance, DisjointSets& subclusters) {
   subclusters.share(slabs_.size() > 1);
-  inParallel(slabs_.size(), [&](std::size_t slab) { linkSlab(slab, tolerance, subclusters); });
+  inParallel(slabs_.size(), [&](std::size_t thread) { linkSlab(slab_of_[thread], tolerance, subclusters); });
   subclusters.share(false);
 }
 
@@ -264,6 +277,21 @@ Box VoxelSorter::boxOfAll() {
   return all;
 }
 
+/// Puts the axes into the order of the sides of the box, with a sliced axis last. Several threads take the middle axis
+/// as the major one if their parts overlap less along it: what others have read comes from other caches.
+/// \param sides of the box, in voxels
+void VoxelSorter::orderAxes(const Box& all, const double (&sides)[kAxes], std::size_t sliced) {
+  std::size_t* const axes = numbering_.axis;
+  std::iota(axes, axes + kAxes, std::size_t{0});
+  if (sliced < kAxes) std::swap(axes[sliced], axes[kAxes - 1]);
+  std::sort(axes, axes + (sliced < kAxes ? kAxes - 1 : kAxes),
+            [&](std::size_t a, std::size_t b) { return sides[a] < sides[b]; });
+  const std::size_t parts = part_boxes_.size();
+  if (sliced < kAxes || parts == 1 || sides[axes[1]] < kMinSharedSide * static_cast<double>(parts)) return;
+  const double gain = overlapAlong(axes[2], part_boxes_, all) - overlapAlong(axes[1], part_boxes_, all);
+  if (gain > kMinOverlapGain * static_cast<double>(parts - 1)) std::swap(axes[1], axes[2]);
+}
+
 /// Chooses the voxels, the axes and the bits of the keys.
 bool VoxelSorter::chooseNumbering(const Tolerance& tolerance) {
   if (tolerance.reach() < kMinSortedTolerance || tolerance.reach() > kMaxSortedTolerance) return false;
@@ -283,12 +311,8 @@ bool VoxelSorter::chooseNumbering(const Tolerance& tolerance) {
         1 / (axis == sliced ? static_cast<double>(leastStep(all.lo[axis], all.hi[axis])) : voxel);
     sides[axis] = (hi - lo) * numbering_.per_metre[axis];
     if (!(sides[axis] < kMaxVoxelNumber)) return false;
-    numbering_.axis[axis] = axis;
   }
-  // The sliced axis comes last.
-  if (numbering_.has_slices) std::swap(numbering_.axis[sliced], numbering_.axis[kAxes - 1]);
-  std::sort(numbering_.axis, numbering_.axis + (numbering_.has_slices ? kAxes - 1 : kAxes),
-            [&](std::size_t a, std::size_t b) { return sides[a] < sides[b]; });
+  orderAxes(all, sides, sliced);
   const auto bitsAlong = [&](std::size_t i) {
     const auto last = static_cast<std::uint64_t>(sides[numbering_.axis[i]]);
     return bitsFor((last >> numbering_.voxel_bits[i]) + 3);
@@ -317,6 +341,19 @@ void VoxelSorter::cutFragments() {
     scratch_.growInSteps(part_sizes_[0] + kPrefetch);
   else
     scratch_.grow(size + kPrefetch);
+}
+
+/// Assigns each slab to the thread that has read most of it, about: both are in order along the major axis.
+void VoxelSorter::assignSlabs() {
+  thread_of_.resize(slabs_.size());
+  slab_of_.resize(slabs_.size());
+  std::iota(thread_of_.begin(), thread_of_.end(), std::size_t{0});
+  const auto centreOf = [&](std::size_t part) {
+    return part_boxes_[part].lo[numbering_.axis[2]] + part_boxes_[part].hi[numbering_.axis[2]];
+  };
+  std::sort(thread_of_.begin(), thread_of_.end(),
+            [&](std::size_t a, std::size_t b) { return centreOf(a) < centreOf(b); });
+  for (std::size_t slab = 0; slab < slabs_.size(); ++slab) slab_of_[thread_of_[slab]] = slab;
 }
 
 /// Moves the fragments of each slab of planes together: slabs of about equal work, one for each part.

@@ -11,11 +11,13 @@
 #include "core/near/near_returns.h"
 #include "core/near/voxel_plane.h"
 #include "core/neighbour.h"
+#include "core/parallel.h"
 
 namespace lisco {
 
 /// How voxels are numbered: from a corner of the box around all returns, in double, so that returns of the same number
-/// are neighbours and neighbours differ by 2 at most along each axis. The longest side of the box is the major axis.
+/// are neighbours and neighbours differ by 2 at most along each axis. The longest side of the box is the major axis, or
+/// one along which threads have read returns beside each other.
 ///
 /// Far from the origin, as in map coordinates, floats are so coarse that unlike coordinates along an axis may be eps
 /// apart. The returns of one coordinate are a *slice* then: neighbours lie in the same one, and differ along two axes
@@ -35,7 +37,7 @@ struct VoxelNumbering {
 /// The returns of a run in a voxel are a *fragment*. Fragments are sorted by key (radix sort), so that the returns of a
 /// voxel, of a brick of 4 x 4 x 4 voxels (8 x 4 in a slice), and of a plane of bricks across the major axis lie side by
 /// side. Each plane is linked within and, unless it is a slice, with the plane before. Each thread links a slab of
-/// consecutive planes.
+/// consecutive planes, where possible of the returns that it has read itself.
 class VoxelSorter {
  public:
   /// Joins all neighbours among some returns.
@@ -59,7 +61,7 @@ class VoxelSorter {
 
  private:
   /// Fragments of consecutive planes, the work of one thread.
-  struct Slab {
+  struct alignas(kSeparate) Slab {
     std::size_t begin, end;  ///< among the sorted fragments
     std::size_t voxels = 0;  ///< of single returns: number of them; voxel i is element begin + i
   };
@@ -77,6 +79,8 @@ class VoxelSorter {
   bool sortFragments(const Tolerance& tolerance);
   bool chooseNumbering(const Tolerance& tolerance);
   Box boxOfAll();
+  void orderAxes(const Box& all, const double (&sides)[3], std::size_t sliced);
+  void assignSlabs();
   void cutFragments();
   void divide();
   void sort(const Slab& slab);
@@ -102,7 +106,9 @@ class VoxelSorter {
   };
   std::vector<Planes> histogram_;  ///< of groups of planes, of each part
   std::vector<Slab> slabs_;
-  std::vector<VoxelPlane> planes_;  ///< two for each slab
+  std::vector<std::size_t> slab_of_;    ///< by thread
+  std::vector<std::size_t> thread_of_;  ///< by slab
+  std::vector<VoxelPlane> planes_;      ///< two for each slab
   // Of single returns, whose voxels are elements:
   DisjointSets voxels_;
   GrowingArray<std::uint8_t> begins_voxel_;  ///< whether each return, as sorted, begins a voxel; and behind the last
