@@ -120,7 +120,7 @@ TEST(Allocations, NoneForARotationLikeTheLastOne) {
   }
 }
 
-// Shares follow the work of the last rotation: they are settled in the third one.
+// Shares follow the work of the last rotation, and threads' times in the 4th, 12th and 28th one, then in every 16th.
 TEST(Allocations, NoneByThreadsWithSettledShares) {
   const auto columns = oneTurn();
   lisco::ColumnClusterer clusterer;
@@ -130,6 +130,12 @@ TEST(Allocations, NoneByThreadsWithSettledShares) {
   parameters.sensor.elevation_step = 0.03F;
   for (const std::size_t threads : {2, 3}) {
     parameters.threads = threads;
+    for (int turn = 0; turn < 30; ++turn) {
+      clusterer.begin(parameters);
+      clusterer.addColumns(kSteps, kLasers,
+                           [&](std::size_t laser, std::size_t column) { return columns[column][laser]; });
+      clusterer.update();
+    }
     EXPECT_EQ(allocationsOf(8,
                             [&] {
                               clusterer.begin(parameters);

@@ -11,6 +11,7 @@
 
 #include "core/block_scheduler.h"
 #include "core/load_balancer.h"
+#include "core/work_shares.h"
 #include "random.h"
 
 namespace lisco_test {
@@ -147,6 +148,72 @@ TEST(LoadBalancer, FollowsTheReturnsOfTheFirstRotation) {
       cut(balancer, 1600, 64, cell_at, 2)[0].end;  // a return weighs five times as much as an empty cell
   EXPECT_GT(border, 250U);
   EXPECT_LT(border, 450U);
+}
+
+// --- WorkShares -----------------------------------------------------------------------------------------------------
+
+/// Rotations of some threads, which take so many seconds for all of the work.
+void rotate(lisco::WorkShares& shares, const std::vector<double>& seconds, int rotations) {
+  for (int rotation = 0; rotation < rotations; ++rotation) {
+    shares.begin(seconds.size());
+    for (std::size_t i = 0; i < seconds.size(); ++i) shares.record(i, seconds[i] * shares.of(i));
+  }
+  shares.begin(seconds.size());
+}
+
+TEST(WorkShares, MakeAllThreadsTakeAsLong) {
+  lisco::WorkShares shares;
+  rotate(shares, {1, 1.5, 1.2}, 4);
+  EXPECT_NEAR(shares.of(0), 0.4, 1e-9);
+  EXPECT_NEAR(shares.of(1), 0.4 / 1.5, 1e-9);
+  EXPECT_NEAR(shares.of(2), 0.4 / 1.2, 1e-9);
+  rotate(shares, {1, 2, 1}, 100);
+  EXPECT_NEAR(shares.of(0), 0.4, 0.02) << "other times";
+  shares.begin(2);
+  EXPECT_EQ(shares.of(0), 0.5) << "other threads";
+}
+
+TEST(WorkShares, ChangeSeldom) {
+  lisco::WorkShares shares;
+  int changes = 0;
+  double before = 0.5;
+  for (int rotation = 0; rotation < 4 + 8 + 10 * 16; ++rotation) {
+    shares.begin(2);
+    changes += shares.of(0) != before;
+    before = shares.of(0);
+    const double drift = 1 + 0.02 * rotation;
+    shares.record(0, drift * shares.of(0));
+    shares.record(1, shares.of(1));
+  }
+  EXPECT_GT(changes, 5);
+  EXPECT_LE(changes, 12);
+}
+
+TEST(WorkShares, IgnoreDisturbedRotations) {
+  lisco::WorkShares shares;
+  Random random(1);
+  for (int rotation = 0; rotation < 200; ++rotation) {
+    shares.begin(2);
+    EXPECT_EQ(shares.of(0), 0.5);
+    // The other thread of a machine waits for its turn, in every second rotation.
+    for (const std::size_t thread : {0U, 1U}) shares.record(thread, rotation % 2 == 0 ? 1 : 1 + random.between(0, 9));
+  }
+}
+
+TEST(WorkShares, IgnoreRotationsWithoutWork) {
+  lisco::WorkShares shares;
+  for (int rotation = 0; rotation < 200; ++rotation) {
+    shares.begin(2);
+    EXPECT_EQ(shares.of(0), 0.5);
+    if (rotation % 3 == 0) shares.record(0, 1);
+  }
+}
+
+TEST(WorkShares, LeaveEachThreadSomeWork) {
+  lisco::WorkShares shares;
+  rotate(shares, {1000, 1, 1, 1}, 200);
+  EXPECT_GE(shares.of(0), 1.0 / 16);
+  EXPECT_NEAR(shares.of(0) + shares.of(1) + shares.of(2) + shares.of(3), 1, 1e-9);
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ constexpr double kSqrt3 = 1.7320508075688772;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr std::size_t kMaxParts = 8;
+constexpr std::size_t kShared = 0;  ///< returns from which on threads share the work
 
 using Position = std::array<double, 3>;
 
@@ -434,9 +435,10 @@ void cutIntoParts(Random& random, Cloud& cloud) {
 
 class VoxelSorterClouds : public testing::TestWithParam<Kind> {};
 
-// One sorter for all: what is left in it of one cloud does not matter for the next.
+// Two sorters for all, one with threads: what is left in them of one cloud does not matter for the next.
 TEST_P(VoxelSorterClouds, AreLinkedAsByBruteForce) {
-  lisco::VoxelSorter sorter;
+  lisco::VoxelSorter shared(kShared);
+  lisco::VoxelSorter alone;
   std::uint64_t sorted = 0;
   const std::uint64_t count = timesEffort(300);
   for (std::uint64_t seed = 1; seed <= count; ++seed) {
@@ -448,7 +450,7 @@ TEST_P(VoxelSorterClouds, AreLinkedAsByBruteForce) {
     cutIntoRuns(random, cloud);
     cutIntoParts(random, cloud);
     const SimdLevel level(levels()[seed % levels().size()]);
-    sorted += expectTrueSets(sorter, cloud) ? 1 : 0;
+    sorted += expectTrueSets(seed % 3 == 0 ? alone : shared, cloud) ? 1 : 0;
     if (HasFailure()) return;
   }
   EXPECT_GE(static_cast<double>(sorted), GetParam().sorted * static_cast<double>(count));
@@ -477,7 +479,7 @@ Cloud cloudOf(const std::vector<Point>& points, float tolerance, std::vector<std
 }
 
 TEST(VoxelSorter, JoinsOnlyBelowTheTolerance) {
-  lisco::VoxelSorter sorter;
+  lisco::VoxelSorter sorter(kShared);
   const auto expectForAll = [&](const std::vector<std::size_t>& part_ends) {
     for (const float distance : {0.5F, std::nextafter(0.5F, 0.0F), std::nextafter(0.5F, 1.0F)})
       for (const Point& by : {Point{distance, 0, 0}, Point{0, distance, 0}, Point{0, 0, distance}})
@@ -496,7 +498,7 @@ TEST(VoxelSorter, JoinsOnlyBelowTheTolerance) {
 }
 
 TEST(VoxelSorter, DoesNothingWithoutReturnsOrTolerance) {
-  lisco::VoxelSorter sorter;
+  lisco::VoxelSorter sorter(kShared);
   EXPECT_TRUE(expectTrueSets(sorter, cloudOf({}, 0.5F, {})));
   EXPECT_TRUE(expectTrueSets(sorter, cloudOf({}, 0.5F, {0, 0, 0})));
   for (const float tolerance : {0.0F, kNan, 1e-30F})
@@ -504,7 +506,7 @@ TEST(VoxelSorter, DoesNothingWithoutReturnsOrTolerance) {
 }
 
 TEST(VoxelSorter, RefusesWhatCannotBeNumbered) {
-  lisco::VoxelSorter sorter;
+  lisco::VoxelSorter sorter(kShared);
   for (const float tolerance : {1e-19F, 1e19F, kInfinity, -kInfinity, 3e38F})
     EXPECT_FALSE(expectTrueSets(sorter, cloudOf({{1, 1, 1}, {1, 1, 1}}, tolerance, {1, 2}))) << tolerance;
   EXPECT_FALSE(expectTrueSets(sorter, cloudOf({{-3e38F, 0, 0}, {3e38F, 0, 0}}, 1.0F, {2})));
@@ -514,7 +516,7 @@ TEST(VoxelSorter, RefusesWhatCannotBeNumbered) {
 
 // Each pair of voxels at most two apart, at any place of their bricks.
 TEST(VoxelSorter, LinksAllVoxelsAround) {
-  lisco::VoxelSorter sorter;
+  lisco::VoxelSorter sorter(kShared);
   const float tolerance = 1.0F;
   const double side = sideOf(cloudOf({}, tolerance, {}));
   const auto at = [&](std::size_t number, double within) {
@@ -541,7 +543,7 @@ TEST(VoxelSorter, LinksAllVoxelsAround) {
 
 // A chain along the major axis, across all slabs.
 TEST(VoxelSorter, LinksSlabsWithEachOther) {
-  lisco::VoxelSorter sorter;
+  lisco::VoxelSorter sorter(kShared);
   for (std::size_t parts = 1; parts <= kMaxParts; ++parts)
     for (const double step : {0.3, 0.9, 0.999, 1.001}) {
       std::vector<Point> points;
@@ -556,7 +558,7 @@ TEST(VoxelSorter, LinksSlabsWithEachOther) {
 
 // Lines across the parts of threads, which lie side by side along the shorter side, in the order of threads or reversed.
 TEST(VoxelSorter, LinksPartsThatLieSideBySide) {
-  lisco::VoxelSorter sorter;
+  lisco::VoxelSorter sorter(kShared);
   for (std::size_t parts = 2; parts <= 4; ++parts)
     for (const float sign : {1.0F, -1.0F}) {
       Random random(parts);
@@ -578,7 +580,7 @@ TEST(VoxelSorter, LinksPartsThatLieSideBySide) {
 // Neighbours of random sets in all slabs: threads join the same sets at the same time.
 TEST(VoxelSorter, LosesNoJoinOfAnotherThread) {
   constexpr std::size_t kSets = 4000;
-  lisco::VoxelSorter sorter;
+  lisco::VoxelSorter sorter(kShared);
   lisco::DisjointSets right;
   lisco::DisjointSets subclusters;
   for (std::uint64_t seed = 1; seed <= timesEffort(100); ++seed) {

@@ -48,6 +48,8 @@ class ColumnClusterer::Rotation {
  private:
   void divide(std::size_t columns, std::size_t lasers, const CellSource& cells);
   void receiveAtOnce(std::size_t columns, std::size_t lasers, const CellSource& cells);
+  template <typename Read>
+  void readInParallel(Read&& read);
   void preparePart(std::size_t i, const SensorHints& hints, std::size_t columns, std::size_t room = 0);
   bool readFarAndNear(std::size_t lasers, const CellSource& cells);
   void readPart(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial);
@@ -208,6 +210,15 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
     readNear(lasers, cells);
 }
 
+/// Calls read (i) for each part by a thread of its own, whose time decides on its share of the next rotation.
+template <typename Read>
+void ColumnClusterer::Rotation::readInParallel(Read&& read) {
+  inParallel(partition_count_, [&](std::size_t i) {
+    if (partition_count_ == 1) return read(i);
+    balancer_.time(i, [&] { read(i); });
+  });
+}
+
 void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hints, std::size_t columns,
                                             std::size_t room) {
   partitions_[i].prepare(tolerance_, hints, columns, room);
@@ -223,7 +234,7 @@ bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSou
   partitions_.front().takeLargerMemory(unordered_.memory());  // not in use before the trial ends
   const bool is_new = !partitions_.front().hasMemory();
   FarTrial trial;
-  inParallel(partition_count_, [&](std::size_t i) {
+  readInParallel([&](std::size_t i) {
     try {
       const std::size_t all = parts_[i].end - parts_[i].first;
       const std::size_t expected = partition_count_ > 1 ? all : std::min(kTriedColumns, all);
@@ -256,7 +267,7 @@ void ColumnClusterer::Rotation::reserveNear(Partition& partition, std::size_t co
 
 /// Each thread reads its part of the columns, without far returns.
 void ColumnClusterer::Rotation::readNear(std::size_t lasers, const CellSource& cells) {
-  inParallel(partition_count_, [&](std::size_t i) {
+  readInParallel([&](std::size_t i) {
     preparePart(i, SensorHints(), 0);
     Partition& partition = partitions_[i];
     const auto [begin, end] = parts_[i];
@@ -271,7 +282,7 @@ void ColumnClusterer::Rotation::readNear(std::size_t lasers, const CellSource& c
 void ColumnClusterer::Rotation::readUnordered(std::size_t lasers, const CellSource& cells) {
   partitions_.front().leaveLargerMemory(unordered_.memory());  // which the trial has used
   unordered_.begin(partition_count_);
-  inParallel(partition_count_, [&](std::size_t i) {
+  readInParallel([&](std::size_t i) {
     const auto [begin, end] = parts_[i];
     unordered_.readPart(i, cells, begin, end, lasers);
     if (partition_count_ > 1) balancer_.record(begin, end - begin, (end - begin) * lasers);

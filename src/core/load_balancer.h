@@ -8,12 +8,14 @@
 #include <numeric>
 #include <vector>
 
+#include "core/work_shares.h"
 #include "lisco/return.h"
 
 namespace lisco {
 
-/// Divides the columns of a rotation among threads: consecutive columns of about equal work, measured in the rotation
-/// before if that had as many columns and lasers, else estimated from the number of returns.
+/// Divides the columns of a rotation among threads: consecutive columns of about equal time. Their work is measured in
+/// the rotation before if that had as many columns and lasers, else estimated from the number of returns; WorkShares
+/// says how much of it each thread gets.
 class LoadBalancer {
  public:
   /// Columns [first, end).
@@ -27,14 +29,24 @@ class LoadBalancer {
               std::vector<Part>& parts) {
     if (lasers != lasers_ || columns != columns_) weigh(columns, lasers, cells);
     parts.resize(std::clamp<std::size_t>(weights_.size() / kMinGroups, 1, max_parts));
-    const auto all = std::accumulate(weights_.begin(), weights_.end(), std::uint64_t{0});
-    std::uint64_t sum = 0;
+    shares_.begin(parts.size());
+    const auto all = static_cast<double>(std::accumulate(weights_.begin(), weights_.end(), std::uint64_t{0}));
+    double share = 0;
+    double sum = 0;
     std::size_t group = 0;
     for (std::size_t part = 0; part < parts.size(); ++part) {
       const std::size_t first = group;
-      while (group < weights_.size() && sum < all * (part + 1) / parts.size()) sum += weights_[group++];
+      share += shares_.of(part);
+      const bool is_last = part + 1 == parts.size();
+      while (group < weights_.size() && (is_last || sum < share * all)) sum += static_cast<double>(weights_[group++]);
       parts[part] = {std::min(first * kGroup, columns), std::min(group * kGroup, columns)};
     }
+  }
+
+  /// See WorkShares.
+  template <typename Read>
+  void time(std::size_t part, Read&& read) {
+    shares_.time(part, read);
   }
 
   /// Records the work of some columns of the rotation divided last, in any unit. Threads may call it at the same time,
@@ -73,6 +85,7 @@ class LoadBalancer {
 
   std::size_t columns_ = 0, lasers_ = 0;
   std::vector<std::uint32_t> weights_;
+  WorkShares shares_;
 };
 
 }  // namespace lisco

@@ -200,6 +200,7 @@ bool VoxelSorter::link(const std::vector<const NearReturns*>& parts, const Toler
   fragments_.begin(false);
   for (const NearReturns* part : parts) fragments_.add(*part);
   if (fragments_.parts.empty() || !tolerance.joinsAnything()) return true;
+  is_shared_ = isWorthSharing();
   if (!sortFragments(tolerance)) return false;
   linkSlabs(tolerance, subclusters);
   return true;
@@ -211,6 +212,7 @@ bool VoxelSorter::number(std::vector<SingleReturns>& parts, const Tolerance& tol
   fragments_.begin(true);
   for (SingleReturns& part : parts) part.first = fragments_.add(*part.near);
   if (fragments_.parts.empty()) return true;
+  is_shared_ = isWorthSharing();
   if (!sortFragments(tolerance)) return false;
   const std::size_t most = slabs_.back().end;
   voxels_.grow(most);
@@ -219,7 +221,7 @@ bool VoxelSorter::number(std::vector<SingleReturns>& parts, const Tolerance& tol
   begins_voxel_[most] = 0;
   linkSlabs(tolerance, voxels_);
   numberSets(sizes);
-  inParallel(slabs_.size(), [&](std::size_t slab) { numberReturns(slabs_[slab]); });
+  forEachSlab([&](std::size_t slab) { numberReturns(slabs_[slab]); });
   return true;
 }
 
@@ -227,18 +229,38 @@ bool VoxelSorter::number(std::vector<SingleReturns>& parts, const Tolerance& tol
 bool VoxelSorter::sortFragments(const Tolerance& tolerance) {
   if (!chooseNumbering(tolerance)) return false;
   cutFragments();
-  divide();
-  assignSlabs();
+  if (is_shared_)
+    divide();
+  else
+    joinParts();
   if (planes_.size() < 2 * slabs_.size()) planes_.resize(2 * slabs_.size());
-  inParallel(slabs_.size(), [&](std::size_t thread) { sort(slabs_[slab_of_[thread]]); });
+  forEachSlab([&](std::size_t slab) { sort(slabs_[slab]); });
   std::fill_n(&items_[slabs_.back().end], kPrefetch, 0);
   return true;
 }
 
 void VoxelSorter::linkSlabs(const Tolerance& tolerance, DisjointSets& subclusters) {
   subclusters.share(slabs_.size() > 1);
-  inParallel(slabs_.size(), [&](std::size_t thread) { linkSlab(slab_of_[thread], tolerance, subclusters); });
+  forEachSlab([&](std::size_t slab) { linkSlab(slab, tolerance, subclusters); });
   subclusters.share(false);
+}
+
+/// Calls work(part) for each part, by a thread of its own if they share the work.
+template <typename Work>
+void VoxelSorter::forEachPart(Work&& work) {
+  const std::size_t parts = fragments_.parts.size();
+  if (is_shared_) return inParallel(parts, work);
+  for (std::size_t part = 0; part < parts; ++part) work(part);
+}
+
+/// Calls work(slab) for each slab, by the thread that it is assigned to.
+template <typename Work>
+void VoxelSorter::forEachSlab(Work&& work) {
+  if (slabs_.size() == 1) return work(std::size_t{0});
+  inParallel(slab_of_.size(), [&](std::size_t thread) {
+    const std::size_t slab = slab_of_[thread];
+    if (slab < slabs_.size()) shares_.time(thread, [&] { work(slab); });
+  });
 }
 
 /// Numbers the sets of voxels by their first ones.
@@ -268,7 +290,7 @@ void VoxelSorter::numberReturns(const Slab& slab) {
 /// The box around all returns.
 Box VoxelSorter::boxOfAll() {
   part_boxes_.resize(fragments_.parts.size());
-  inParallel(fragments_.parts.size(), [&](std::size_t i) {
+  forEachPart([&](std::size_t i) {
     const NearReturns& near = *fragments_.parts[i].near;
     HWY_DYNAMIC_DISPATCH(boundReturns)(near.returns.data(), near.count, part_boxes_[i]);
   });
@@ -287,7 +309,7 @@ void VoxelSorter::orderAxes(const Box& all, const double (&sides)[kAxes], std::s
   std::sort(axes, axes + (sliced < kAxes ? kAxes - 1 : kAxes),
             [&](std::size_t a, std::size_t b) { return sides[a] < sides[b]; });
   const std::size_t parts = part_boxes_.size();
-  if (sliced < kAxes || parts == 1 || sides[axes[1]] < kMinSharedSide * static_cast<double>(parts)) return;
+  if (sliced < kAxes || !is_shared_ || sides[axes[1]] < kMinSharedSide * static_cast<double>(parts)) return;
   const double gain = overlapAlong(axes[2], part_boxes_, all) - overlapAlong(axes[1], part_boxes_, all);
   if (gain > kMinOverlapGain * static_cast<double>(parts - 1)) std::swap(axes[1], axes[2]);
 }
@@ -325,18 +347,18 @@ bool VoxelSorter::chooseNumbering(const Tolerance& tolerance) {
   return numbering_.bits + number_bits_ <= 64;
 }
 
-/// Cuts all returns into fragments with their keys, each part by a thread of its own.
+/// Cuts all returns into fragments with their keys.
 void VoxelSorter::cutFragments() {
   const std::size_t size = fragments_.end;
   items_.grow(size + kPrefetch);
   if (!fragments_.are_single && fragments_.starts.size() < size / 64) fragments_.starts.resize(size / 64);
   part_sizes_.resize(fragments_.parts.size());
-  inParallel(fragments_.parts.size(), [&](std::size_t i) {
+  forEachPart([&](std::size_t i) {
     const FragmentList::Part& part = fragments_.parts[i];
     std::uint64_t* const starts = fragments_.are_single ? nullptr : &fragments_.starts[part.first / 64];
     part_sizes_[i] = HWY_DYNAMIC_DISPATCH(cutPart)(numbering_, number_bits_, part, starts, &items_[part.first]);
   });
-  // Several parts exchange both arrays; the sets of single returns need an entry for each.
+  // Threads exchange both arrays; the sets of single returns need an entry for each.
   if (part_sizes_.size() == 1 && !fragments_.are_single)
     scratch_.growInSteps(part_sizes_[0] + kPrefetch);
   else
@@ -345,22 +367,33 @@ void VoxelSorter::cutFragments() {
 
 /// Assigns each slab to the thread that has read most of it, about: both are in order along the major axis.
 void VoxelSorter::assignSlabs() {
-  thread_of_.resize(slabs_.size());
-  slab_of_.resize(slabs_.size());
+  thread_of_.resize(part_boxes_.size());
+  slab_of_.resize(part_boxes_.size());
   std::iota(thread_of_.begin(), thread_of_.end(), std::size_t{0});
   const auto centreOf = [&](std::size_t part) {
     return part_boxes_[part].lo[numbering_.axis[2]] + part_boxes_[part].hi[numbering_.axis[2]];
   };
   std::sort(thread_of_.begin(), thread_of_.end(),
             [&](std::size_t a, std::size_t b) { return centreOf(a) < centreOf(b); });
-  for (std::size_t slab = 0; slab < slabs_.size(); ++slab) slab_of_[thread_of_[slab]] = slab;
+  for (std::size_t slab = 0; slab < thread_of_.size(); ++slab) slab_of_[thread_of_[slab]] = slab;
+}
+
+/// Makes the fragments of all parts one slab.
+void VoxelSorter::joinParts() {
+  std::size_t end = 0;
+  for (std::size_t part = 0; part < part_sizes_.size(); ++part) {
+    const std::size_t size = part_sizes_[part];
+    std::copy_n(items_.data() + fragments_.parts[part].first, size, items_.data() + end);  // to the front
+    end += size;
+  }
+  slabs_.assign(1, {0, end, 0});
 }
 
 /// Moves the fragments of each slab of planes together: slabs of about equal work, one for each part.
 void VoxelSorter::divide() {
   const std::size_t parts = fragments_.parts.size();
-  slabs_.assign(1, {0, part_sizes_[0], 0});
-  if (parts == 1) return;
+  assignSlabs();
+  shares_.begin(parts);
   constexpr unsigned kGroupBits = 10;
   constexpr std::size_t kGroups = std::size_t{1} << kGroupBits;  // of planes
   const unsigned plane_bits = numbering_.bits + number_bits_ - plane_shift_;
@@ -380,24 +413,25 @@ void VoxelSorter::divide() {
     }
   });
   // Where each part's fragments of each group of planes go.
-  std::size_t all = 0;
+  double all = 0;
   for (const Planes& planes : histogram_) all += planes.work;
   slabs_.clear();
   std::uint32_t sum = 0;
   std::size_t begin = 0;
-  std::size_t work = 0;
+  double work = 0;
+  double share = all * shares_.of(thread_of_[0]);
   for (std::size_t group = 0; group < kGroups; ++group) {
     const std::uint32_t end = sum;
-    const std::size_t before = work;
+    const double before = work;
     for (std::size_t part = 0; part < parts; ++part) {
       Planes& planes = histogram_[part * kGroups + group];
       work += planes.work;
       sum += std::exchange(planes.fragments, sum);
     }
     // A slab ends at the planes nearest to its share.
-    const std::size_t share = all * (slabs_.size() + 1) / parts;
-    if (end > begin && work > share && work - share > share - std::min(share, before)) {
+    if (end > begin && slabs_.size() + 1 < parts && work > share && work - share > share - before) {
       slabs_.push_back({begin, end, 0});
+      share += all * shares_.of(thread_of_[slabs_.size()]);
       begin = end;
     }
   }

@@ -8,10 +8,12 @@
 
 #include "core/disjoint_sets.h"
 #include "core/growing_array.h"
+#include "core/near/constants.h"
 #include "core/near/near_returns.h"
 #include "core/near/voxel_plane.h"
 #include "core/neighbour.h"
 #include "core/parallel.h"
+#include "core/work_shares.h"
 
 namespace lisco {
 
@@ -40,6 +42,9 @@ struct VoxelNumbering {
 /// consecutive planes, where possible of the returns that it has read itself.
 class VoxelSorter {
  public:
+  /// \param min_shared returns from which on the threads that have read them share the work
+  explicit VoxelSorter(std::size_t min_shared = kMinSharedReturns) : min_shared_(min_shared) {}
+
   /// Joins all neighbours among some returns.
   /// \param parts the returns; each part is numbered by a thread of its own
   /// \return false, with nothing joined, if the voxels cannot be numbered: a tolerance beyond [1e-18, 1e18] m, or a box
@@ -81,9 +86,15 @@ class VoxelSorter {
   Box boxOfAll();
   void orderAxes(const Box& all, const double (&sides)[3], std::size_t sliced);
   void assignSlabs();
+  void joinParts();
   void cutFragments();
   void divide();
   void sort(const Slab& slab);
+  bool isWorthSharing() const { return fragments_.parts.size() > 1 && fragments_.end >= min_shared_; }
+  template <typename Work>
+  void forEachPart(Work&& work);
+  template <typename Work>
+  void forEachSlab(Work&& work);
   void linkSlabs(const Tolerance& tolerance, DisjointSets& subclusters);
   void numberSets(std::vector<std::uint32_t>& sizes);
   void numberReturns(const Slab& slab);
@@ -92,6 +103,8 @@ class VoxelSorter {
   std::uint64_t planeOf(std::uint64_t item) const { return item >> plane_shift_; }
   std::size_t endOfPlane(std::size_t begin, std::size_t end) const;
 
+  std::size_t min_shared_;
+  bool is_shared_ = false;  ///< the work, by several threads
   VoxelNumbering numbering_{};
   unsigned number_bits_ = 0;  ///< of an item: the lowest
   unsigned plane_shift_ = 0;
@@ -106,8 +119,9 @@ class VoxelSorter {
   };
   std::vector<Planes> histogram_;  ///< of groups of planes, of each part
   std::vector<Slab> slabs_;
+  std::vector<std::size_t> thread_of_;  ///< by slab, if the work is shared
   std::vector<std::size_t> slab_of_;    ///< by thread
-  std::vector<std::size_t> thread_of_;  ///< by slab
+  WorkShares shares_;                   ///< of threads
   std::vector<VoxelPlane> planes_;      ///< two for each slab
   // Of single returns, whose voxels are elements:
   DisjointSets voxels_;
