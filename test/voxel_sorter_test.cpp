@@ -556,7 +556,7 @@ TEST(VoxelSorter, LinksSlabsWithEachOther) {
     }
 }
 
-// Lines across the parts of threads, which lie side by side along the shorter side, in the order of threads or reversed.
+// Lines across the parts of threads, which lie side by side along the shorter side, in their order or reversed.
 TEST(VoxelSorter, LinksPartsThatLieSideBySide) {
   lisco::VoxelSorter sorter(kShared);
   for (std::size_t parts = 2; parts <= 4; ++parts)

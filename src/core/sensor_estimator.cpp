@@ -36,9 +36,6 @@ constexpr double kMinStep = 1e-4;
 /// Median deviation of azimuths in steps; beyond, columns are no steps of a turn. More: clouds of cameras get a range
 /// image; less: clouds that jitter get none.
 constexpr double kMaxAzimuthDeviation = 0.5;
-/// Part of the pairs that jitter and drift less than the hints say. More: moved objects and bad returns decide; less: a
-/// sensor that moves in a part of the turn is taken for one at rest.
-constexpr double kSteadyShare = 0.75;
 /// Part of the returns beyond SensorHints::far_distance, from which on a range image is worth its memory.
 constexpr double kFarShare = 0.2;
 

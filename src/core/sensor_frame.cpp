@@ -66,7 +66,6 @@ class SensorFrameEstimator::Slopes {
 
   /// Of most slopes about their laser's; infinite if there are too few, or if they are no numbers.
   double spread() {
-    constexpr double kSteadyShare = 0.75;  // moved objects and bad returns may be among the others
     if (deviations_.size() < kMinReturns) return std::numeric_limits<double>::infinity();
     const double spread = quantile(deviations_, kSteadyShare);
     return spread < std::numeric_limits<double>::infinity() ? spread : std::numeric_limits<double>::infinity();

@@ -10,6 +10,10 @@
 
 namespace lisco {
 
+/// Part of the returns, or of pairs of them, that lie as estimates say, or nearer. More: moved objects and bad returns
+/// decide; less: a sensor that moves in a part of the turn is taken for one at rest.
+inline constexpr double kSteadyShare = 0.75;
+
 /// Where a rotating sensor is, and how its horizon lies.
 struct SensorFrame {
   std::array<double, 3> origin{};  ///< metres

@@ -41,8 +41,8 @@ inline constexpr double kMaxVoxelNumber = 2147480000.0;
 inline constexpr std::uint32_t kWorkOfFragment = 2;
 /// Returns from which on threads share the work: fewer take less time than the threads' meetings (threads).
 inline constexpr std::size_t kMinSharedReturns = 8192;
-/// Side of the box, in voxels for each thread, from which on threads may share out planes across it: fewer planes divide
-/// the work less evenly. How much less their parts must overlap along it, of what they could (threads).
+/// Side of the box, in voxels for each thread, from which on threads may share out planes across it: fewer planes
+/// divide the work less evenly. How much less their parts must overlap along it, of what they could (threads).
 inline constexpr double kMinSharedSide = 32;
 inline constexpr double kMinOverlapGain = 0.25;
 /// Single returns of a brick that are compared with each other instead of by voxels: one vector, at most.

@@ -176,8 +176,8 @@ std::size_t axisOfSlices(const Box& box, const Tolerance& tolerance) {
   return found;
 }
 
-/// How far the boxes of some parts overlap along an axis: 0 if they lie side by side, 1 for each but one if all span the
-/// whole.
+/// How far the boxes of some parts overlap along an axis: 0 if they lie side by side, 1 for each but one if all span
+/// the whole.
 double overlapAlong(std::size_t axis, const std::vector<Box>& parts, const Box& all) {
   const auto lengthOf = [axis](const Box& box) {
     return static_cast<double>(box.hi[axis]) - static_cast<double>(box.lo[axis]);

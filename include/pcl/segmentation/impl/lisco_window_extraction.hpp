@@ -47,8 +47,13 @@ template <typename PointT>
 bool pcl::LiscoWindowExtraction<PointT>::beginStream() {
   const bool begun = state_->begun;
   state_->begun = false;  // stays so after an exception, here and below
+  lisco::WindowParameters parameters;
+  parameters.tolerance = static_cast<float>(cluster_tolerance_);
+  parameters.window_columns = window_size_;
+  parameters.hop_columns = hop_;
+  parameters.keep_source_indices = false;
   try {
-    state_->clusterer.begin({static_cast<float>(cluster_tolerance_), window_size_, hop_, 0, false});
+    state_->clusterer.begin(parameters);
   } catch (const std::invalid_argument&) {
     PCL_ERROR("[pcl::LiscoWindowExtraction::beginStream] A window of %zu columns is no multiple of a hop of %zu.\n",
               window_size_, hop_);
