@@ -119,8 +119,8 @@ struct Parameters {
   /// results: update() covers every column added.
   std::size_t block_columns = 64;
   /// Threads that share the work of the first addColumns () after begin (), which should bring a whole rotation, and of
-  /// the update () after it; 0: one for each core. No more are used than kMaxThreads, nor more than one for 64 columns.
-  /// Columns that come one by one, or after these, are the work of one thread.
+  /// the update () after it; 0: one for each core. No more are used than kMaxThreads, nor more than one for 64 columns;
+  /// more than cores take longer. Columns that come one by one, or after these, are the work of one thread.
   std::size_t threads = 1;
   /// False: forEachRun () gives the places of returns only, which takes less memory and time.
   bool keep_source_indices = true;

@@ -20,7 +20,7 @@ struct LabelParameters {
   std::size_t max_size = ~std::size_t{0};  ///< clusters of fewer or more points get no label
   std::size_t lasers = 1;  ///< rows of an organized cloud, stored row by row; 1: unorganized. Decides the speed only
   std::array<float, 3> origin{};  ///< position of the sensor, metres, if not (0, 0, 0). Decides the speed only
-  std::size_t threads = 1;        ///< 0: one for each core
+  std::size_t threads = 1;        ///< 0: one for each core; no more are used than there are cores
 };
 
 /// Labels points by their Euclidean clusters, which are those of pcl::EuclideanClusterExtraction:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/parallel.h"
 #include "core/strided_points.h"
 #include "lisco/cluster_order.h"
 #include "lisco/column_clusterer.h"
@@ -43,7 +44,7 @@ std::size_t ClusterLabeller::labelAll(std::size_t count, const CellSource& cells
   engine.tolerance = parameters.tolerance;
   engine.sensor = estimateSensor(columns, parameters.lasers, parameters.origin, cells);
   engine.expected_returns = count;
-  engine.threads = parameters.threads;
+  engine.threads = std::min(parameters.threads, allThreads());
   engine.keep_source_indices = false;
   ColumnClusterer& clusterer = state_->clusterer;
   clusterer.begin(engine);

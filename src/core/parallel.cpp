@@ -8,34 +8,54 @@
 #include <thread>
 #include <vector>
 
-// Without OpenMP, and under ThreadSanitizer, which reports races across OpenMP's barriers.
 #ifdef __has_feature
 #if __has_feature(thread_sanitizer)
-#define LISCO_STD_THREADS
+#define LISCO_THREAD_SANITIZER
 #endif
 #endif
-#if defined(__SANITIZE_THREAD__) || !defined(_OPENMP)
+#ifdef __SANITIZE_THREAD__
+#define LISCO_THREAD_SANITIZER
+#endif
+// Without OpenMP, and under ThreadSanitizer, which reports races across OpenMP's barriers.
+#if defined(LISCO_THREAD_SANITIZER) || !defined(_OPENMP)
 #define LISCO_STD_THREADS
 #endif
 
 namespace lisco {
+namespace {
 
-std::size_t allThreads() {
-  return std::max<std::size_t>(1, std::thread::hardware_concurrency());
+/// Threads for some parts: more than cores would wait for each other. Under ThreadSanitizer one for each, so that it
+/// sees them all.
+std::size_t threadsFor(std::size_t parts) {
+#ifdef LISCO_THREAD_SANITIZER
+  return parts;
+#else
+  return std::min(parts, allThreads());
+#endif
 }
 
-void inParallel(std::size_t threads, void (*work)(void* context, std::size_t thread), void* context) {
+}  // namespace
+
+std::size_t allThreads() {
+  static const std::size_t threads = std::max<std::size_t>(1, std::thread::hardware_concurrency());
+  return threads;
+}
+
+void inParallel(std::size_t parts, void (*work)(void* context, std::size_t part), void* context) {
+  const std::size_t threads = threadsFor(parts);
   if (threads <= 1) {
-    if (threads == 1) work(context, 0);
+    for (std::size_t part = 0; part < parts; ++part) work(context, part);
     return;
   }
   std::exception_ptr failure;
   std::atomic_flag has_failed = ATOMIC_FLAG_INIT;
   const auto run = [&](std::size_t thread) {
-    try {
-      work(context, thread);
-    } catch (...) {  // must not leave the thread; the first one is rethrown below
-      if (!has_failed.test_and_set()) failure = std::current_exception();
+    for (std::size_t part = thread; part < parts; part += threads) {
+      try {
+        work(context, part);
+      } catch (...) {  // must not leave the thread; the first one is rethrown below
+        if (!has_failed.test_and_set()) failure = std::current_exception();
+      }
     }
   };
 #ifdef LISCO_STD_THREADS

@@ -13,16 +13,15 @@ constexpr std::size_t kSeparate = 128;
 /// One thread for each core.
 std::size_t allThreads();
 
-/// Calls work (context, i) for each i below `threads`, each in a thread of its own, and returns when all have. If
-/// fewer threads start, one calls several i in ascending order, so that i = 0 waits for no other: FarTrial relies on
-/// it.
-void inParallel(std::size_t threads, void (*work)(void* context, std::size_t thread), void* context);
+/// Calls work (context, i) for each i below `parts`, each in a thread of its own, and returns when all have. If there
+/// are fewer cores, or fewer threads start, one calls several i in ascending order, so that i = 0 waits for no other:
+/// FarTrial relies on it.
+void inParallel(std::size_t parts, void (*work)(void* context, std::size_t part), void* context);
 
 template <typename Work>
-void inParallel(std::size_t threads, Work&& work) {
+void inParallel(std::size_t parts, Work&& work) {
   inParallel(
-      threads,
-      [](void* context, std::size_t thread) { (*static_cast<std::remove_reference_t<Work>*>(context))(thread); },
+      parts, [](void* context, std::size_t part) { (*static_cast<std::remove_reference_t<Work>*>(context))(part); },
       &work);
 }
 

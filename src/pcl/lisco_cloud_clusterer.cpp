@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <thread>
 
 #include <pcl/console/print.h>
 #include <pcl/segmentation/lisco_cluster_writer.h>
@@ -71,7 +72,7 @@ bool LiscoCloudClusterer::clusterPoints(const Layout& layout, const lisco::CellS
         lisco::estimateSensor(columns, lasers, layout.sensor_origin, lisco::CellSource(cells), state_->sensor);
     parameters.sensor = state_->sensor;
     parameters.expected_returns = columns * lasers;
-    parameters.threads = threads;
+    parameters.threads = std::min(threads, std::max(1U, std::thread::hardware_concurrency()));
     parameters.keep_source_indices = false;
     state_->clusterer.begin(parameters);
     state_->clusterer.addColumns(columns, lasers, cells);

@@ -124,8 +124,8 @@ class LiscoClusterExtraction : public PCLBase<PointT> {
   inline pcl::uindex_t getMaxClusterSize() const { return (max_pts_per_cluster_); }
 
   /** \brief Set how many threads share the work of extract () (default 1). Affects the time only.
-   * \param[in] nr_threads 0: one for each core. No more are used than the scan has work for (one for 64 columns), nor
-   * more than 256.
+   * \param[in] nr_threads 0: one for each core. No more are used than there are cores, nor than the scan has work for
+   * (one for 64 columns), nor more than 256.
    */
   inline void setNumberOfThreads(unsigned int nr_threads = 0) { threads_ = nr_threads; }
   /** \brief Get the number of threads, as it was set. */
