@@ -65,6 +65,7 @@ bool LiscoCloudClusterer::clusterPoints(const Layout& layout, const lisco::CellS
   const std::size_t columns = (few ? few_points.size() : layout.points) / lasers;
   state_->columns = columns;
   state_->has_few_points = few;
+  static const unsigned int cores = std::max(1U, std::thread::hardware_concurrency());
   const auto cluster = [&](const auto& cells) {
     lisco::Parameters parameters;
     parameters.tolerance = tolerance;
@@ -72,7 +73,7 @@ bool LiscoCloudClusterer::clusterPoints(const Layout& layout, const lisco::CellS
         lisco::estimateSensor(columns, lasers, layout.sensor_origin, lisco::CellSource(cells), state_->sensor);
     parameters.sensor = state_->sensor;
     parameters.expected_returns = columns * lasers;
-    parameters.threads = std::min(threads, std::max(1U, std::thread::hardware_concurrency()));
+    parameters.threads = std::min(threads, cores);
     parameters.keep_source_indices = false;
     state_->clusterer.begin(parameters);
     state_->clusterer.addColumns(columns, lasers, cells);

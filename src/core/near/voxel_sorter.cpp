@@ -200,7 +200,6 @@ bool VoxelSorter::link(const std::vector<const NearReturns*>& parts, const Toler
   fragments_.begin(false);
   for (const NearReturns* part : parts) fragments_.add(*part);
   if (fragments_.parts.empty() || !tolerance.joinsAnything()) return true;
-  is_shared_ = isWorthSharing();
   if (!sortFragments(tolerance)) return false;
   linkSlabs(tolerance, subclusters);
   return true;
@@ -212,7 +211,6 @@ bool VoxelSorter::number(std::vector<SingleReturns>& parts, const Tolerance& tol
   fragments_.begin(true);
   for (SingleReturns& part : parts) part.first = fragments_.add(*part.near);
   if (fragments_.parts.empty()) return true;
-  is_shared_ = isWorthSharing();
   if (!sortFragments(tolerance)) return false;
   const std::size_t most = slabs_.back().end;
   voxels_.grow(most);
@@ -227,6 +225,7 @@ bool VoxelSorter::number(std::vector<SingleReturns>& parts, const Tolerance& tol
 
 /// Sorts all fragments by voxel, in slabs. \return false if the voxels cannot be numbered
 bool VoxelSorter::sortFragments(const Tolerance& tolerance) {
+  is_shared_ = fragments_.parts.size() > 1 && fragments_.end >= min_shared_;
   if (!chooseNumbering(tolerance)) return false;
   cutFragments();
   if (is_shared_)

@@ -90,7 +90,6 @@ class VoxelSorter {
   void cutFragments();
   void divide();
   void sort(const Slab& slab);
-  bool isWorthSharing() const { return fragments_.parts.size() > 1 && fragments_.end >= min_shared_; }
   template <typename Work>
   void forEachPart(Work&& work);
   template <typename Work>
