@@ -68,6 +68,16 @@ TYPED_TEST(PclMissingInput, ThenUsableAsEver) {
   EXPECT_EQ(clusters[0].indices, (pcl::Indices{0, 1, 2, 3, 4}));
 }
 
+TYPED_TEST(PclMissingInput, IndicesBecomeThoseOfAllPoints) {
+  TypeParam extraction;
+  extraction.setInputCloud(fivePoints());
+  EXPECT_EQ(extraction.getIndices(), nullptr);
+  Clusters clusters;
+  extraction.extract(clusters);
+  ASSERT_NE(extraction.getIndices(), nullptr);
+  EXPECT_EQ(*extraction.getIndices(), (pcl::Indices{0, 1, 2, 3, 4}));
+}
+
 TYPED_TEST(PclMissingInput, SettersGettersAndTypes) {
   TypeParam extraction;
   EXPECT_EQ(extraction.getClusterTolerance(), 0.0);

@@ -296,6 +296,7 @@ void ColumnClusterer::Rotation::readUnordered(std::size_t lasers, const CellSour
 void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial) {
   Partition& partition = partitions_[i];
   const auto [begin, end] = parts_[i];
+  const std::size_t middle = begin + (end - begin) / 2;
   if (i > 0) reserveRuns(partition);  // of the first part after its trial, which may refuse it
   for (std::size_t first = begin; first < end; first += RingBlock::kColumns) {
     if (trial.isRefused()) return;
@@ -312,6 +313,8 @@ void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, cons
       reserveRuns(partition);
       reserveNear(partition, end - begin);
     }
+    if (first < middle && first + count >= middle)  // the other half is likely to have as many
+      partition.reserveNear(2 * partition.nearReturns().count + 2 * RingBlock::kColumns);
   }
 }
 

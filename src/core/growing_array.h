@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -11,16 +12,14 @@
 #include <utility>
 #include <vector>
 
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
+#include "core/pages.h"
 
 namespace lisco {
 
-/// Elements to make room for where some are needed now and more follow step by step: some to spare, but less than
-/// doubling would waste.
+/// Elements to make room for where some are needed now and more follow step by step: doubles few, and adds an eighth to
+/// many, as doubling would waste memory.
 constexpr std::size_t withSpare(std::size_t count) {
-  return count + count / 8 + 256;
+  return count + std::max(count / 8, std::min(count, std::size_t{1024})) + 256;
 }
 
 /// Makes room in a vector for elements that come step by step.
@@ -29,10 +28,10 @@ void reserveInSteps(std::vector<T>& elements, std::size_t count) {
   if (elements.capacity() < count) elements.reserve(withSpare(count));
 }
 
-/// A growing array whose elements have no value until they are written: growing touches no new memory. In a fresh
-/// process, first writes to pages are most of what a first scan costs more than later ones. From 2 MiB on, the array
-/// lies in huge pages, where the system gives them. A rest of more than three quarters of a huge page takes a whole
-/// one; a smaller rest lies in ordinary pages.
+/// A growing array whose elements have no value until they are written. In a fresh process, the system's work for new
+/// pages is most of what a first scan costs more than later ones: growing has it provide them in one call. From 2 MiB
+/// on, the array lies in huge pages, where the system gives them. A rest of more than three quarters of a huge page
+/// takes a whole one; a smaller rest lies in ordinary pages.
 template <typename T>
 class GrowingArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>, "elements are bytes");
@@ -86,42 +85,26 @@ class GrowingArray {
   }
 
   /// Grows to a size, if it is below. Elements that are there keep their values, perhaps at another address.
+  /// \param pages untouched: for memory of which an unknown part will be written; see populatePages ()
   /// \throws std::bad_alloc, with nothing changed
-  void grow(std::size_t size) {
+  void grow(std::size_t size, NewPages pages = NewPages::kPopulated) {
     if (size <= size_) return;
     if (size > (PTRDIFF_MAX - kHugePage) / sizeof(T)) throw std::bad_alloc();
-    const std::size_t bytes = size * sizeof(T);
-    void* data = nullptr;
-    if (bytes < kHugePage) {
-      data = std::realloc(static_cast<void*>(data_), bytes);
-    } else {
-      const std::size_t rest = bytes % kHugePage;
-      const std::size_t rounded = rest > kHugePage / 4 * 3 ? bytes - rest + kHugePage : bytes;
-      data = allocateHugePages(rounded);
-      if (size_ > 0) std::memcpy(data, static_cast<const void*>(data_), size_ * sizeof(T));
-      std::free(data_);
-      size = rounded / sizeof(T);
-    }
+    std::size_t bytes = size * sizeof(T);
+    if (bytes >= kHugePage && bytes % kHugePage > kHugePage / 4 * 3) bytes += kHugePage - bytes % kHugePage;
+    // Not std::realloc (), which would write to new pages one by one where it moves the array.
+    void* const data = bytes < kHugePage ? std::malloc(bytes) : allocateHugePages(bytes);
     if (data == nullptr) throw std::bad_alloc();
+    if (pages == NewPages::kPopulated) populatePages(data, static_cast<char*>(data) + bytes);
+    if (size_ > 0) std::memcpy(data, static_cast<const void*>(data_), size_ * sizeof(T));
+    std::free(data_);
     data_ = static_cast<T*>(data);
-    size_ = size;
+    size_ = bytes / sizeof(T);
   }
 
  private:
   template <typename Other>
   friend class GrowingArray;
-  static constexpr std::size_t kHugePage = std::size_t{1} << 21;  ///< bytes
-
-  static void* allocateHugePages(std::size_t bytes) {
-    void* data = nullptr;
-    if (posix_memalign(&data, kHugePage, bytes) != 0) throw std::bad_alloc();
-#ifdef MADV_HUGEPAGE
-    madvise(data, bytes, MADV_HUGEPAGE);  // without huge pages, all is the same but slower
-#endif
-    void* const fitted = std::realloc(data, bytes);  // returns what alignment took behind the array
-    return fitted == nullptr ? data : fitted;
-  }
-
   T* data_ = nullptr;
   std::size_t size_ = 0;
 };

@@ -27,6 +27,11 @@ inline void sortLiscoClusters(std::vector<PointIndices>& clusters) {
   std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);
 }
 
+/** \brief Gives empty indices memory for \a count of them, whose pages the system provides in one call where it can: a
+ * page fault for each page would take longer.
+ */
+LISCO_EXPORT void reserveLiscoIndices(Indices& indices, std::size_t count);
+
 /** \brief Memory of LiscoClusterWriter, which a caller may keep for the next one. */
 struct LiscoClusterPlaces {
   std::vector<index_t*> next;  ///< of each subcluster: where its next point goes; nullptr: its cluster has no place yet
@@ -49,6 +54,7 @@ class LiscoClusterWriter {
         header_(header),
         places_(places),
         clusters_(clusters),
+        is_first_(places.next.capacity() == 0),
         first_own_(clusters.size()) {
     const std::size_t count = clusterer.subclusterCount();
     places_.next.resize(count);
@@ -183,6 +189,7 @@ class LiscoClusterWriter {
     static_assert(std::is_nothrow_move_constructible<PointIndices>::value, "clusters that move keep their indices");
     clusters_.emplace_back();
     clusters_.back().header = header_;
+    if (is_first_) reserveLiscoIndices(clusters_.back().indices, size);
     clusters_.back().indices.resize(size);
     return (clusters_.back().indices.data());
   }
@@ -194,6 +201,7 @@ class LiscoClusterWriter {
   index_t ignored_[kMaxIgnored];            ///< where points of subclusters of other sizes go
   index_t ignored_from_last_[kMaxIgnored];  ///< the same, from the last backwards
   std::vector<PointIndices>& clusters_;
+  const bool is_first_;          ///< of those with this memory: that of clusters is likely to be new
   const std::size_t first_own_;  ///< of the clusters, the first that this writer adds
 };
 

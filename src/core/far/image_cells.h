@@ -84,19 +84,33 @@ class ImageCells {
 
   bool hasMemory(std::size_t row) const { return rows_[row] != nullptr; }
   std::size_t rowsWithMemory() const { return rows_with_memory_; }
-  /// Gives a row memory; its bins have no values yet.
+  /// Gives a row memory, whose bins have no values yet; populate () before they are written.
   /// \param expected number of rows that will get some, this one included; where they come one by one, a chunk has an
   ///        eighth of the rows before at least
   void giveMemory(std::size_t row, std::size_t expected) {
     while (sizeOf(chunk(current_).rows + 1) > chunk(current_).floats.size()) {
-      if (chunk(current_).rows == 0)  // its memory may move
-        chunk(current_).floats.grow(sizeOf(std::max({expected, rows_with_memory_ / 8, std::size_t{1}})));
-      else if (++current_ == chunkCount())
+      if (Chunk& empty = chunk(current_); empty.rows == 0) {  // its memory may move
+        empty.floats.grow(sizeOf(std::max({expected, rows_with_memory_ / 8, std::size_t{1}})), NewPages::kUntouched);
+        empty.populated = 0;
+      } else if (++current_ == chunkCount()) {
         more_chunks_.emplace_back();
+      }
     }
     Chunk& taken = chunk(current_);
     rows_[row] = taken.floats.data() + sizeOf(taken.rows++);
     ++rows_with_memory_;
+  }
+
+  /// Has the system provide the pages of a row with memory. Rows are expected in the order in which they got it.
+  void populate(std::size_t row) {
+    for (std::size_t i = 0; i < chunkCount(); ++i) {
+      Chunk& taken = chunk(i);
+      float* const end = rows_[row] + sizeOf(1);
+      float* const untouched = taken.floats.data() + taken.populated;
+      if (!taken.has(rows_[row]) || !std::less<>()(untouched, end)) continue;
+      populatePages(std::max(untouched, rows_[row], std::less<>()), end);
+      taken.populated = static_cast<std::size_t>(end - taken.floats.data());
+    }
   }
 
   /// The bins of a row with memory, from one on.
@@ -109,6 +123,7 @@ class ImageCells {
   void widenRows(std::size_t bins, std::size_t used) {
     Chunk wide;
     wide.floats.grow(rows_with_memory_ * kPlanes * bins);
+    wide.populated = wide.floats.size();
     for (float*& row : rows_) {
       if (row == nullptr) continue;
       float* const to = wide.floats.data() + wide.rows++ * kPlanes * bins;
@@ -136,6 +151,7 @@ class ImageCells {
   void exchangeMemory(GrowingArray<Other>& other) noexcept {
     clear(row_size_);
     first_chunk_.floats.exchangeMemory(other);
+    first_chunk_.populated = first_chunk_.floats.size();
   }
   /// Number of rows for which there is memory, if they have so many bins.
   std::size_t capacityFor(std::size_t bins) const {
@@ -154,7 +170,13 @@ class ImageCells {
  private:
   struct Chunk {
     GrowingArray<float> floats;
-    std::size_t rows = 0;  ///< in use, from the first on
+    std::size_t rows = 0;       ///< in use, from the first on
+    std::size_t populated = 0;  ///< floats, from the first on, whose pages need no populate ()
+
+    bool has(const float* row) const {
+      constexpr std::less<const float*> isBefore;
+      return !isBefore(row, floats.data()) && isBefore(row, floats.data() + floats.size());
+    }
   };
   static constexpr std::size_t kPlanes = 4;
   static_assert(sizeof(float) == sizeof(std::uint32_t), "the planes are of one size");
@@ -169,11 +191,8 @@ class ImageCells {
 
   /// Lets the rows of a chunk be those of its copy.
   void moveRows(const Chunk& from, Chunk& to) {
-    const float* const begin = from.floats.data();
-    constexpr std::less<const float*> isBefore;
     for (float*& row : rows_)
-      if (row != nullptr && !isBefore(row, begin) && isBefore(row, begin + sizeOf(from.rows)))
-        row = to.floats.data() + (row - begin);
+      if (row != nullptr && from.has(row)) row = to.floats.data() + (row - from.floats.data());
   }
 
   Chunk first_chunk_;  ///< outside of the vector, so that an image without rows has no memory

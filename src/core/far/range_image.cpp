@@ -115,6 +115,7 @@ void RangeImage::addMemory(std::size_t row) {
 
 void RangeImage::openRow(std::size_t row) {
   if (!cells.hasMemory(row)) addMemory(row);
+  cells.populate(row);
   rows[row].is_open = true;
   std::fill_n(cells.at(row, 0).x(), stride, kNan);
 }

@@ -39,6 +39,7 @@ void cutSector(const RangeImage& image, std::int64_t number, float later, const 
       returns |= ColumnBits{bitsOf(hn::Eq(x, x))} << k;
     }
     if (returns == 0) continue;
+    sector.reserveRow(count);
     float rho[RangeImage::kSector];
     ColumnBits starts = 0;
     for (std::size_t k = 0; k < RangeImage::kSector; k += kLanes) {

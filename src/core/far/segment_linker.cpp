@@ -152,19 +152,16 @@ void SegmentLinker::fit(const RangeImage& image) {
   if (masks.size() == count) return;
   linked_parts_ = 0;  // of a sector with fewer rows
   masks.assign(count, NeighborMask());
-  const std::size_t segments = count * RangeImage::kSector + RangeImage::kSector;  // vectors are read behind the last
-  const auto grow = [&](Sector& sector) {
-    sector.number = Sector::kNone;
-    for (auto* bound :
-         {&sector.nearest, &sector.farthest, &sector.lowest, &sector.highest, &sector.first, &sector.last})
-      bound->grow(segments);
-    sector.root.grow(segments);
-    sector.place.grow(segments);
-    sector.count.grow(segments);
-    sector.begin.resize(count + 1);
-  };
-  for (Sector& sector : sectors) grow(sector);
-  grow(beyond);
+  forgetSectors();
+  for (Sector& sector : sectors) sector.begin.resize(count + 1);
+  beyond.begin.resize(count + 1);
+}
+
+void Sector::grow(std::size_t segments) {
+  for (auto* bound : {&nearest, &farthest, &lowest, &highest, &first, &last}) bound->growInSteps(segments);
+  root.growInSteps(segments);
+  place.growInSteps(segments);
+  count.growInSteps(segments);
 }
 
 /// Sectors are cut again: returns may have come late, or will come.

@@ -28,6 +28,13 @@ struct Sector {
   GrowingArray<std::uint32_t> place;      ///< of its first return: kSector times its row, and the bin in the sector
   GrowingArray<std::uint8_t> count;       ///< of returns
   std::vector<std::uint32_t> begin;       ///< of each row's segments, and the end
+
+  /// Makes room for another row behind some segments. Vectors are read behind the last one.
+  void reserveRow(std::size_t segments) {
+    constexpr std::size_t kRow = 2 * RangeImage::kSector;
+    if (segments + kRow > count.size()) grow(segments + kRow);
+  }
+  void grow(std::size_t segments);
 };
 
 /// The paper's neighbor mask (Algorithm 2) of one laser's returns in a sector, from measured bounds.

@@ -6,12 +6,18 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 
 #include <pcl/segmentation/lisco_cluster_extraction.h>
 #include <pcl/segmentation/lisco_cluster_writer.h>
 
 template <typename PointT>
 std::size_t pcl::LiscoClusterExtraction<PointT>::appendClusters(std::vector<PointIndices>& clusters) {
+  if (input_ && !indices_) {  // initCompute () lists all points, and takes this memory for them
+    fake_indices_ = true;
+    indices_ = std::make_shared<Indices>();
+    detail::reserveLiscoIndices(*indices_, input_->size());
+  }
   if (!initCompute() || input_->empty() || indices_->empty()) {
     clusters.clear();
     return (0);
