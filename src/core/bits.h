@@ -24,6 +24,13 @@ inline std::uint32_t countBits(ColumnBits bits) {
   return static_cast<std::uint32_t>(bits * 0x0101010101010101U >> 56);
 }
 
+/// Number of bits that hold the numbers up to one, at least 1.
+inline unsigned bitsFor(std::uint64_t largest) {
+  unsigned bits = 1;
+  while (largest >> bits != 0) ++bits;
+  return bits;
+}
+
 /// Bits first, first + 1, ... ; none from 64 on.
 inline ColumnBits bitsFrom(std::size_t first) {
   return first < 64 ? ~ColumnBits{0} << first : 0;

@@ -6,66 +6,18 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <vector>
 
 #include "core/disjoint_sets.h"
 #include "core/growing_array.h"
 #include "core/near/brick_map.h"
 #include "core/near/constants.h"
+#include "core/near/fragments.h"
 #include "core/near/near_returns.h"
 #include "core/near/neighbourhood.h"
 #include "core/neighbour.h"
 #include "core/parallel.h"
 
 namespace lisco {
-
-/// Near returns of several parts, numbered one part after the other, and their fragments. A fragment has the number of
-/// its first return.
-struct FragmentList {
-  struct Part {
-    const NearReturns* near;
-    std::size_t first;  ///< number of its first return, a multiple of 64
-  };
-  std::vector<Part> parts;            ///< those with returns
-  std::size_t end = 0;                ///< above all numbers, a multiple of 64
-  std::vector<std::uint64_t> starts;  ///< bit i: return i begins a fragment, or is the end of a part
-  bool are_single = false;            ///< each return is a fragment, as in unordered clouds; starts are not in use
-
-  void begin(bool single) {
-    parts.clear();
-    end = 0;
-    are_single = single;
-  }
-  /// \return the number of the part's first return
-  std::size_t add(const NearReturns& near) {
-    const std::size_t first = end;
-    if (near.count == 0) return first;
-    parts.push_back({&near, first});
-    end += (near.count / 64 + 1) * 64;  // and one more behind the last
-    return first;
-  }
-  const Part& partOf(std::size_t number) const {
-    std::size_t part = parts.size() - 1;
-    while (number < parts[part].first) --part;
-    return parts[part];
-  }
-  /// The first return of a fragment. Up to kReadBehind may be read behind its last.
-  const NearReturn* returnsOf(std::size_t number) const {
-    const Part& part = partOf(number);
-    return part.near->returns.data() + (number - part.first);
-  }
-  /// The number of returns of the fragment that begins with a return; not of single ones.
-  std::size_t sizeOf(std::size_t number) const { return endOf(number) - number; }
-  /// The end of that fragment.
-  std::size_t endOf(std::size_t number) const {
-    std::size_t word = ++number / 64;
-    std::uint64_t left = starts[word] >> number % 64;
-    if (left != 0) return number + static_cast<std::size_t>(__builtin_ctzll(left));
-    do left = starts[++word];
-    while (left == 0);
-    return 64 * word + static_cast<std::size_t>(__builtin_ctzll(left));
-  }
-};
 
 /// A box whose coordinates lie in the lanes of two vectors; the last lane, of elements, has no meaning.
 class BoxLanes {

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+#include "core/near/slab_division.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "core/near/constants.h"
+
+namespace lisco {
+
+/// Assigns each slab to the thread that has read most of it, about: both are in order along an axis, the major one.
+void SlabDivision::assign(std::size_t axis, const std::vector<Box>& parts) {
+  thread_of_.resize(parts.size());
+  slab_of_.resize(parts.size());
+  std::iota(thread_of_.begin(), thread_of_.end(), std::size_t{0});
+  const auto centreOf = [&](std::size_t part) { return parts[part].lo[axis] + parts[part].hi[axis]; };
+  std::sort(thread_of_.begin(), thread_of_.end(),
+            [&](std::size_t a, std::size_t b) { return centreOf(a) < centreOf(b); });
+  for (std::size_t slab = 0; slab < thread_of_.size(); ++slab) slab_of_[thread_of_[slab]] = slab;
+}
+
+void SlabDivision::join(const FragmentList& fragments, FragmentItems& items) {
+  std::size_t end = 0;
+  for (std::size_t part = 0; part < items.part_sizes.size(); ++part) {
+    const std::size_t size = items.part_sizes[part];
+    std::copy_n(items.all.data() + fragments.parts[part].first, size, items.all.data() + end);  // to the front
+    end += size;
+  }
+  slabs.assign(1, {0, end, 0});
+}
+
+void SlabDivision::divide(const FragmentList& fragments, const std::vector<Box>& boxes, const VoxelNumbering& numbering,
+                          FragmentItems& items) {
+  const std::size_t parts = fragments.parts.size();
+  assign(numbering.axis[2], boxes);
+  shares_.begin(parts);
+  constexpr unsigned kGroupBits = 10;
+  constexpr std::size_t kGroups = std::size_t{1} << kGroupBits;  // of planes
+  const unsigned plane_bits = numbering.bits - numbering.planeBits();
+  const unsigned shift = items.plane_shift + (plane_bits > kGroupBits ? plane_bits - kGroupBits : 0);
+  histogram_.assign(parts * kGroups, {0, 0});
+  const std::uint64_t number_mask = items.numberMask();
+  inParallel(parts, [&](std::size_t part) {
+    const FragmentList::Part& own = fragments.parts[part];
+    const std::uint64_t* const own_items = &items.all[own.first];
+    std::size_t end = own.first + own.near->count;
+    for (std::size_t i = items.part_sizes[part]; i-- > 0;) {
+      Planes& planes = histogram_[part * kGroups + (own_items[i] >> shift)];
+      const std::size_t number = own_items[i] & number_mask;
+      ++planes.fragments;
+      planes.work += static_cast<std::uint32_t>(kWorkOfFragment + end - number);
+      end = number;
+    }
+  });
+  // Where each part's fragments of each group of planes go.
+  double all = 0;
+  for (const Planes& planes : histogram_) all += planes.work;
+  slabs.clear();
+  std::uint32_t sum = 0;
+  std::size_t begin = 0;
+  double work = 0;
+  double share = all * shares_.of(thread_of_[0]);
+  for (std::size_t group = 0; group < kGroups; ++group) {
+    const std::uint32_t end = sum;
+    const double before = work;
+    for (std::size_t part = 0; part < parts; ++part) {
+      Planes& planes = histogram_[part * kGroups + group];
+      work += planes.work;
+      sum += std::exchange(planes.fragments, sum);
+    }
+    // A slab ends at the planes nearest to its share.
+    if (end > begin && slabs.size() + 1 < parts && work > share && work - share > share - before) {
+      slabs.push_back({begin, end, 0});
+      share += all * shares_.of(thread_of_[slabs.size()]);
+      begin = end;
+    }
+  }
+  slabs.push_back({begin, sum, 0});
+  inParallel(parts, [&](std::size_t part) {
+    const std::uint64_t* const own_items = &items.all[fragments.parts[part].first];
+    for (std::size_t i = 0; i < items.part_sizes[part]; ++i)
+      items.scratch[histogram_[part * kGroups + (own_items[i] >> shift)].fragments++] = own_items[i];
+  });
+  std::swap(items.all, items.scratch);
+}
+
+}  // namespace lisco
