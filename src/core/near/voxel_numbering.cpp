@@ -25,9 +25,15 @@ float leastStep(float lo, float hi) {
 
 constexpr std::size_t kAxes = VoxelNumbering::kAxes;
 
-/// The axis with most slices; kAxes if there are few.
-std::size_t axisOfSlices(const Box& box, const Tolerance& tolerance) {
-  std::size_t found = kAxes;
+/// An axis with slices, and how far they are apart at least, metres.
+struct Slices {
+  std::size_t axis = kAxes;  ///< kAxes: there are few along any
+  float step = 0;
+};
+
+/// The axis with most slices.
+Slices findSlices(const Box& box, const Tolerance& tolerance) {
+  Slices found;
   double most = kMinSlices;
   for (std::size_t axis = 0; axis < kAxes; ++axis) {
     const float step = leastStep(box.lo[axis], box.hi[axis]);
@@ -35,7 +41,7 @@ std::size_t axisOfSlices(const Box& box, const Tolerance& tolerance) {
     const double slices =
         (static_cast<double>(box.hi[axis]) - static_cast<double>(box.lo[axis])) / static_cast<double>(step);
     if (slices < most) continue;
-    found = axis;
+    found = {axis, step};
     most = slices;
   }
   return found;
@@ -77,8 +83,8 @@ bool VoxelNumbering::choose(const std::vector<Box>& parts, bool is_shared, const
   if (tolerance.reach() < kMinSortedTolerance || tolerance.reach() > kMaxSortedTolerance) return false;
   Box all = parts.front();
   for (const Box& box : parts) all.add(box);
-  const std::size_t sliced = axisOfSlices(all, tolerance);
-  has_slices = sliced < kAxes;
+  const Slices slices = findSlices(all, tolerance);
+  has_slices = slices.axis < kAxes;
   constexpr unsigned kVoxelBits[2][kAxes] = {{2, 2, 2}, {3, 2, 0}};
   std::copy_n(kVoxelBits[has_slices ? 1 : 0], kAxes, voxel_bits);
   const double voxel = (has_slices ? kSliceVoxelSide : kVoxelSide) * tolerance.reach();
@@ -87,11 +93,11 @@ bool VoxelNumbering::choose(const std::vector<Box>& parts, bool is_shared, const
     const auto lo = static_cast<double>(all.lo[i]);
     const auto hi = static_cast<double>(all.hi[i]);
     corner[i] = lo;
-    per_metre[i] = 1 / (i == sliced ? static_cast<double>(leastStep(all.lo[i], all.hi[i])) : voxel);
+    per_metre[i] = 1 / (i == slices.axis ? static_cast<double>(slices.step) : voxel);
     sides[i] = (hi - lo) * per_metre[i];
     if (!(sides[i] < kMaxVoxelNumber)) return false;
   }
-  orderAxes(sides, sliced);
+  orderAxes(sides, slices.axis);
   if (is_shared && !has_slices) alignWithParts(parts, all, sides);
   const auto bitsAlong = [&](std::size_t i) {
     const auto last = static_cast<std::uint64_t>(sides[axis[i]]);
