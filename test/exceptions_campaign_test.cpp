@@ -209,6 +209,46 @@ TEST(ExceptionsCampaign, ParallelWorkSurvivesRefusedMemory) {
   }
 }
 
+/// Refuses each allocation of an assignment in turn.
+template <typename Clusterer>
+void refuseCopies(Clusterer& clusterer, Clusterer& other) {
+  const Clustering right = clustersOf(clusterer), others = clustersOf(other);
+  bool happened = true;
+  std::size_t refused = 0;
+  while (happened) {
+    Clusterer assigned(clusterer);
+    bool thrown = false;
+    {
+      const RefusedAllocation refusal(++refused);
+      try {
+        assigned = other;
+      } catch (const std::bad_alloc&) {
+        thrown = true;
+      }
+      happened = refusal.happened();
+    }
+    ASSERT_EQ(difference(thrown ? right : others, clustersOf(assigned)), "") << "allocation " << refused;
+  }
+  EXPECT_GT(refused, 5U);
+}
+
+TEST(ExceptionsCampaign, FailedAssignmentsChangeNothing) {
+  for (std::uint64_t seed = 1500; seed < 1500 + timesEffort(10); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    lisco::ColumnClusterer clusterers[2];
+    for (lisco::ColumnClusterer& clusterer : clusterers) {
+      const Rotation rotation(random);
+      clusterer.begin(rotation.parameters);
+      clusterer.addColumns(rotation.scan.columns, rotation.scan.lasers,
+                           [&](std::size_t laser, std::size_t column) { return rotation.scan.at(laser, column); });
+      clusterer.update();
+    }
+    refuseCopies(clusterers[0], clusterers[1]);
+    if (HasFailure()) return;
+  }
+}
+
 // --- Sliding windows ------------------------------------------------------------------------------------------------
 
 struct Sliding {

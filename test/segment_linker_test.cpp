@@ -34,6 +34,21 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr std::uint32_t kFirstBin = 64;  // the first return's
 
+// Large arrays are rounded up to pages, those of larger elements to fewer elements.
+TEST(Sector, GrowsAllItsArrays) {
+  lisco::Sector sector;
+  constexpr std::size_t kMost = 1'200'000;
+  for (std::size_t segments = 0; segments < kMost; segments += lisco::RangeImage::kSector) {
+    sector.reserveRow(segments);
+    const std::size_t least = segments + lisco::RangeImage::kSector + lisco::Sector::kMaxLanes;
+    for (const auto* bound :
+         {&sector.nearest, &sector.farthest, &sector.lowest, &sector.highest, &sector.first, &sector.last})
+      ASSERT_GE(bound->size(), least);
+    for (const auto* elements : {&sector.root, &sector.place}) ASSERT_GE(elements->size(), least);
+    ASSERT_GE(sector.count.size(), least);
+  }
+}
+
 /// A range image and its linker.
 struct FarPart {
   lisco::RangeImage image;

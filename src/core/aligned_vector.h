@@ -6,9 +6,12 @@
 #include <new>
 #include <vector>
 
+#include "core/pages.h"
+
 namespace lisco {
 
-/// Allocates at the beginning of lines of the cache, so that no vector of the processor lies in two of them.
+/// Allocates at the beginning of lines of the cache, so that no vector of the processor lies in two of them; new pages
+/// are provided in one call.
 template <typename T>
 struct LineAllocator {
   using value_type = T;
@@ -18,7 +21,11 @@ struct LineAllocator {
   template <typename Other>
   explicit LineAllocator(const LineAllocator<Other>& /*other*/) {}
 
-  T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), kLine)); }
+  T* allocate(std::size_t count) {
+    T* const memory = static_cast<T*>(::operator new(count * sizeof(T), kLine));
+    populatePages(memory, memory + count);
+    return memory;
+  }
   void deallocate(T* memory, std::size_t /*count*/) { ::operator delete(memory, kLine); }
 
   friend bool operator==(const LineAllocator& /*a*/, const LineAllocator& /*b*/) { return true; }

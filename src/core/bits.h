@@ -24,7 +24,8 @@ inline std::uint32_t countBits(ColumnBits bits) {
   return static_cast<std::uint32_t>(bits * 0x0101010101010101U >> 56);
 }
 
-/// Number of bits that hold the numbers up to one, at least 1.
+/// Number of bits that all numbers up to the largest need, at least 1.
+/// \param largest below 2^63
 inline unsigned bitsFor(std::uint64_t largest) {
   unsigned bits = 1;
   while (largest >> bits != 0) ++bits;

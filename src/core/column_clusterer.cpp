@@ -201,7 +201,7 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
   is_prepared_ = false;
   tried_near_ = {0, 0};
   scheduler_.skipColumns(columns);
-  if (partition_count_ > 1) subclusters_.reserve(lasers * columns + RingBlock::kColumns);
+  if (partition_count_ > 1) subclusters_.reserve(lasers * columns + RingBlock::kColumns, NewPages::kUntouched);
   const bool drifts = parameters_.sensor.drift > kMaxDrift;
   if (!drifts && readFarAndNear(lasers, cells)) return;
   if (UnorderedReturns::isUnordered(columns, lasers, cells, tolerance_))
@@ -313,8 +313,9 @@ void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, cons
       reserveRuns(partition);
       reserveNear(partition, end - begin);
     }
-    if (first < middle && first + count >= middle)  // the other half is likely to have as many
-      partition.reserveNear(2 * partition.nearReturns().count + 2 * RingBlock::kColumns);
+    const std::size_t read = first + count - begin;
+    if (first < middle && first + count >= middle && first + count < end)  // the rest is likely to have as many
+      partition.reserveNear(partition.nearReturns().count * (end - begin) / read + 2 * RingBlock::kColumns);
   }
 }
 
@@ -534,7 +535,7 @@ ColumnClusterer::~ColumnClusterer() = default;
 ColumnClusterer::ColumnClusterer(const ColumnClusterer& other)
     : rotation_(std::make_unique<Rotation>(*other.rotation_)) {}
 ColumnClusterer& ColumnClusterer::operator=(const ColumnClusterer& other) {
-  *rotation_ = *other.rotation_;
+  rotation_ = std::make_unique<Rotation>(*other.rotation_);  // first, so that it changes nothing if it fails
   return *this;
 }
 

@@ -17,7 +17,7 @@ namespace lisco {
 class DisjointSets {
  public:
   /// Provides memory for elements below a number. Other elements stay as they are.
-  void reserve(std::size_t capacity) { parents_.grow(capacity, NewPages::kUntouched); }
+  void reserve(std::size_t capacity, NewPages pages = NewPages::kPopulated) { parents_.grow(capacity, pages); }
   /// The same, for a number that grows step by step.
   void grow(std::size_t capacity) { parents_.growInSteps(capacity); }
 

@@ -344,7 +344,7 @@ EndlessClusterer::EndlessClusterer() : stream_(std::make_unique<Stream>()) {
 EndlessClusterer::~EndlessClusterer() = default;
 EndlessClusterer::EndlessClusterer(const EndlessClusterer& other) : stream_(std::make_unique<Stream>(*other.stream_)) {}
 EndlessClusterer& EndlessClusterer::operator=(const EndlessClusterer& other) {
-  *stream_ = *other.stream_;
+  stream_ = std::make_unique<Stream>(*other.stream_);
   return *this;
 }
 

@@ -244,7 +244,7 @@ WindowClusterer::WindowClusterer() : window_(std::make_unique<Window>()) {
 WindowClusterer::~WindowClusterer() = default;
 WindowClusterer::WindowClusterer(const WindowClusterer& other) : window_(std::make_unique<Window>(*other.window_)) {}
 WindowClusterer& WindowClusterer::operator=(const WindowClusterer& other) {
-  *window_ = *other.window_;
+  window_ = std::make_unique<Window>(*other.window_);
   return *this;
 }
 

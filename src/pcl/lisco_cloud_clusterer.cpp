@@ -31,7 +31,7 @@ LiscoCloudClusterer::~LiscoCloudClusterer() = default;
 LiscoCloudClusterer::LiscoCloudClusterer(const LiscoCloudClusterer& other)
     : state_(std::make_unique<State>(*other.state_)) {}
 LiscoCloudClusterer& LiscoCloudClusterer::operator=(const LiscoCloudClusterer& other) {
-  *state_ = *other.state_;
+  state_ = std::make_unique<State>(*other.state_);
   return (*this);
 }
 

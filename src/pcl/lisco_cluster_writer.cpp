@@ -2,9 +2,15 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include <pcl/segmentation/lisco_cluster_writer.h>
 
+#include <exception>
+
 #include "core/pages.h"
 
-void pcl::detail::reserveLiscoIndices(Indices& indices, std::size_t count) {
-  indices.reserve(count);
+void pcl::detail::reserveLiscoIndices(Indices& indices, std::size_t count) noexcept {
+  try {
+    indices.reserve(count);
+  } catch (const std::exception&) {
+    return;  // reported where they are written
+  }
   lisco::populatePages(indices.data(), indices.data() + count);
 }

@@ -27,10 +27,10 @@ inline void sortLiscoClusters(std::vector<PointIndices>& clusters) {
   std::sort(clusters.rbegin(), clusters.rend(), comparePointClusters);
 }
 
-/** \brief Gives empty indices memory for \a count of them, whose pages the system provides in one call where it can: a
- * page fault for each page would take longer.
+/** \brief Gives empty indices memory for \a count of them, if there is enough; the system provides new pages in one
+ * call where it can: a page fault for each page would take longer.
  */
-LISCO_EXPORT void reserveLiscoIndices(Indices& indices, std::size_t count);
+LISCO_EXPORT void reserveLiscoIndices(Indices& indices, std::size_t count) noexcept;
 
 /** \brief Memory of LiscoClusterWriter, which a caller may keep for the next one. */
 struct LiscoClusterPlaces {
@@ -54,7 +54,6 @@ class LiscoClusterWriter {
         header_(header),
         places_(places),
         clusters_(clusters),
-        is_first_(places.next.capacity() == 0),
         first_own_(clusters.size()) {
     const std::size_t count = clusterer.subclusterCount();
     places_.next.resize(count);
@@ -134,6 +133,9 @@ class LiscoClusterWriter {
   /// Longest run of a size that is not accepted which is written there; longer ones are skipped by a branch.
   static constexpr std::size_t kMaxIgnored = 64;
 
+  /// Points from which on the memory of a cluster's indices has several pages.
+  static constexpr std::uint32_t kLargeCluster = 4096;
+
   /** \brief A size, of those that subclusters may have; larger ones become the largest. */
   static std::uint32_t inWord(uindex_t size) {
     return (static_cast<std::uint32_t>(std::min<uindex_t>(size, std::numeric_limits<std::uint32_t>::max())));
@@ -189,7 +191,7 @@ class LiscoClusterWriter {
     static_assert(std::is_nothrow_move_constructible<PointIndices>::value, "clusters that move keep their indices");
     clusters_.emplace_back();
     clusters_.back().header = header_;
-    if (is_first_) reserveLiscoIndices(clusters_.back().indices, size);
+    if (size >= kLargeCluster) reserveLiscoIndices(clusters_.back().indices, size);
     clusters_.back().indices.resize(size);
     return (clusters_.back().indices.data());
   }
@@ -201,7 +203,6 @@ class LiscoClusterWriter {
   index_t ignored_[kMaxIgnored];            ///< where points of subclusters of other sizes go
   index_t ignored_from_last_[kMaxIgnored];  ///< the same, from the last backwards
   std::vector<PointIndices>& clusters_;
-  const bool is_first_;          ///< of those with this memory: that of clusters is likely to be new
   const std::size_t first_own_;  ///< of the clusters, the first that this writer adds
 };
 

@@ -91,7 +91,7 @@ class ImageCells {
     while (sizeOf(chunk(current_).rows + 1) > chunk(current_).floats.size()) {
       if (Chunk& empty = chunk(current_); empty.rows == 0) {  // its memory may move
         empty.floats.grow(sizeOf(std::max({expected, rows_with_memory_ / 8, std::size_t{1}})), NewPages::kUntouched);
-        empty.populated = 0;
+        empty.populated = empty.arePagesInUse() ? empty.floats.size() : 0;
       } else if (++current_ == chunkCount()) {
         more_chunks_.emplace_back();
       }
@@ -101,15 +101,20 @@ class ImageCells {
     ++rows_with_memory_;
   }
 
-  /// Has the system provide the pages of a row with memory. Rows are expected in the order in which they got it.
+  /// Has the system provide the pages of a row with memory, and some behind it. Rows are expected in the order in which
+  /// they got it; one after a later one is left to its first writes.
   void populate(std::size_t row) {
+    constexpr std::size_t kAtATime = std::size_t{1} << 15;  // floats: a system call takes as long as a few pages
     for (std::size_t i = 0; i < chunkCount(); ++i) {
       Chunk& taken = chunk(i);
-      float* const end = rows_[row] + sizeOf(1);
-      float* const untouched = taken.floats.data() + taken.populated;
-      if (!taken.has(rows_[row]) || !std::less<>()(untouched, end)) continue;
-      populatePages(std::max(untouched, rows_[row], std::less<>()), end);
-      taken.populated = static_cast<std::size_t>(end - taken.floats.data());
+      if (!taken.has(rows_[row])) continue;
+      float* const floats = taken.floats.data();
+      const auto begin = static_cast<std::size_t>(rows_[row] - floats);
+      if (begin + sizeOf(1) <= taken.populated) return;
+      const std::size_t end = std::min(begin + std::max(sizeOf(1), kAtATime), taken.floats.size());
+      populatePages(floats + std::max(begin, taken.populated), floats + end);
+      taken.populated = end;
+      return;
     }
   }
 
@@ -173,6 +178,7 @@ class ImageCells {
     std::size_t rows = 0;       ///< in use, from the first on
     std::size_t populated = 0;  ///< floats, from the first on, whose pages need no populate ()
 
+    bool arePagesInUse() const { return lisco::arePagesInUse(floats.data(), floats.data() + floats.size()); }
     bool has(const float* row) const {
       constexpr std::less<const float*> isBefore;
       return !isBefore(row, floats.data()) && isBefore(row, floats.data() + floats.size());

@@ -158,10 +158,11 @@ void SegmentLinker::fit(const RangeImage& image) {
 }
 
 void Sector::grow(std::size_t segments) {
-  for (auto* bound : {&nearest, &farthest, &lowest, &highest, &first, &last}) bound->growInSteps(segments);
-  root.growInSteps(segments);
-  place.growInSteps(segments);
-  count.growInSteps(segments);
+  const std::size_t size = withSpare(segments);  // of all arrays, of which the large ones round it up
+  for (auto* bound : {&nearest, &farthest, &lowest, &highest, &first, &last}) bound->grow(size);
+  root.grow(size);
+  place.grow(size);
+  count.grow(size);
 }
 
 /// Sectors are cut again: returns may have come late, or will come.

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -19,6 +20,8 @@ namespace lisco {
 /// bounds.
 struct Sector {
   static constexpr std::int64_t kNone = -1;
+  static constexpr std::size_t kMaxLanes = 16;  ///< of the vectors that read segments
+
   std::int64_t number = kNone;
   std::int64_t first_bin = 0;
   GrowingArray<float> nearest, farthest;  ///< horizontal distance
@@ -29,10 +32,10 @@ struct Sector {
   GrowingArray<std::uint8_t> count;       ///< of returns
   std::vector<std::uint32_t> begin;       ///< of each row's segments, and the end
 
-  /// Makes room for another row behind some segments. Vectors are read behind the last one.
+  /// Makes room for another row behind some segments: one for each bin, and what vectors read behind the last.
   void reserveRow(std::size_t segments) {
-    constexpr std::size_t kRow = 2 * RangeImage::kSector;
-    if (segments + kRow > count.size()) grow(segments + kRow);
+    constexpr std::size_t kRow = RangeImage::kSector + kMaxLanes;
+    if (segments + kRow > std::min(place.size(), count.size())) grow(segments + kRow);
   }
   void grow(std::size_t segments);
 };

@@ -279,6 +279,7 @@ class SegmentSearch {
     const std::uint32_t begin = other.begin[segment.first_row];
     const std::uint32_t end = std::min(limit, other.begin[segment.last_row + 1]);
     state_.work += 1 + (end - begin) / kLanes;
+    static_assert(kLanes <= Sector::kMaxLanes, "there is room behind the last segment");
     for (std::uint32_t i = begin; i < end; i += std::uint32_t{kLanes}) {
       const auto load = [&](const GrowingArray<float>& bound) { return hn::LoadU(kFloats, &bound[i]); };
       const auto all = [](float value) { return hn::Set(kFloats, value); };

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
+#include "core/aligned_vector.h"
 #include "core/ground/direction.h"
 #include "core/ground/distance_bins.h"
 #include "core/ground/plane_estimator.h"
@@ -57,7 +57,7 @@ class GroundMap {
 
   void renew(std::size_t number, std::uint32_t block, const Plane& plane);
 
-  std::vector<Sector> sectors_;
+  AlignedVector<Sector> sectors_;
   std::array<std::uint32_t, kSectors> latest_{};  // block that a sector was last prepared for, from 1 on; 0: none
 };
 

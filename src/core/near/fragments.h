@@ -64,7 +64,7 @@ struct FragmentList {
 /// Fragments as they are sorted: each an item of its key, which is that of its voxel, and below it its number.
 struct FragmentItems {
   unsigned number_bits = 0;  ///< of an item: the lowest
-  unsigned plane_shift = 0;  ///< below these bits of an item, planes of bricks differ
+  unsigned plane_shift = 0;  ///< of an item: the bits from this one on are the number of its plane of bricks
   GrowingArray<std::uint64_t> all;
   GrowingArray<std::uint64_t> scratch;  ///< for sorting
   std::vector<std::size_t> part_sizes;  ///< in fragments; those of a part begin at its first return's number

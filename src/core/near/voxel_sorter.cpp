@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/bits.h"
 #include "core/near/constants.h"
 #include "core/near/neighbourhood.h"
 #include "core/parallel.h"
