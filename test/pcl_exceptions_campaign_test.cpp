@@ -107,8 +107,12 @@ class ExtractSession {
   void checkInterrupted(std::size_t) {}
 
   std::string redo() {
-    // PCL's initCompute () catches the refusal of its own indices and reports it: then there is nothing to cluster.
-    if (passed_ && !clusters_.empty()) return "extract () went on: " + differenceOf(extracted_.right, clusters_);
+    // PCL's initCompute () catches the refusal of its own indices and reports it: then there is nothing to cluster. If
+    // they were refused before it, it asks for them again.
+    if (passed_ && !clusters_.empty()) {
+      const std::string wrong = differenceOf(extracted_.right, clusters_);
+      if (!wrong.empty()) return "extract () went on: " + wrong;
+    }
     clusters_.clear();
     call(0);
     std::string wrong = differenceOf(extracted_.right, clusters_);

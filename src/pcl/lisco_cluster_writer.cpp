@@ -6,7 +6,7 @@
 
 #include "core/pages.h"
 
-void pcl::detail::reserveLiscoIndices(Indices& indices, std::size_t count) noexcept {
+void pcl::detail::LiscoIndexMemory::reserve(Indices& indices, std::size_t count) noexcept {
   try {
     indices.reserve(count);
   } catch (const std::exception&) {

@@ -30,7 +30,9 @@ inline void sortLiscoClusters(std::vector<PointIndices>& clusters) {
 /** \brief Gives empty indices memory for \a count of them, if there is enough; the system provides new pages in one
  * call where it can: a page fault for each page would take longer.
  */
-LISCO_EXPORT void reserveLiscoIndices(Indices& indices, std::size_t count) noexcept;
+struct LISCO_EXPORT LiscoIndexMemory {
+  static void reserve(Indices& indices, std::size_t count) noexcept;
+};
 
 /** \brief Memory of LiscoClusterWriter, which a caller may keep for the next one. */
 struct LiscoClusterPlaces {
@@ -191,7 +193,7 @@ class LiscoClusterWriter {
     static_assert(std::is_nothrow_move_constructible<PointIndices>::value, "clusters that move keep their indices");
     clusters_.emplace_back();
     clusters_.back().header = header_;
-    if (size >= kLargeCluster) reserveLiscoIndices(clusters_.back().indices, size);
+    if (size >= kLargeCluster) LiscoIndexMemory::reserve(clusters_.back().indices, size);
     clusters_.back().indices.resize(size);
     return (clusters_.back().indices.data());
   }

@@ -49,8 +49,8 @@ class VoxelSorter {
   std::uint32_t setOf(std::size_t number) const { return sets()[number].of_return; }
 
  private:
-  /// The sets of single returns and their voxels, by element and by number: in the scratch memory,
-  /// which is free once the fragments are sorted.
+  /// The sets of single returns and their voxels, by element and by number: in the scratch memory, which is free once
+  /// the fragments are sorted.
   struct Sets {
     std::uint32_t of_voxel;  ///< before all are linked: number of its returns
     std::uint32_t of_return;

@@ -16,7 +16,7 @@ std::size_t pcl::LiscoClusterExtraction<PointT>::appendClusters(std::vector<Poin
   if (input_ && !indices_) {  // initCompute () lists all points, and takes this memory for them
     fake_indices_ = true;
     indices_ = std::make_shared<Indices>();
-    detail::reserveLiscoIndices(*indices_, input_->size());
+    detail::LiscoIndexMemory::reserve(*indices_, input_->size());
   }
   if (!initCompute() || input_->empty() || indices_->empty()) {
     clusters.clear();
