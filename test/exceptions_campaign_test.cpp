@@ -331,6 +331,21 @@ TEST(ExceptionsCampaign, WindowsSurviveRefusedMemory) {
   for (const std::size_t count : refused) EXPECT_GT(count, 20U);
 }
 
+TEST(ExceptionsCampaign, FailedAssignmentsOfWindowsChangeNothing) {
+  for (std::uint64_t seed = 2500; seed < 2500 + timesEffort(10); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    lisco::WindowClusterer clusterers[2];
+    for (lisco::WindowClusterer& clusterer : clusterers) {
+      const Sliding sliding(random);
+      clusterer.begin(sliding.parameters);
+      for (const auto& column : sliding.stream.columns) clusterer.addColumn(column.cells.data(), column.cells.size());
+    }
+    refuseCopies(clusterers[0], clusterers[1]);
+    if (HasFailure()) return;
+  }
+}
+
 TEST(ExceptionsCampaign, WindowsSurviveThrowingVisitors) {
   std::size_t interrupted = 0;
   for (std::uint64_t seed = 3000; seed < 3000 + timesEffort(100); ++seed) {

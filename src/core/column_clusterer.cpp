@@ -81,10 +81,12 @@ class ColumnClusterer::Rotation {
   std::vector<LoadBalancer::Part> parts_;  ///< of the threads
   bool comes_at_once_ = false;             ///< the latest columns, of this rotation or the one before
   bool is_prepared_ = false;               ///< the last partition, for columns that follow
-  struct TriedNear {
+  struct NearReturnsOf {                   ///< some columns
     std::size_t returns, columns;
-  } tried_near_{};           ///< near returns of the columns of this rotation's trial; {0, 0}: none
-  bool are_linked_ = false;  ///< all partitions but the last, with each other
+    std::size_t expectedIn(std::size_t other_columns) const { return returns * other_columns / columns; }
+  };
+  NearReturnsOf tried_near_{};  ///< of this rotation's trial; {0, 0}: none
+  bool are_linked_ = false;     ///< all partitions but the last, with each other
   enum class Near { kCollected, kSorted, kInVoxels } near_ = Near::kInVoxels;  ///< state of the near returns
   bool is_unordered_ = false;  ///< all returns are in unordered_, near and collected or sorted; partitions are empty
   UnorderedReturns unordered_;
@@ -261,8 +263,7 @@ bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSou
 /// Makes room for the near returns of some columns: half of what the trial predicts, as scenes differ around the
 /// sensor.
 void ColumnClusterer::Rotation::reserveNear(Partition& partition, std::size_t columns) {
-  if (tried_near_.columns == 0) return;
-  partition.reserveNear(tried_near_.returns * columns / tried_near_.columns / 2 + 2 * RingBlock::kColumns);
+  if (tried_near_.columns > 0) partition.reserveNear(tried_near_.expectedIn(columns) / 2 + 2 * RingBlock::kColumns);
 }
 
 /// Each thread reads its part of the columns, without far returns.
@@ -313,9 +314,10 @@ void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, cons
       reserveRuns(partition);
       reserveNear(partition, end - begin);
     }
-    const std::size_t read = first + count - begin;
-    if (first < middle && first + count >= middle && first + count < end)  // the rest is likely to have as many
-      partition.reserveNear(partition.nearReturns().count * (end - begin) / read + 2 * RingBlock::kColumns);
+    if (first < middle && first + count >= middle && first + count < end) {  // the rest is likely to have as many
+      const NearReturnsOf read{partition.nearReturns().count, first + count - begin};
+      partition.reserveNear(read.expectedIn(end - begin) + 2 * RingBlock::kColumns);
+    }
   }
 }
 

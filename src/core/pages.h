@@ -18,44 +18,21 @@ constexpr std::size_t kHugePage = std::size_t{1} << 21;  ///< bytes
 /// Whether the pages of new memory are provided when it is taken, or by the first write to each.
 enum class NewPages { kPopulated, kUntouched };
 
-#ifdef __linux__
-/// The pages that hold some memory.
-struct Pages {
-  std::uintptr_t size = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-  std::uintptr_t first, end;
-
-  Pages(const void* begin_of_memory, const void* end_of_memory)
-      : first(reinterpret_cast<std::uintptr_t>(begin_of_memory) / size * size),
-        end((reinterpret_cast<std::uintptr_t>(end_of_memory) + size - 1) / size * size) {}
-
-  std::uintptr_t count() const { return (end - first) / size; }
-  /// Whether the one in the middle has been provided.
-  bool areInUse() const {
-    unsigned char is_there = 0;
-    return mincore(reinterpret_cast<void*>(first + count() / 2 * size), size, &is_there) == 0 && (is_there & 1) != 0;
-  }
-};
-#endif
-
-/// Whether the pages of some memory are likely to have been provided, as those of memory that has been given back.
-inline bool arePagesInUse([[maybe_unused]] const void* begin, [[maybe_unused]] const void* end) noexcept {
-#ifdef __linux__
-  return Pages(begin, end).areInUse();
-#else
-  return true;
-#endif
-}
-
 /// Has the system provide the pages of new memory in one call, where it can (Linux 5.14); otherwise the first write to
 /// each page causes a page fault. On virtual machines, a fault takes 2 to 10 microseconds, and a page of such a call
-/// less than 2, but most of 1 if it is there already (first_call). A few pages are left to their first writes.
+/// less than 2, but most of 1 if it is there already (first_call). So the page in the middle tells whether the memory
+/// has been in use before, and a few pages are left to their first writes.
 inline void populatePages([[maybe_unused]] void* begin, [[maybe_unused]] void* end) noexcept {
 #ifdef __linux__
   constexpr int kPopulateWrite = 23;  // MADV_POPULATE_WRITE, which older headers lack
   constexpr std::uintptr_t kFewPages = 8;
-  const Pages pages(begin, end);
-  if (pages.count() > kFewPages && !pages.areInUse())
-    madvise(reinterpret_cast<void*>(pages.first), pages.end - pages.first, kPopulateWrite);
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto first = reinterpret_cast<std::uintptr_t>(begin) / page;
+  const auto count = (reinterpret_cast<std::uintptr_t>(end) + page - 1) / page - first;
+  if (count <= kFewPages) return;
+  unsigned char middle = 0;
+  if (mincore(reinterpret_cast<void*>((first + count / 2) * page), page, &middle) == 0 && (middle & 1) != 0) return;
+  madvise(reinterpret_cast<void*>(first * page), count * page, kPopulateWrite);
 #endif
 }
 

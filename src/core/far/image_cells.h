@@ -91,7 +91,7 @@ class ImageCells {
     while (sizeOf(chunk(current_).rows + 1) > chunk(current_).floats.size()) {
       if (Chunk& empty = chunk(current_); empty.rows == 0) {  // its memory may move
         empty.floats.grow(sizeOf(std::max({expected, rows_with_memory_ / 8, std::size_t{1}})), NewPages::kUntouched);
-        empty.populated = empty.arePagesInUse() ? empty.floats.size() : 0;
+        empty.populated = 0;
       } else if (++current_ == chunkCount()) {
         more_chunks_.emplace_back();
       }
@@ -178,7 +178,6 @@ class ImageCells {
     std::size_t rows = 0;       ///< in use, from the first on
     std::size_t populated = 0;  ///< floats, from the first on, whose pages need no populate ()
 
-    bool arePagesInUse() const { return lisco::arePagesInUse(floats.data(), floats.data() + floats.size()); }
     bool has(const float* row) const {
       constexpr std::less<const float*> isBefore;
       return !isBefore(row, floats.data()) && isBefore(row, floats.data() + floats.size());
