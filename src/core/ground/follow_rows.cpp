@@ -307,12 +307,11 @@ HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const RowPart
   const auto agrees = hn::Lt(off_column, grown(kAgrees, kAgreesGrowth, distance));
   const auto sure = hn::And(hn::Lt(map.slack, set(kSure)), hn::Lt(off_map, set(kSure)));
 
-  auto found = foundByMap(map, above, flat, hn::Or(agrees, sure));
-  if (!hn::AllFalse(kLanes, hn::AndNot(found, valid))) {
-    const Mask obstacles = lanesOf(row.before->obstacles, k);
-    found = hn::Or(found, foundByColumn(part, map, above, flat, obstacles, steepest, row.unevenness));
-    if (row.unevenness > 0.0F) found = hn::Or(found, foundOnUneven(part, map, above, flat, steepest, row.unevenness));
-  }
+  // Without branches on what is found, which cannot be predicted.
+  const Mask obstacles = lanesOf(row.before->obstacles, k);
+  auto found = hn::Or(foundByMap(map, above, flat, hn::Or(agrees, sure)),
+                      foundByColumn(part, map, above, flat, obstacles, steepest, row.unevenness));
+  if (row.unevenness > 0.0F) found = hn::Or(found, foundOnUneven(part, map, above, flat, steepest, row.unevenness));
   found = hn::And(found, hn::And(valid, hn::Le(height, hn::Add(part.limit, set(kStepUp)))));
   lowerLimit(row, k, part, found);
 
@@ -320,7 +319,7 @@ HWY_INLINE Found followPart(const FollowedRow& row, std::size_t k, const RowPart
   const auto foot = areWhereExpected(part, map);
   found = hn::AndNot(hn::AndNot(foot, above.wall), found);
   const auto unsure = hn::AndNot(hn::And(sure, agrees), found);
-  if (!hn::AllFalse(kLanes, unsure)) found = hn::AndNot(hn::And(unsure, isRough(row, k, rho, height)), found);
+  found = hn::AndNot(hn::And(unsure, isRough(row, k, rho, height)), found);
 
   reached = hn::And(found, hn::Ge(part.way, set(kAdvance)));
   const auto object = hn::And(hn::AndNot(found, areObstacles(part, above)), valid);
