@@ -21,6 +21,7 @@ RUNS = [
     ("lisco_core_tests", "-*Seeds*:Larger*:*Threads*"),
     ("lisco_core_tests", "*RandomScans*/0:WindowClusterer*:Endless*:Stream*"),
     ("lisco_core_tests", "*"),
+    ("lisco_exception_tests", "*"),
 ]
 TIMEOUT = 600  # seconds; an endless bug counts as killed
 
