@@ -232,21 +232,27 @@ void refuseCopies(Clusterer& clusterer, Clusterer& other) {
   EXPECT_GT(refused, 5U);
 }
 
-TEST(ExceptionsCampaign, FailedAssignmentsChangeNothing) {
-  for (std::uint64_t seed = 1500; seed < 1500 + timesEffort(10); ++seed) {
+/// The same for clusterers that receive(random, clusterer) has given random columns.
+template <typename Clusterer, typename Receive>
+void refuseCopiesOfRandom(std::uint64_t first_seed, const Receive& receive) {
+  for (std::uint64_t seed = first_seed; seed < first_seed + timesEffort(10); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
-    lisco::ColumnClusterer clusterers[2];
-    for (lisco::ColumnClusterer& clusterer : clusterers) {
-      const Rotation rotation(random);
-      clusterer.begin(rotation.parameters);
-      clusterer.addColumns(rotation.scan.columns, rotation.scan.lasers,
-                           [&](std::size_t laser, std::size_t column) { return rotation.scan.at(laser, column); });
-      clusterer.update();
-    }
+    Clusterer clusterers[2];
+    for (Clusterer& clusterer : clusterers) receive(random, clusterer);
     refuseCopies(clusterers[0], clusterers[1]);
-    if (HasFailure()) return;
+    if (testing::Test::HasFailure()) return;
   }
+}
+
+TEST(ExceptionsCampaign, FailedAssignmentsChangeNothing) {
+  refuseCopiesOfRandom<lisco::ColumnClusterer>(1500, [](Random& random, lisco::ColumnClusterer& clusterer) {
+    const Rotation rotation(random);
+    clusterer.begin(rotation.parameters);
+    clusterer.addColumns(rotation.scan.columns, rotation.scan.lasers,
+                         [&](std::size_t laser, std::size_t column) { return rotation.scan.at(laser, column); });
+    clusterer.update();
+  });
 }
 
 // --- Sliding windows ------------------------------------------------------------------------------------------------
@@ -332,18 +338,11 @@ TEST(ExceptionsCampaign, WindowsSurviveRefusedMemory) {
 }
 
 TEST(ExceptionsCampaign, FailedAssignmentsOfWindowsChangeNothing) {
-  for (std::uint64_t seed = 2500; seed < 2500 + timesEffort(10); ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
-    lisco::WindowClusterer clusterers[2];
-    for (lisco::WindowClusterer& clusterer : clusterers) {
-      const Sliding sliding(random);
-      clusterer.begin(sliding.parameters);
-      for (const auto& column : sliding.stream.columns) clusterer.addColumn(column.cells.data(), column.cells.size());
-    }
-    refuseCopies(clusterers[0], clusterers[1]);
-    if (HasFailure()) return;
-  }
+  refuseCopiesOfRandom<lisco::WindowClusterer>(2500, [](Random& random, lisco::WindowClusterer& clusterer) {
+    const Sliding sliding(random);
+    clusterer.begin(sliding.parameters);
+    for (const auto& column : sliding.stream.columns) clusterer.addColumn(column.cells.data(), column.cells.size());
+  });
 }
 
 TEST(ExceptionsCampaign, WindowsSurviveThrowingVisitors) {
