@@ -4,32 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/bits.h"
-#include "core/ground/column_profile.h"
-#include "core/ground/distance_bins.h"
 
 namespace lisco::ground {
 namespace {
 
 // Least loss of objects and of ground in the tables of benchmarks/suite.sh ground ground_real.
-constexpr float kNear = 25.0F;          // metres; beyond, the ground may be higher or lower
-constexpr std::size_t kMaxCells = 48;   // of a column
-constexpr float kMinReach = 1.12F;      // of a cell's distance by that of the one before
-constexpr float kSameSlope = 0.08F;     // metres per metre
-constexpr float kLevel = 0.1F;          // metres per metre
 constexpr float kEnough = 0.5F;         // of the most weight
 constexpr float kWindow = 0.15F;        // metres, of heights that agree
 constexpr float kRefinedWindow = 0.4F;  // metres, of heights that agree with the plane's slope
 constexpr float kRefinedEnough = 0.7F;  // of the most weight
-constexpr float kLowSensor = 0.3F;      // metres; a line less deep beneath the sensor may be on the table it stands on
-constexpr float kBeyondTable = 2.2F;    // metres; such a line counts if its second cell is further out than a table is
-constexpr float kTableGap = 1.75F;      // and less than this many times as far as its first
-constexpr float kTable = 0.5F;          // metres; most height of the sensor above a table, or a low floor
-constexpr float kBelowTable = 0.1F;     // metres, by which the floor beside a table is lower at least
-constexpr float kRoom = 10.0F;          // metres, distance up to which that floor is looked for
-constexpr float kSureReach = 9.0F;      // metres; lines that begin further out agree with less weight
 constexpr float kTrust = 0.5F;          // of the plane's slope, the rest of a line's own
 constexpr double kPointReach = 6.0;     // metres; where lines begin further out, they count less as points
 constexpr double kSlopeReach = 2.0;     // metres, over which a line's slope counts
@@ -45,14 +30,11 @@ constexpr std::uint32_t kUpdatesPerGround = 8, kUpdatesPerLowGround = 3;
 }  // namespace
 
 void PlaneEstimator::begin(const GroundParameters& parameters, float max_slope, std::size_t lasers) {
-  for (auto* values : {&rho_, &height_, &x_, &y_}) values->resize(std::max(values->size(), lasers));
-  for (auto* values : {&bins_, &levels_}) values->resize(std::max(values->size(), lasers));
-  lowest_.resize(std::max(lowest_.size(), lasers));
   const SensorHints& sensor = parameters.sensor;
   const bool origin_known = sensor.steps_per_turn != 0 || sensor.origin != std::array<float, 3>{};
-  highest_ = origin_known ? -0.2F : 0.5F;  // otherwise the ground may be as high as the cloud's origin
+  const float highest = origin_known ? -0.2F : 0.5F;  // otherwise the ground may be as high as the cloud's origin
+  finder_.begin({highest, max_slope, sensor.origin}, lasers);
   max_slope_ = max_slope;
-  origin_ = sensor.origin;
   height_state_ = std::isnan(parameters.sensor_height) ? Height::kUnknown : Height::kGiven;
   plane_ = {hasHeight() ? -parameters.sensor_height : 0.0F, parameters.slope[0] - sensor.tilt[0],
             parameters.slope[1] - sensor.tilt[1]};
@@ -68,128 +50,8 @@ bool PlaneEstimator::isKnown() const {
 }
 
 void PlaneEstimator::add(const Block& block, const Columns& columns, std::size_t first, std::size_t column) {
-  struct Low {
-    float rho, height;
-  };
-  // Written always, counted if near.
-  std::size_t count = 0;
-  for (std::size_t i = column, from = first + column; i < block.size; i += Block::kColumns, from += columns.stride) {
-    const float rho = block.rho[i];
-    rho_[count] = rho;
-    height_[count] = block.height[i];
-    x_[count] = columns.x[from] - origin_[0];
-    y_[count] = columns.y[from] - origin_[1];
-    count += static_cast<std::size_t>((rho > Block::kMinRho) & (rho < kNear));
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    x_[i] /= rho_[i];
-    y_[i] /= rho_[i];
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    bins_[i] = static_cast<std::uint32_t>(distanceBin(rho_[i], static_cast<std::int32_t>(kBins)));
-    levels_[i] = levelOf(height_[i]);
-  }
-  for (std::size_t i = 0; i < count; ++i) lowest_[i] = ground::lowestOf(rho_[i], height_[i]);
-  ColumnProfile profile;  // of all azimuths: lasers of a column may be staggered
-  Direction sum{0.0F, 0.0F};
-  for (std::size_t i = 0; i < count; ++i) {
-    profile.add(bins_[i], lowest_[i], levels_[i]);
-    sum.x += x_[i];
-    sum.y += y_[i];
-  }
-  const float length = std::max(std::sqrt(sum.x * sum.x + sum.y * sum.y), 1e-3F);
-  const Direction direction{sum.x / length, sum.y / length};
-
-  std::array<Low, kMaxCells + 1> lows;
-  std::size_t size = 0;
-  forEachBin(profile, [&](std::size_t bin) {
-    const Cell& cell = profile.cells[bin];
-    lows[size] = {cell.lowRho(), cell.low()};
-    size += static_cast<std::size_t>((size < kMaxCells) & isBare(cell.low(), cell.levels));
-  });
-  // For each of these, the first clearly beyond it, and the slope to there.
-  std::array<std::size_t, kMaxCells + 1> beyond;
-  std::array<float, kMaxCells> slopes;
-  beyond[size] = size;
-  for (std::size_t i = 0, j = 0; i < size; ++i) {
-    j = std::max(j, i + 1);
-    while (j < size && lows[j].rho < kMinReach * lows[i].rho) ++j;
-    beyond[i] = j;
-  }
-  const auto slopeOf = [&](std::size_t i, std::size_t j) {
-    return (lows[j].height - lows[i].height) / (lows[j].rho - lows[i].rho);
-  };
-  for (std::size_t i = 0; i < size && beyond[i] < size; ++i) slopes[i] = slopeOf(i, beyond[i]);
-  // Whether the column has returns below a line, as those of the floor are beyond a table.
-  const auto isPassedBelow = [&](float height, float slope) {
-    bool is_below = false;
-    forEachBin(profile, [&](std::size_t bin) {
-      const float rho = profile.cells[bin].lowRho(), below = height + slope * rho - profile.cells[bin].low();
-      is_below = is_below || (rho < kRoom && below > kBelowTable);
-    });
-    return is_below;
-  };
-  // Lines through three cells, or through two that are nearly level.
-  std::array<Line, kMaxCells> lines{};
-  std::size_t line_count = 0;
-  for (std::size_t i = 0; i < size; ++i) {
-    const std::size_t j = beyond[i];
-    if (j == size) break;
-    float slope = slopes[i];
-    float weight = 0.5F;
-    const std::size_t k = beyond[j];
-    if (k < size && std::fabs(slopes[j] - slope) < kSameSlope && std::fabs(slope) < max_slope_) {
-      slope = slopeOf(i, k);
-      weight = 1.0F;
-    } else if (std::fabs(slope) > kLevel) {
-      continue;
-    }
-    const float height = lows[i].height - slope * lows[i].rho;
-    const bool is_far = lows[j].rho > kBeyondTable && lows[j].rho < kTableGap * lows[i].rho;
-    if ((height > -kLowSensor && !is_far) || (height > -kTable && isPassedBelow(height, slope))) continue;
-    if (height < highest_) lines[line_count++] = {height, slope, weight, lows[i].rho, direction};
-  }
-  const Agreed agreed = lowestOf(lines.data(), line_count, 0.1F, kEnough);
-  if (agreed.weight == 0.0F) return;
-  Line line{agreed.height, 0.0F, agreed.weight, 0.0F, direction};
-  float weight = 0.0F;
-  for (std::size_t i = 0; i < line_count; ++i)
-    if (std::fabs(lines[i].height - agreed.height) < 0.2F) {
-      line.slope += lines[i].weight * lines[i].slope;
-      weight += lines[i].weight;
-      if (line.rho == 0.0F) line.rho = lines[i].rho;
-    }
-  line.slope = weight > 0.0F ? line.slope / weight : 0.0F;
-  lines_[count_++ % kMemory] = line;
-}
-
-/// Weight of a line's height beneath the sensor.
-float PlaneEstimator::sureWeight(const Line& line) {
-  const float reach = line.rho / kSureReach, squared = reach * reach;
-  return line.weight * std::min(1.0F, 2.0F / (1.0F + squared * squared));
-}
-
-/// Of the heights that at least `enough` of the most weight agrees with, the lowest: the mean of those near it, and
-/// their weight.
-PlaneEstimator::Agreed PlaneEstimator::lowestOf(const Line* lines, std::size_t size, float window, float enough) {
-  std::array<float, kMemory> heights, support{};
-  for (std::size_t i = 0; i < size; ++i) heights[i] = lines[i].height;
-  for (std::size_t j = 0; j < size; ++j) {
-    const float height = lines[j].height, weight = sureWeight(lines[j]);
-    for (std::size_t i = 0; i < size; ++i) support[i] += std::fabs(heights[i] - height) < window ? weight : 0.0F;
-  }
-  float most = 0.0F;
-  for (std::size_t i = 0; i < size; ++i) most = std::max(most, support[i]);
-  float lowest = std::numeric_limits<float>::infinity();
-  for (std::size_t i = 0; i < size; ++i)
-    if (support[i] >= enough * most) lowest = std::min(lowest, heights[i]);
-  float sum = 0.0F, weight = 0.0F;
-  for (std::size_t i = 0; i < size; ++i)
-    if (std::fabs(heights[i] - (lowest + window)) < 2.0F * window) {
-      sum += lines[i].weight * heights[i];
-      weight += lines[i].weight;
-    }
-  return {weight > 0.0F ? sum / weight : 0.0F, weight};
+  ColumnLine line;
+  if (finder_.find(block, columns, first, column, line)) lines_[count_++ % kMemory] = line;
 }
 
 void PlaneEstimator::update() {
@@ -218,7 +80,7 @@ void PlaneEstimator::estimate() {
 /// Finds the plane's height from those of the lines beneath the sensor. \return false if they show none
 bool PlaneEstimator::find() {
   const std::size_t size = std::min(count_, kMemory);
-  const Agreed agreed = lowestOf(lines_.data(), size, kWindow, kEnough);
+  const AgreedHeight agreed = lowestAgreed(lines_.data(), size, kWindow, kEnough);
   float sure = 0.0F;
   for (std::size_t i = 0; i < size; ++i)
     if (std::fabs(lines_[i].height - agreed.height) < 2.0F * kWindow) sure += sureWeight(lines_[i]);
@@ -233,7 +95,7 @@ bool PlaneEstimator::find() {
 float PlaneEstimator::weightOn(const Plane& plane) const {
   float weight = 0.0F;
   for (std::size_t i = 0; i < std::min(count_, kMemory); ++i) {
-    const Line& line = lines_[i];
+    const ColumnLine& line = lines_[i];
     const float slope = line.slope - plane.slopeTowards(line.direction);
     if (std::fabs(line.height - plane.height + slope * line.rho) < kOnPlane) weight += line.weight;
   }
@@ -246,7 +108,7 @@ void PlaneEstimator::fitSlopes() {
   // Least squares of slope_x x + slope_y y = slope, drawn to the horizon where directions are few.
   float xx = 1.0F, xy = 0.0F, yy = 1.0F, xs = 0.0F, ys = 0.0F, all = 0.0F;
   for (std::size_t i = 0; i < size; ++i) {
-    const Line& line = lines_[i];
+    const ColumnLine& line = lines_[i];
     if (std::fabs(line.height - plane_.height) > 2.0F * kWindow) continue;
     const auto [x, y] = line.direction;
     all += line.weight;
@@ -266,10 +128,10 @@ void PlaneEstimator::fitSlopes() {
 /// sensor is far off.
 void PlaneEstimator::refine() {
   const std::size_t size = std::min(count_, kMemory);
-  std::array<Line, kMemory> lines = lines_;
+  std::array<ColumnLine, kMemory> lines = lines_;
   for (std::size_t i = 0; i < size; ++i)
     lines[i].height += kTrust * (lines[i].slope - plane_.slopeTowards(lines[i].direction)) * lines[i].rho;
-  const Agreed agreed = lowestOf(lines.data(), size, kRefinedWindow, kRefinedEnough);
+  const AgreedHeight agreed = lowestAgreed(lines.data(), size, kRefinedWindow, kRefinedEnough);
   // Least squares of height + slope_x x + slope_y y = z.
   std::array<std::array<double, 4>, 3> rows{};
   rows[1][1] = rows[2][2] = kLevelWeight;
@@ -280,7 +142,7 @@ void PlaneEstimator::refine() {
   double all = 0.0;
   for (std::size_t i = 0; i < size; ++i) {
     if (std::fabs(lines[i].height - agreed.height) > 2.0F * kRefinedWindow) continue;
-    const Line& line = lines_[i];
+    const ColumnLine& line = lines_[i];
     const double weight = line.weight, rho = line.rho, slope = line.slope;
     const double x = line.direction.x, y = line.direction.y, reach = rho / kPointReach;
     add(weight / (1.0 + reach * reach), {1.0, rho * x, rho * y, line.height + slope * rho});

@@ -5,9 +5,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "core/ground/block.h"
+#include "core/ground/column_line.h"
 #include "core/ground/direction.h"
 #include "lisco/ground_filter.h"
 
@@ -48,28 +48,13 @@ class PlaneEstimator {
   const Plane& plane() const { return plane_; }
 
  private:
-  /// A line that a column's ground may follow.
-  struct Line {
-    float height;  // beneath the sensor
-    float slope;
-    float weight;
-    float rho;  // where it begins
-    Direction direction;
-  };
-  struct Agreed {
-    float height, weight;
-  };
-  static float sureWeight(const Line& line);
-  static Agreed lowestOf(const Line* lines, std::size_t size, float window, float enough);
   bool find();
   void fitSlopes();
   void refine();
   float weightOn(const Plane& plane) const;
 
-  std::vector<float> rho_, height_, x_, y_;  // of a column's near returns; then the directions towards them
-  std::vector<std::uint64_t> lowest_;        // as in Cell
-  std::vector<std::uint32_t> bins_, levels_;
-  std::array<Line, kMemory> lines_;
+  ColumnLineFinder finder_;
+  std::array<ColumnLine, kMemory> lines_;
   std::size_t count_ = 0;  // ever added
   Plane plane_;
   enum class Height { kUnknown, kGiven, kFound } height_state_ = Height::kUnknown;
@@ -77,9 +62,7 @@ class PlaneEstimator {
   std::uint32_t updates_ = 0;  // up to kUpdates
   std::size_t seen_ = 0;       // of count_, by the latest update
   std::uint64_t showed_ = 0;   // bit i: whether the update i updates ago showed ground, of kUpdates
-  float highest_ = 0.0F;       // metres
   float max_slope_ = 0.0F;
-  std::array<float, 3> origin_{};  // of the sensor
 };
 
 }  // namespace lisco::ground
