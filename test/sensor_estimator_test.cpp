@@ -118,6 +118,29 @@ TEST(SensorEstimator, FindsTheSensorInMapCoordinates) {
   expectFound(mounting, estimate(mountedRotation(mounting)), 0.3);
 }
 
+// From the origin of the cloud, all returns of the ground have the slope 0.
+TEST(SensorEstimator, FindsTheSensorAboveFlatGround) {
+  for (const double above : {0.5, 1.8, 3.0}) {
+    SCOPED_TRACE("above " + std::to_string(above));
+    Random random(3);
+    Scan scan(kColumns, kLasers);
+    for (std::size_t laser = 0; laser < kLasers; ++laser)
+      for (std::size_t column = 0; column < kColumns; ++column) {
+        const double azimuth = 6.283185307179586 * static_cast<double>(column) / static_cast<double>(kColumns);
+        const double slope = 0.03 * (static_cast<double>(laser) - 14.5);
+        const bool is_ground = slope < 0 && -above / slope < 80;
+        if (!is_ground && random.chance(0.5)) continue;
+        const double rho = (is_ground ? -above / slope : 20.0) + random.between(-0.02, 0.02);
+        scan.set(laser, column,
+                 {static_cast<float>(1.2 + rho * std::cos(azimuth)), static_cast<float>(rho * std::sin(azimuth)),
+                  static_cast<float>(above + rho * slope)});
+      }
+    const lisco::SensorHints hints = estimate(scan);
+    expectFound({{1.2, 0.0, above}, 0.0}, hints, 0.1);
+    expectFound({{1.2, 0.0, above}, 0.0}, estimate(scan, {1.2F, 0.0F, static_cast<float>(above)}), 0.001);
+  }
+}
+
 TEST(SensorEstimator, KeepsTheFrameOfTheCloudBefore) {
   const Mounting mounting{{-2.5, 0.4, 1.7}, 0.01};
   const lisco::SensorHints first = estimate(mountedRotation(mounting, 0.1));

@@ -9,6 +9,8 @@
 namespace lisco {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 constexpr std::size_t kUnknowns = 5;  // the origin, and the tilt
 using Vector = std::array<double, kUnknowns>;
 using Matrix = std::array<Vector, kUnknowns>;
@@ -16,6 +18,9 @@ using Matrix = std::array<Vector, kUnknowns>;
 // Fewer: frames are fitted to noise; more: scans of few returns have none (benchmarks/suite.sh recordings).
 constexpr std::size_t kMinOfLaser = 4;   // returns
 constexpr std::size_t kMinReturns = 40;  // of all such lasers
+/// Times that the step of all lasers may be that of those around. More: a point on the ground is taken for the sensor;
+/// less: so is none where lasers are spaced unevenly.
+constexpr double kMostUneven = 4.0;
 
 /// Solves a x = b for a symmetric, positive definite matrix, by Gaussian elimination.
 Vector solve(Matrix a, Vector b) {
@@ -56,23 +61,26 @@ class SensorFrameEstimator::Slopes {
         sorted.push_back(seen_[end].slope);
       if (end - first >= kMinOfLaser) {
         const double median = quantile(sorted, 0.5);
-        rings_.push_back({first, end, median});
-        bounds_.add(static_cast<double>(returns[first].laser), median);
-        for (std::size_t i = first; i < end; ++i) deviations_.push_back(std::fabs(seen_[i].slope - median));
+        rings_.push_back({static_cast<double>(returns[first].laser), first, end, median});
       }
       first = end;
     }
   }
 
-  /// Of most slopes about their laser's; infinite if there are too few, or if they are no numbers.
-  double spread() {
-    if (deviations_.size() < kMinReturns) return std::numeric_limits<double>::infinity();
-    const double spread = quantile(deviations_, kSteadyShare);
-    return spread < std::numeric_limits<double>::infinity() ? spread : std::numeric_limits<double>::infinity();
+  /// Of most slopes about their laser's median; infinite if there are too few, or if they are no numbers.
+  double spread() const {
+    return spreadIn([](const Ring&) { return 1.0; });
   }
 
-  /// Between lasers that follow each other.
-  double laserStep() const { return (bounds_.highest - bounds_.lowest) / std::max(1.0, bounds_.last - bounds_.first); }
+  /// The same in steps from laser to laser: that of all, or of those around if it is much less. From a point on flat
+  /// ground most lasers have a slope of 0: there is no step between them, and the spread is large.
+  double spreadInSteps() {
+    std::sort(rings_.begin(), rings_.end(), [](const Ring& a, const Ring& b) { return a.laser < b.laser; });
+    Bounds bounds;
+    for (const Ring& ring : rings_) bounds.add(ring);
+    const double step_of_all = bounds.step();
+    return spreadIn([&](const Ring& ring) { return std::min(step_of_all, kMostUneven * stepAround(ring)); });
+  }
 
   /// By how much the frame is to change: a Gauss-Newton step on the deviations from each laser's mean, whose weights
   /// fall with the deviation.
@@ -121,29 +129,56 @@ class SensorFrameEstimator::Slopes {
     double x, y, rho, slope;
   };
   struct Ring {
+    double laser;
     std::size_t begin, end;
     double median;
   };
   struct Bounds {
-    double first = std::numeric_limits<double>::infinity(), last = -first;       ///< lasers
-    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;  ///< slopes
-    void add(double laser, double slope) {
-      first = std::min(first, laser);
-      last = std::max(last, laser);
-      lowest = std::min(lowest, slope);
-      highest = std::max(highest, slope);
+    double first = kInfinity, last = -kInfinity;      ///< lasers
+    double lowest = kInfinity, highest = -kInfinity;  ///< slopes
+    void add(const Ring& ring) {
+      first = std::min(first, ring.laser);
+      last = std::max(last, ring.laser);
+      lowest = std::min(lowest, ring.median);
+      highest = std::max(highest, ring.median);
     }
+    double step() const { return (highest - lowest) / std::max(1.0, last - first); }
   };
+
+  /// The largest step to one of the two rings before and behind: with dual returns, two rings have the same slope.
+  double stepAround(const Ring& ring) const {
+    constexpr std::size_t kBeside = 2;
+    const auto at = static_cast<std::size_t>(&ring - rings_.begin());
+    double step = 0;
+    for (std::size_t other = at - std::min(at, kBeside); other < std::min(rings_.size(), at + kBeside + 1); ++other) {
+      Bounds bounds;
+      bounds.add(ring);
+      bounds.add(rings_[other]);
+      step = std::max(step, bounds.step());
+    }
+    return step;
+  }
+
+  /// \param unit_of callable as double (const Ring&): the unit of a ring's deviations
+  template <typename UnitOf>
+  double spreadIn(UnitOf&& unit_of) const {
+    Sample<double> deviations;
+    for (const Ring& ring : rings_) {
+      const double unit = unit_of(ring);
+      for (std::size_t i = ring.begin; i < ring.end; ++i)
+        deviations.push_back(unit > 0 ? std::fabs(seen_[i].slope - ring.median) / unit : kInfinity);
+    }
+    if (deviations.size() < kMinReturns) return kInfinity;
+    const double spread = quantile(deviations, kSteadyShare);
+    return spread < kInfinity ? spread : kInfinity;
+  }
+
   Sample<Seen> seen_;
   Sample<Ring> rings_;
-  Bounds bounds_;
-  Sample<double> deviations_;
 };
 
 double SensorFrameEstimator::spread(const SensorFrame& frame) const {
-  Slopes slopes(returns_, frame);
-  const double spread = slopes.spread() / slopes.laserStep();
-  return std::isnan(spread) ? std::numeric_limits<double>::infinity() : spread;
+  return Slopes(returns_, frame).spreadInSteps();
 }
 
 SensorFrame SensorFrameEstimator::middle() const {
@@ -159,11 +194,22 @@ SensorFrame SensorFrameEstimator::middle() const {
 }
 
 SensorFrame SensorFrameEstimator::fit() const {
+  constexpr double kAboveGround = 1.5;  // metres: from a point on flat ground, no step leads to the sensor above it
+  constexpr double kClear = 0.1;        // of the spread in steps
+  const SensorFrame first = fitFrom(middle());
+  const double spread_there = spread(first);
+  if (spread_there < kClear) return first;
+  SensorFrame start = middle();
+  start.origin[2] += kAboveGround;
+  const SensorFrame second = fitFrom(start);
+  return spread(second) < spread_there ? second : first;
+}
+
+SensorFrame SensorFrameEstimator::fitFrom(SensorFrame frame) const {
   constexpr int kSteps = 5;
   constexpr double kSettled = 0.02;  // metres
   constexpr double kMaxTilt = 0.3;
   constexpr double kMinScale = 1e-5;  // of slopes: rounding
-  SensorFrame frame = middle();
   for (int i = 0; i < kSteps; ++i) {
     Slopes slopes(returns_, frame);
     const double spread = slopes.spread();

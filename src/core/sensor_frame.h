@@ -31,7 +31,7 @@ class SensorFrameEstimator {
   /// there are too few returns. The same at any scale: from far away, all slopes are alike.
   double spread(const SensorFrame& frame) const;
 
-  /// The frame that makes the spread least, by Gauss-Newton steps from the middle of the returns.
+  /// The frame that makes the spread least, by Gauss-Newton steps from the middle of the returns, or from above it.
   SensorFrame fit() const;
 
  private:
@@ -42,6 +42,7 @@ class SensorFrameEstimator {
   class Slopes;
 
   SensorFrame middle() const;
+  SensorFrame fitFrom(SensorFrame frame) const;
 
   Sample<LaserReturn> returns_;
 };
