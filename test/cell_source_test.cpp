@@ -57,7 +57,7 @@ TEST(CellSource, ReadsCellsAndBlocksEqually) {
     lisco::Parameters parameters;
     parameters.tolerance = 0.5F;
     clusterer.begin(parameters);
-    clusterer.addColumns(200, 4, source);
+    clusterer.addColumns(60, 4, source);
     clusterer.update();
     std::vector<std::uint32_t>& runs = found.emplace_back();
     clusterer.forEachRun([&](const std::uint32_t* names, std::size_t count, std::uint32_t subcluster) {
@@ -68,8 +68,8 @@ TEST(CellSource, ReadsCellsAndBlocksEqually) {
   calls = 0;
   cluster(cells);
   cluster(blocks);
-  EXPECT_EQ(calls, 4U * 4U);  // per laser and block of 64 columns
-  EXPECT_GT(found[0].size(), 800U);
+  EXPECT_EQ(calls, 4U);  // per laser and block of 64 columns
+  EXPECT_GT(found[0].size(), 4U * 60U);
   EXPECT_EQ(found[0], found[1]);
 }
 

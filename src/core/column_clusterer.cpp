@@ -111,17 +111,22 @@ namespace {
 
 // In brackets, the section of benchmarks/suite.sh that shows the effect.
 
-/// Columns that come first and at once, from which on near returns are collected and sorted; fewer are put into voxels,
-/// as are columns that follow (recordings).
+/// Cells of columns that come first and at once, from which on near returns are collected and sorted; of fewer they are
+/// put into voxels, as are those of columns that follow (recordings).
 constexpr std::size_t kWorthSorting = 256;
 /// Columns of these on which the work of far returns is measured. Fewer: a worse estimate; more: a later change
 /// (recordings).
 constexpr std::size_t kTriedColumns = 128;
 static_assert(kTriedColumns % RingBlock::kColumns == 0, "whole blocks are read");
+/// Times the work of far returns that is worthwhile, from which on its measurement ends before. More: clouds without
+/// range images wait for it; less: columns that differ from the rest decide (recordings).
+constexpr double kClearlyTooMuch = 3.0;
 /// SensorHints::drift from which on returns leave their expected bins too often: of clouds that are motion-compensated.
 /// The first columns do not show it, as the motion grows from there. At rest 0.05, up to 0.8 in a vehicle's frame; in
 /// motion 1 to 20 (recordings).
 constexpr float kMaxDrift = 1.25F;
+/// Turns of columns from which on many bins have been taken by the turn before.
+constexpr double kMaxTurns = 1.5;
 /// Columns that a range image is prepared for when their number is unknown: it needs no more bins than a turn has.
 constexpr std::size_t kWholeTurn = ~std::size_t{0};
 /// Columns that are read from their source; fewer are gathered into blocks, which evens out their work (latency).
@@ -162,7 +167,8 @@ void ColumnClusterer::Rotation::receive(std::size_t columns, std::size_t lasers,
   usable_ = false;
   cells_ += columns * lasers;
   if (partition_count_ == 0) divide(columns, lasers, cells);
-  comes_at_once_ = !scheduler_.hasColumns() && (columns >= kWorthSorting || partition_count_ > 1);
+  const bool is_whole = columns >= kWorthReadingAtOnce && columns * lasers >= kWorthSorting;
+  comes_at_once_ = !scheduler_.hasColumns() && (is_whole || partition_count_ > 1);
   if (comes_at_once_) {
     receiveAtOnce(columns, lasers, cells);
   } else {
@@ -195,8 +201,9 @@ void ColumnClusterer::Rotation::divide(std::size_t columns, std::size_t lasers, 
     partitions_[i].first_element = static_cast<std::uint32_t>(lasers * parts_[i].first);  // at most a run for each cell
 }
 
-/// Columns that come at once are read with their far returns in range images, if these prove worthwhile. Otherwise, and
-/// if azimuths drift (SensorHints::drift), all returns are near: collected as runs, or without if they are unordered.
+/// Columns that come at once are read with their far returns in range images, if these prove worthwhile. Otherwise, if
+/// azimuths drift (SensorHints::drift), and if there are several turns, all returns are near: collected as runs, or
+/// without if they are unordered.
 void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t lasers, const CellSource& cells) {
   if (partition_count_ == 1) parts_.assign(1, {0, columns});
   near_ = Near::kCollected;
@@ -204,8 +211,9 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
   tried_near_ = {0, 0};
   scheduler_.skipColumns(columns);
   if (partition_count_ > 1) subclusters_.reserve(lasers * columns + RingBlock::kColumns, NewPages::kUntouched);
-  const bool drifts = parameters_.sensor.drift > kMaxDrift;
-  if (!drifts && readFarAndNear(lasers, cells)) return;
+  const SensorHints& sensor = parameters_.sensor;
+  const bool repeats = static_cast<double>(columns) > kMaxTurns * static_cast<double>(sensor.steps_per_turn);
+  if (!repeats && sensor.drift <= kMaxDrift && readFarAndNear(lasers, cells)) return;
   if (UnorderedReturns::isUnordered(columns, lasers, cells, tolerance_))
     readUnordered(lasers, cells);
   else
@@ -305,6 +313,8 @@ void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, cons
     const std::size_t before = partition.workDone();
     partition.readColumns(cells, first, count, lasers, static_cast<std::uint32_t>(first), subclusters_);
     if (partition_count_ > 1) balancer_.record(first, count, count * lasers + partition.workDone() - before);
+    if (i == 0 && first + count < std::min(kTriedColumns, end) && !partition.isFarWorthwhile(kClearlyTooMuch))
+      return trial.decide(false);
     if (i == 0 && first + count == std::min(kTriedColumns, end)) {
       const bool is_worthwhile = partition.isFarWorthwhile();
       trial.decide(is_worthwhile);

@@ -71,8 +71,9 @@ void Partition::linkWithin(DisjointSets& subclusters) {
   near_.link(voxels_, subclusters);
 }
 
-bool Partition::isFarWorthwhile() const {
+bool Partition::isFarWorthwhile(double most) const {
   const std::size_t returns = image_.placed + image_.unplaced.size();
+  if (returns == 0) return runs.returns == 0;  // all are near
   const std::size_t begin = std::min(image_.begin, image_.end);
   const std::size_t bins = image_.end - begin;
   const std::size_t linked = std::max(image_.linked, begin) - begin;
@@ -80,7 +81,7 @@ bool Partition::isFarWorthwhile() const {
   const double linking =
       static_cast<double>(segments_.workDone() * bins) / static_cast<double>(std::max<std::size_t>(1, linked));
   const std::size_t placing = kWorkOfRealigning * image_.realigned + kWorkOfUnplaced * image_.unplaced.size();
-  return linking + static_cast<double>(placing) <= kMaxWorkOfFar * static_cast<double>(returns);
+  return linking + static_cast<double>(placing) <= most * kMaxWorkOfFar * static_cast<double>(returns);
 }
 
 std::size_t Partition::workDone() const {

@@ -116,7 +116,8 @@ class alignas(kSeparate) Partition {
   /// False if all returns are near.
   bool hasFar() const { return image_.inUse(); }
   /// Whether linking far returns, as measured so far, takes less than sorting them would.
-  bool isFarWorthwhile() const;
+  /// \param most times as long as that
+  bool isFarWorthwhile(double most = 1.0) const;
 
   /// See RangeImage::isFull.
   void stopPlacing() { image_.stopPlacing(); }
