@@ -230,10 +230,9 @@ class Workers {
     progress_.clear();
     if (bag_) {
       bag_->finish();
-      std::printf("written     %s\n", options_.bag.c_str());
+      sayWritten(options_.bag);
     }
-    const std::string page = timeline_ ? timeline_->write() : "";
-    if (!page.empty() && !options_.json) std::printf("written     %s\n", page.c_str());
+    if (const std::string page = timeline_ ? timeline_->write() : ""; !page.empty()) sayWritten(page);
     if (Interruption::happened() && !is_over_) {
       say(formatted("interrupted after %zu scans, whose results are complete", done_));
       all_well_ = false;
@@ -279,6 +278,10 @@ class Workers {
     const std::lock_guard<std::mutex> lock(terminal_);
     progress_.clear();
     std::cerr << "lisco_cluster: " << line << '\n';
+  }
+
+  void sayWritten(const std::string& file) const {
+    if (!options_.json) std::printf("written     %s\n", file.c_str());
   }
 
   void clusterScan(const ScanItem& item, std::size_t number, pcl::LiscoClusterExtraction<pcl::PointXYZ>& extraction) {

@@ -50,11 +50,10 @@ std::vector<std::uint8_t> groundBySlope(const Cloud& cloud, const Region& region
   std::vector<std::uint8_t> ground(cloud.size());
   lisco::GroundFilter filter;
   lisco::GroundParameters parameters;
-  if (is_rotation) {
-    filter.filter(parameters, columns, lasers, cell_at, ground.data());
-    return ground;
-  }
-  if (lasers > 1) parameters.sensor = lisco::estimateSensor(columns, lasers, origin, lisco::CellSource(cell_at));
+  if (is_rotation)
+    parameters.sensor.steps_per_turn = static_cast<int>(columns);  // known, so that the place of the sensor is, too
+  else if (lasers > 1)
+    parameters.sensor = lisco::estimateSensor(columns, lasers, origin, lisco::CellSource(cell_at));
   if (parameters.sensor.steps_per_turn != 0) {
     filter.filterScan(parameters, columns, lasers, cell_at, ground.data());
     return ground;

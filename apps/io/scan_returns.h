@@ -21,8 +21,8 @@ struct ScanReturns {
 
 /// Divides the returns of a cloud. The slope method looks at all returns outside of ignored boxes, so that the ground
 /// goes on beyond the range limits.
-/// \param is_rotation the cloud is a turn of a sensor that stands upright at the origin; its ground is that which
-///        lisco_stream finds. Otherwise the place of the sensor is estimated
+/// \param is_rotation the cloud is a turn of a sensor that stands upright at the origin; otherwise the place of the
+///        sensor is estimated
 ScanReturns returnsOf(const Cloud& cloud, const GroundChoice& ground, const Region& region, bool is_rotation = false);
 
 /// The lines "ignored" and "ground" of a summary; empty if nothing is to be said.

@@ -202,6 +202,25 @@ TEST_F(LiscoCluster, LeavesOutReturnsByRangeAndPlace) {
             std::string::npos);
 }
 
+TEST_F(LiscoCluster, FindsTheGroundOfEachRotationByItself) {
+  const Outcome simulated =
+      runLine(std::string(LISCO_SIMULATE) + " --terrain ramp --sensor hdl32e --speed 10 --rotations 3 --pcap -o drive");
+  ASSERT_EQ(simulated.status, 0) << simulated.err;
+  const auto groundIn = [&](const std::string& arguments) {
+    const Outcome outcome = run(arguments + " -t 0.4 --json");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    std::vector<int> ground;
+    std::istringstream lines(outcome.out);
+    for (std::string line; std::getline(lines, line);) ground.push_back(nlohmann::json::parse(line)["ground"]);
+    return ground;
+  };
+  const std::vector<int> ground =
+      groundIn("drive/capture.pcap --sensor hdl32e -o results --write labels --bag out.mcap");
+  ASSERT_EQ(ground.size(), 3U);
+  EXPECT_GT(ground[0], 1000);
+  EXPECT_EQ(groundIn("results/*/labels.pcd"), ground);
+}
+
 TEST_F(LiscoCluster, PrintsALineOfJsonPerScan) {
   write("a.pcd", twoWalls());
   write("b\xFF.pcd", twoWalls());
