@@ -425,6 +425,16 @@ TEST(LabelGround, FindsTheGroundOfUnorganizedPointsInAVehiclesFrame) {
   EXPECT_EQ(lost, 0);
 }
 
+TEST(LabelGround, KeepsTheTableOfUnorganizedPoints) {
+  // The sensor is 0.1 m above a table of 0.7 m around it, in a room of 4 m.
+  const Scan scan = scanOf(32, 1000, [](double azimuth, double slope) {
+    return slope < -0.1 / 0.7 ? -0.1 / slope : 4.0 + 0.2 * std::sin(20.0 * azimuth);
+  });
+  std::vector<std::uint8_t> ground(scan.cells.size(), 7);
+  lisco::labelGround(scan.cells.data(), scan.cells.size(), sizeof scan.cells[0], {}, ground.data());
+  EXPECT_EQ(std::count(ground.begin(), ground.end(), 0), static_cast<std::ptrdiff_t>(ground.size()));
+}
+
 TEST(LabelGround, FindsNothingAmongPlants) {
   // Leaves 0.9 m to 1.4 m away hide the floor all around the sensor.
   for (const std::size_t lasers : {16U, 32U, 64U}) {

@@ -29,6 +29,22 @@ void check(const void* points, std::size_t count, std::size_t stride, const Labe
     throw std::invalid_argument("lisco::labelGround: points and ground must not be null");
 }
 
+/// Whether a rotating sensor may be above the origin: it has hardly any returns from straight below, as there would be
+/// if the origin were itself the sensor, on a table.
+bool mayBeBelowSensor(const StridedPoints& points, std::size_t count, const std::array<float, 3>& origin, float above) {
+  constexpr float kSteep = 1.73F;     // metres per metre, 60 degrees
+  constexpr double kMaxSteep = 0.01;  // share of the returns
+  std::size_t returns = 0, steep = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Return point = points.at(i);
+    if (!isReturn(point.x, point.y, point.z)) continue;
+    const float x = point.x - origin[0], y = point.y - origin[1], depth = origin[2] + above - point.z;
+    ++returns;
+    steep += depth > kSteep * std::sqrt(x * x + y * y) ? 1 : 0;
+  }
+  return static_cast<double>(steep) <= kMaxSteep * static_cast<double>(returns);
+}
+
 /// Reads the points in the cells of columns.
 struct SortedPoints {
   const AzimuthColumns& columns;
@@ -97,7 +113,10 @@ void GroundLabeller::State::labelUnorganized(const StridedPoints& points, std::s
   };
   GroundParameters plane = estimated();
   if (std::isnan(parameters.sensor_height) && plane.sensor_height < kLowOrigin) {
-    parameters.sensor.origin[2] += kRise;
+    if (mayBeBelowSensor(points, count, parameters.sensor.origin, kRise))
+      parameters.sensor.origin[2] += kRise;
+    else
+      parameters.sensor.steps_per_turn = 1;  // known: the origin is the sensor
     plane = estimated();
   }
   if (std::isnan(plane.sensor_height)) return;
