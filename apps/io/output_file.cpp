@@ -75,6 +75,10 @@ OwnFile::OwnFile(const fs::path& file, const std::string& signature)
   if (!stream_) refuse();
 }
 
+void failToWrite(const fs::path& file) {
+  fail(file, "cannot be written" + (errno != 0 ? ": " + std::generic_category().message(errno) : ""));
+}
+
 OwnFile::~OwnFile() {
   if (aside_.empty()) return;
   stream_.close();
@@ -83,7 +87,7 @@ OwnFile::~OwnFile() {
 }
 
 void OwnFile::refuse() const {
-  fail(file_, "cannot be written" + (errno != 0 ? ": " + std::generic_category().message(errno) : ""));
+  failToWrite(file_);
 }
 
 void OwnFile::write(std::string_view content) {

@@ -22,6 +22,9 @@ inline constexpr const char* kResultMarker = ".lisco_results";
 /// \throws std::runtime_error with one line: why not
 void checkMayWrite(const fs::path& file, const std::string& signature);
 
+/// Throws std::runtime_error with one line: that a file cannot be written, and what errno says of it if it is not 0.
+[[noreturn]] void failToWrite(const fs::path& file);
+
 /// Writes a file, all or nothing: beside its place first, moved there by finish (). Makes no folders. All functions
 /// throw std::runtime_error with one line if the file cannot be written.
 class OwnFile {

@@ -3,9 +3,11 @@
 #include "io/result_files.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -47,10 +49,11 @@ const std::vector<Kind>& allKinds() {
 }
 
 void writeText(const fs::path& file, const std::string& text) {
+  errno = 0;
   std::ofstream stream(file, std::ios::binary);
   stream << text;
   stream.close();
-  if (!stream) fail(file, "cannot be written");
+  if (!stream) failToWrite(file);
 }
 
 std::string tableOf(const ClusteredScan& scan) {
@@ -118,7 +121,8 @@ std::string writeResults(const ClusteredScan& scan, const fs::path& folder, cons
       const bool is_wanted = kinds.*kind.is_wanted && !(are_too_many && file == kSemanticKitti);
       (is_wanted ? wanted : others).push_back(file);
     }
-  const bool has_results = fs::exists(folder / kResultMarker);
+  std::error_code unreadable;  // a folder of which writeOwnFolder () says more
+  const bool has_results = fs::exists(folder / kResultMarker, unreadable);
   writeOwnFolder(
       folder, wanted,
       [&](const fs::path& aside) {

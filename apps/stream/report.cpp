@@ -41,8 +41,11 @@ std::string describeLargest(const lisco::ClusterFeatures& largest) {
                    largest.box.height);
 }
 
-std::string groundOf(const Turn& turn) {
-  return turn.ground > 0 ? formatted(", %llu of the ground left out", number(turn.ground)) : "";
+/// \param is_first of those with ground
+std::string groundOf(const Turn& turn, bool is_first) {
+  if (turn.ground == 0) return "";
+  return formatted(", %llu of the ground left out", number(turn.ground)) +
+         (is_first ? " (--ground none keeps them)" : "");
 }
 
 std::string lostIn(const Turn& turn) {
@@ -76,10 +79,11 @@ std::string Report::countTurn(const char* name, const Turn& turn) {
   ++totals_.turns;
   totals_.columns += turn.columns();
   totals_.returns += turn.returns;
+  const bool is_first_ground = totals_.ground == 0;
   totals_.ground += turn.ground;
   return formatted("%s %llu: %zu columns, %llu returns", name, number(turn.number), turn.columns(),
                    number(turn.returns)) +
-         groundOf(turn);
+         groundOf(turn, is_first_ground);
 }
 
 void Report::found(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) {
