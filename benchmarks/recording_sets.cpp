@@ -101,6 +101,46 @@ CloudPtr filtered(const ComparedCloud& cloud) {
   return result;
 }
 
+/// An organized cloud of the points that at(row, column) returns.
+template <typename At>
+CloudPtr organized(std::size_t columns, std::size_t rows, At&& at) {
+  auto cloud = std::make_shared<ComparedCloud>();
+  cloud->reserve(columns * rows);
+  for (std::size_t row = 0; row < rows; ++row)
+    for (std::size_t column = 0; column < columns; ++column) cloud->push_back(at(row, column));
+  cloud->width = static_cast<std::uint32_t>(columns);
+  cloud->height = static_cast<std::uint32_t>(rows);
+  cloud->is_dense = false;
+  return cloud;
+}
+
+CloudPtr columnPerLaser(const ComparedCloud& cloud) {
+  return organized(cloud.height, cloud.width,
+                   [&cloud](std::size_t row, std::size_t column) { return cloud[column * cloud.width + row]; });
+}
+
+CloudPtr sector(const ComparedCloud& cloud) {
+  return organized(cloud.width / 12, cloud.height,
+                   [&cloud](std::size_t row, std::size_t column) { return cloud[row * cloud.width + column]; });
+}
+
+/// Turns of the same scene, with noise in the ranges.
+/// \param below as more rows, otherwise as more columns
+CloudPtr severalTurns(const ComparedCloud& cloud, std::size_t turns, bool below) {
+  constexpr float kNoise = 0.02F;  // metres
+  lisco_simulation::Random random(1);
+  const std::size_t columns = cloud.width, rows = cloud.height;
+  return organized(below ? columns : turns * columns, below ? turns * rows : rows,
+                   [&](std::size_t row, std::size_t column) {
+                     ComparedPoint point = cloud[row % rows * columns + column % columns];
+                     if (isReturn(point)) {
+                       const float range = point.getVector3fMap().norm();
+                       point.getVector3fMap() *= 1.0F + kNoise * static_cast<float>(2.0 * random.unit() - 1.0) / range;
+                     }
+                     return point;
+                   });
+}
+
 /// A sensor's place in another frame.
 struct Mount {
   const char* name;
@@ -276,6 +316,10 @@ void addRotatingScan(std::vector<Recording>& recordings, const fs::path& file) {
     adder.asItIs(5, "by ring");
   else
     addDeskewed(adder, inMotion);
+  adder.add(7, "a column per laser", columnPerLaser);
+  adder.add(7, "sector", sector);
+  adder.add(7, "two turns", [](const ComparedCloud& c) { return severalTurns(c, 2, false); });
+  adder.add(7, "four turns in rows", [](const ComparedCloud& c) { return severalTurns(c, 4, true); });
 }
 
 constexpr double kOverTurn = 0.08;  ///< of a turn, beyond a whole one
@@ -375,8 +419,9 @@ std::vector<fs::path> filesOf(const fs::path& folder) {
 }  // namespace
 
 const char* titleOf(int set) {
-  static const char* const kTitles[kSets] = {"organized", "ring and firing order", "shuffled, filtered",
-                                             "moved",     "deskewed and dual",     "other"};
+  static const char* const kTitles[kSets] = {
+      "organized", "ring and firing order", "shuffled, filtered", "moved", "deskewed and dual",
+      "other",     "laid out otherwise"};
   return kTitles[set - 1];
 }
 

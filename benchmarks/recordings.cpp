@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// Lisco, the voxel grid and PCL on clouds as users have them: six sets, see recording_sets.h.
+// Lisco, the voxel grid and PCL on clouds as users have them: seven sets, see recording_sets.h.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -39,7 +40,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct Options {
   fs::path data;
-  int set = 0;                     ///< 0: all
+  std::set<int> sets;              ///< empty: all
   std::string cloud;               ///< part of the names to be measured
   std::vector<double> tolerances;  ///< empty: all
   unsigned runs = 9;
@@ -79,10 +80,11 @@ bool parse(int argc, char** argv, Options& options) {
       "  4  moved into a vehicle's frame and into map coordinates (UTM, OSGB)\n"
       "  5  of a moving sensor, deskewed; over one turn; dual returns\n"
       "  6  RGB-D, airborne, from several stations, worst cases\n"
+      "  7  organized with a column per laser; a sector; several turns in one cloud\n"
       "Clusters are compared first, then the grid and Lisco run in turn; medians, milliseconds.\n\n"
       "Exit code: 1 if any clusters differ, 2 on bad input or usage.\n\n"
       "Options");
-  std::string set, runs = "9", pcl_runs = "1", tolerances, max_seconds = "20", data, json;
+  std::string sets, runs = "9", pcl_runs = "1", tolerances, max_seconds = "20", data, json;
   bool no_pcl = false;
   const char* const folder = std::getenv("LISCO_TEST_DATA");
   data = folder != nullptr ? folder : LISCO_TEST_DATA_DEFAULT;
@@ -90,7 +92,7 @@ bool parse(int argc, char** argv, Options& options) {
   shown.add_options()
     ("data", po::value<std::string>(&data)->value_name("FOLDER"),
      "real scans (default: $LISCO_TEST_DATA, or ../shared/data beside the project)")
-    ("set", po::value<std::string>(&set)->value_name("N"), "only this set")
+    ("set", po::value<std::string>(&sets)->value_name("N[,N...]"), "only these sets")
     ("cloud", po::value<std::string>(&options.cloud)->value_name("TEXT"), "only clouds with this in 'scan, form'")
     ("eps", po::value<std::string>(&tolerances)->value_name("M[,M...]"), "only these tolerances of each set's")
     ("runs", po::value<std::string>(&runs)->value_name("N"), "timed runs of the grid and of Lisco (default 9)")
@@ -104,7 +106,9 @@ bool parse(int argc, char** argv, Options& options) {
   po::variables_map given;
   if (!readCommandLine(argc, argv, "recordings", shown, nullptr, given)) return false;
   options.data = data;
-  if (!set.empty()) options.set = static_cast<int>(countOf(set, "--set", 1, kSets));
+  if (given.count("set") != 0)
+    for (const std::string& item : itemsOf(sets))
+      options.sets.insert(static_cast<int>(countOf(item, "--set", 1, kSets)));
   if (given.count("eps") != 0)
     for (const std::string& item : itemsOf(tolerances)) options.tolerances.push_back(toleranceOf(item));
   options.runs = countOf(runs, "--runs", 1);
@@ -313,7 +317,8 @@ int run(const Options& options) {
   const Methods methods;
   std::vector<Result> results;
   for (const Recording& recording : allRecordings(options.data))
-    if ((options.set == 0 || recording.set == options.set) && recording.name().find(options.cloud) != std::string::npos)
+    if ((options.sets.empty() || options.sets.count(recording.set) != 0) &&
+        recording.name().find(options.cloud) != std::string::npos)
       measureRecording(recording, options, methods, results);
   if (results.empty()) throw std::runtime_error("no case is left to measure");
   printSets(results);

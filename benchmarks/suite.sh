@@ -2,19 +2,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Runs all benchmarks, or the given SECTIONs, and rewrites their tables in doc/benchmarks.md (those of real scans in
 # README.md too). A section that fails, as by clusters that are not PCL's, keeps its old table; the others continue, and
-# the suite exits with 1. Takes about 45 minutes on two cores, and begins when the machine is quiet (wait_for_quiet in
+# the suite exits with 1. Takes about 50 minutes on two cores, and begins when the machine is quiet (wait_for_quiet in
 # tools.sh).
 #
 #   benchmarks/suite.sh [--runs N] [SECTION...]     --runs: timed runs of each baseline (default 5)
 #
-# Sections: real recordings vehicle worst growth memory first_call threads stages; latency, whose tables and picture are
-# in doc/streaming.md; ground, ground_real and ground_latency, whose tables are in doc/ground.md
+# Sections: real recordings layouts vehicle worst growth memory first_call threads stages; latency, whose tables and
+# picture are in doc/streaming.md; ground, ground_real and ground_latency, whose tables are in doc/ground.md
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/benchmarks/tools.sh"
 
-all_sections=(real recordings vehicle worst growth memory first_call threads stages latency ground ground_real
-  ground_latency)
+all_sections=(real recordings layouts vehicle worst growth memory first_call threads stages latency ground
+  ground_real ground_latency)
 runs=5
 sections=()
 while [ $# -gt 0 ]; do
@@ -74,11 +74,14 @@ measure_real() {
   "$root/benchmarks/real_scans.sh" --runs "$runs"
 }
 
-# Clouds as users have them; its table has the sets and what they are made of, not each of the 1538 cases.
-measure_recordings() {
-  report "$out/recordings.txt" "$build/benchmarks/recordings" --data "$data" --summary --runs "$runs" &&
-    code_block <"$out/recordings.txt" | replace_section "$document" "recordings" && cat "$out/recordings.txt"
+# measure_sets TABLE SETS: clouds as users have them; the table has the sets and what they are made of, not every case.
+measure_sets() {
+  local table=$1 sets=$2
+  report "$out/$table.txt" "$build/benchmarks/recordings" --data "$data" --set "$sets" --summary --runs "$runs" &&
+    code_block <"$out/$table.txt" | replace_section "$document" "$table" && cat "$out/$table.txt"
 }
+measure_recordings() { measure_sets recordings 1,2,3,4,5,6; }
+measure_layouts() { measure_sets layouts 7; }
 
 # The paper's streets from a sensor that sees its own vehicle.
 simulate_vehicle() {
