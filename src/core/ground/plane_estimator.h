@@ -54,6 +54,7 @@ class PlaneEstimator {
   float weightOn(const Plane& plane) const;
 
   ColumnLineFinder finder_;
+  static_assert(kMemory <= kMaxLines);
   std::array<ColumnLine, kMemory> lines_;
   std::size_t count_ = 0;  // ever added
   Plane plane_;
