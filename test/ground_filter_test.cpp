@@ -426,9 +426,9 @@ TEST(LabelGround, FindsTheGroundOfUnorganizedPointsInAVehiclesFrame) {
 }
 
 TEST(LabelGround, KeepsTheTableOfUnorganizedPoints) {
-  // The sensor is 0.1 m above a table of 0.7 m around it, in a room of 4 m.
-  const Scan scan = scanOf(32, 1000, [](double azimuth, double slope) {
-    return slope < -0.1 / 0.7 ? -0.1 / slope : 4.0 + 0.2 * std::sin(20.0 * azimuth);
+  // The sensor is 0.1 m above a table that reaches 3 m around it, in a room of 6 m.
+  const Scan scan = scanOf(40, 1000, [](double azimuth, double slope) {
+    return slope < -0.1 / 3.0 ? -0.1 / slope : 6.0 + 0.5 * std::sin(20.0 * azimuth);
   });
   std::vector<std::uint8_t> ground(scan.cells.size(), 7);
   lisco::labelGround(scan.cells.data(), scan.cells.size(), sizeof scan.cells[0], {}, ground.data());

@@ -105,6 +105,7 @@ void GroundLabeller::State::labelUnorganized(const StridedPoints& points, std::s
   // Metres. Seen from a point on the ground, as is the origin of a vehicle's frame, rays to the ground do not rise with
   // the distance; seen from above it, they do. A scan in its sensor's frame shows as much ground from there.
   constexpr float kLowOrigin = 0.5F, kRise = 1.5F;
+  constexpr float kOnTable = 0.2F;  // metres; nearer, what is below a sensor is what it stands on
   std::fill_n(ground, count, std::uint8_t{0});
   SortedPoints cells{columns_, points};
   const auto estimated = [&] {
@@ -113,11 +114,12 @@ void GroundLabeller::State::labelUnorganized(const StridedPoints& points, std::s
   };
   GroundParameters plane = estimated();
   if (std::isnan(parameters.sensor_height) && plane.sensor_height < kLowOrigin) {
-    if (mayBeBelowSensor(points, count, parameters.sensor.origin, kRise))
+    if (mayBeBelowSensor(points, count, parameters.sensor.origin, kRise)) {
       parameters.sensor.origin[2] += kRise;
-    else
-      parameters.sensor.steps_per_turn = 1;  // known: the origin is the sensor
-    plane = estimated();
+      plane = estimated();
+    } else if (plane.sensor_height < kOnTable) {
+      return;
+    }
   }
   if (std::isnan(plane.sensor_height)) return;
   decisions_.resize(columns_.rows() * columns_.columns());
