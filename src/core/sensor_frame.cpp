@@ -196,10 +196,10 @@ SensorFrame SensorFrameEstimator::middle() const {
 SensorFrame SensorFrameEstimator::fit() const {
   constexpr double kAboveGround = 1.5;  // metres: from a point on flat ground, no step leads to the sensor above it
   constexpr double kClear = 0.1;        // of the spread in steps
-  const SensorFrame first = fitFrom(middle());
+  SensorFrame start = middle();
+  const SensorFrame first = fitFrom(start);
   const double spread_there = spread(first);
   if (spread_there < kClear) return first;
-  SensorFrame start = middle();
   start.origin[2] += kAboveGround;
   const SensorFrame second = fitFrom(start);
   return spread(second) < spread_there ? second : first;
