@@ -66,6 +66,10 @@ void checkMayWrite(const fs::path& file, const std::string& signature) {
     fail(file, "exists and was not written by this program; choose another name");
 }
 
+void failToWrite(const fs::path& file) {
+  fail(file, "cannot be written" + (errno != 0 ? ": " + std::generic_category().message(errno) : ""));
+}
+
 OwnFile::OwnFile(const fs::path& file, const std::string& signature)
     : file_(file), aside_(file.string() + kFilePartial + std::to_string(getpid())) {
   checkMayWrite(file, signature);
@@ -73,10 +77,6 @@ OwnFile::OwnFile(const fs::path& file, const std::string& signature)
   errno = 0;
   stream_.open(aside_, std::ios::binary);
   if (!stream_) refuse();
-}
-
-void failToWrite(const fs::path& file) {
-  fail(file, "cannot be written" + (errno != 0 ? ": " + std::generic_category().message(errno) : ""));
 }
 
 OwnFile::~OwnFile() {

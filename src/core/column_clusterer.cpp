@@ -306,6 +306,7 @@ void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, cons
   Partition& partition = partitions_[i];
   const auto [begin, end] = parts_[i];
   const std::size_t middle = begin + (end - begin) / 2;
+  const std::size_t tried = std::min(kTriedColumns, end);
   if (i > 0) reserveRuns(partition);  // of the first part after its trial, which may refuse it
   for (std::size_t first = begin; first < end; first += RingBlock::kColumns) {
     if (trial.isRefused()) return;
@@ -313,9 +314,8 @@ void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, cons
     const std::size_t before = partition.workDone();
     partition.readColumns(cells, first, count, lasers, static_cast<std::uint32_t>(first), subclusters_);
     if (partition_count_ > 1) balancer_.record(first, count, count * lasers + partition.workDone() - before);
-    if (i == 0 && first + count < std::min(kTriedColumns, end) && !partition.isFarWorthwhile(kClearlyTooMuch))
-      return trial.decide(false);
-    if (i == 0 && first + count == std::min(kTriedColumns, end)) {
+    if (i == 0 && first + count < tried && !partition.isFarWorthwhile(kClearlyTooMuch)) return trial.decide(false);
+    if (i == 0 && first + count == tried) {
       const bool is_worthwhile = partition.isFarWorthwhile();
       trial.decide(is_worthwhile);
       tried_near_ = {is_worthwhile ? partition.nearReturns().count : partition.runs.returns, first + count};
