@@ -329,14 +329,15 @@ class ThreadsTable : public Table {
                                variant.baseline.extract(one.problem, clusters);
                              },
                              0, runs});
-    // OpenMP's threads spin for some milliseconds before they sleep.
+    // OpenMP's threads spin for some milliseconds before they sleep. The first of two runs finds them asleep.
     const std::vector<Times> times = timeInTurn(contestants, TimeKind::kWall, [](std::size_t, std::size_t) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     });
 
     const double best = median(times.front().runs);
     std::string level_row = one.head() + timed(times.front().runs);
-    std::string thread_row = level_row;
+    const double paused = median(times.front().cold);
+    std::string thread_row = level_row + formatted(" %8.3f", paused);
     for (std::size_t i = 0; i < variants_.size(); ++i) {
       const Variant& variant = variants_[i];
       csv += one.csv("extract", variant.level, variant.threads, times[i].runs);
@@ -345,6 +346,10 @@ class ThreadsTable : public Table {
       const double ratio = variant.threads == 1 ? time / best : best / time;
       variants_[i].ratios.push_back(ratio);
       (variant.threads == 1 ? level_row : thread_row) += timed(times[i].runs) + formatted(" %6.2f", ratio);
+      if (variant.threads == 1) continue;
+      const double after_pause = median(times[i].cold);
+      variants_[i].paused_ratios.push_back(paused / after_pause);
+      thread_row += formatted(" %8.3f %6.2f", after_pause, paused / after_pause);
     }
     std::printf("%s\n", level_row.c_str());
     thread_rows_ += thread_row + "\n";
@@ -354,10 +359,13 @@ class ThreadsTable : public Table {
   void printEnd() override {
     if (thread_rows_.empty()) return;
     printMeans(false);
-    std::printf("\n%s; milliseconds, +- in percent, ratio of one thread to more\n%s %8s   +-", levels_.front().c_str(),
-                Case::titles().c_str(), "1 thread");
+    std::printf(
+        "\n%s; milliseconds, +- in percent, ratio of one thread to more; paused: after a pause of 20 ms\n"
+        "%s %8s   +-   paused",
+        levels_.front().c_str(), Case::titles().c_str(), "1 thread");
     for (const Variant& variant : variants_)
-      if (variant.threads > 1) std::printf(" %8s   +-  ratio", formatted("%u thr.", variant.threads).c_str());
+      if (variant.threads > 1)
+        std::printf(" %8s   +-  ratio   paused  ratio", formatted("%u thr.", variant.threads).c_str());
     std::printf("\n%s", thread_rows_.c_str());
     printMeans(true);
   }
@@ -367,7 +375,8 @@ class ThreadsTable : public Table {
     std::string level;
     unsigned threads = 1;
     Baseline baseline{};
-    std::vector<double> ratios{};  ///< of each case, to the first variant
+    std::vector<double> ratios{};         ///< of each case, to the first variant
+    std::vector<double> paused_ratios{};  ///< the same after a pause
   };
 
   void add(const std::string& level, unsigned threads) {
@@ -376,10 +385,12 @@ class ThreadsTable : public Table {
 
   void printMeans(bool of_threads) const {
     const std::size_t cases = variants_.back().ratios.size();
-    std::printf("%-58s", formatted("geometric mean of %zu cases", cases).c_str());
-    for (const Variant& variant : variants_)
-      if (&variant != &variants_.front() && (variant.threads > 1) == of_threads)
-        std::printf("%21.2f", geometricMean(variant.ratios));
+    std::printf("%-*s", of_threads ? 67 : 58, formatted("geometric mean of %zu cases", cases).c_str());
+    for (const Variant& variant : variants_) {
+      if (&variant == &variants_.front() || (variant.threads > 1) != of_threads) continue;
+      std::printf("%21.2f", geometricMean(variant.ratios));
+      if (of_threads) std::printf("%16.2f", geometricMean(variant.paused_ratios));
+    }
     std::printf("\n");
   }
 

@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 // The engine's threads: rotations large enough for them, whose subclusters are those of one thread.
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <unistd.h>  // alarm
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "core/processors.h"
 #include "engine.h"
 #include "random.h"
 #include "scans.h"
@@ -299,6 +301,37 @@ TEST(Threads, AreEachCalledOnce) {
     lisco::inParallel(threads, [&](std::size_t thread) { ++calls.at(thread); });
     for (const std::atomic<int>& count : calls) EXPECT_EQ(count, 1);
   }
+}
+
+TEST(Threads, LeaveTheProcessorOfTheirCaller) {
+  if (lisco::currentProcessor() < 0 || lisco::allThreads() < 2) GTEST_SKIP() << "one processor, or an unknown one";
+  cpu_set_t allowed;
+  ASSERT_EQ(sched_getaffinity(0, sizeof allowed, &allowed), 0);
+  std::size_t left = 0;
+  for (int attempt = 0; attempt < 20; ++attempt) {  // the system may move the thread back at any time
+    const int processor = lisco::currentProcessor();
+    lisco::leaveProcessor(processor);
+    left += lisco::currentProcessor() != processor ? 1 : 0;
+  }
+  EXPECT_GE(left, 10U);
+  cpu_set_t allowed_afterwards;
+  ASSERT_EQ(sched_getaffinity(0, sizeof allowed_afterwards, &allowed_afterwards), 0);
+  EXPECT_TRUE(CPU_EQUAL(&allowed, &allowed_afterwards));
+}
+
+TEST(Threads, StayWhereTheirCallerIsNot) {
+  cpu_set_t allowed;
+  ASSERT_EQ(sched_getaffinity(0, sizeof allowed, &allowed), 0);
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  CPU_SET(lisco::currentProcessor(), &one);
+  ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+  const int processor = lisco::currentProcessor();
+  lisco::leaveProcessor(processor);  // there is no other
+  lisco::leaveProcessor(processor + 1);
+  lisco::leaveProcessor(-1);
+  EXPECT_EQ(lisco::currentProcessor(), processor);
+  EXPECT_EQ(sched_setaffinity(0, sizeof allowed, &allowed), 0);
 }
 
 TEST(Threads, PassOnExceptions) {

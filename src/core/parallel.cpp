@@ -8,6 +8,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/processors.h"
+
 #ifdef __has_feature
 #if __has_feature(thread_sanitizer)
 #define LISCO_THREAD_SANITIZER
@@ -49,7 +51,9 @@ void inParallel(std::size_t parts, void (*work)(void* context, std::size_t part)
   }
   std::exception_ptr failure;
   std::atomic_flag has_failed = ATOMIC_FLAG_INIT;
+  SpreadStart start(threads);
   const auto run = [&](std::size_t thread) {
+    start.enter();
     for (std::size_t part = thread; part < parts; part += threads) {
       try {
         work(context, part);

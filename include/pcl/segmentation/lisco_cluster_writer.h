@@ -77,10 +77,11 @@ class LiscoClusterWriter {
    * backwards.
    */
   void placeAll() {
-    places_.last.resize(places_.next.size());
+    places_.last.assign(places_.next.size(), ignored(From::kLast));
     for (std::uint32_t i = 0; i < places_.next.size(); ++i) {
+      if (places_.next[i] == ignored(From::kFirst)) continue;
       place(i);
-      places_.last[i] = places_.next[i] == ignored(From::kFirst) ? ignored(From::kLast) : places_.next[i] + sizes_[i];
+      places_.last[i] = places_.next[i] + sizes_[i];
     }
   }
 
