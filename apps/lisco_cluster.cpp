@@ -119,6 +119,9 @@ void printJson(const ClusteredScan& scan, const fs::path& file, const StepTimes&
   std::printf("%s\n", lineOf(json).c_str());
 }
 
+/// Part of the tolerance above which the rounding of coordinates is noted, as of map coordinates: clusters depend on it.
+constexpr double kMaxRounding = 0.25;
+
 /// Prints the result for one scan.
 void printSummary(const ClusteredScan& scan, const StepTimes& times, const fs::path& folder) {
   const Cloud& cloud = *scan.cloud;
@@ -143,6 +146,11 @@ void printSummary(const ClusteredScan& scan, const StepTimes& times, const fs::p
     std::printf(
         "  note      one cluster has more than half of these returns: is it the ground (see --ground), or is the "
         "tolerance too large?\n");
+  const auto rounding = static_cast<double>(roundingOf(cloud, scan.returns.clustered));
+  if (rounding > kMaxRounding * scan.tolerance)
+    std::printf(
+        "  note      coordinates as large as these are rounded to multiples of %g m: subtract an offset first\n",
+        rounding);
   std::printf("  time      read %.1f ms, ground %.2f ms, cluster %.2f ms", times.read, times.ground, times.cluster);
   if (!folder.empty()) std::printf(", write %.1f ms\n  written   %s", times.write, folder.c_str());
   std::printf("\n");

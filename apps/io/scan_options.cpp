@@ -73,9 +73,11 @@ bool Region::isOutsideOfBoxes(float x, float y, float z) const {
   });
 }
 
-bool Region::contains(float x, float y, float z) const {
+bool Region::contains(float x, float y, float z, const std::array<float, 3>& sensor) const {
   if (isEverything()) return true;
-  const double range = std::hypot(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
+  const double range = std::hypot(static_cast<double>(x) - static_cast<double>(sensor[0]),
+                                  static_cast<double>(y) - static_cast<double>(sensor[1]),
+                                  static_cast<double>(z) - static_cast<double>(sensor[2]));
   return min_range <= range && range <= max_range && isOutsideOfBoxes(x, y, z);
 }
 
@@ -97,7 +99,7 @@ void ScanOptions::addTo(po::options_description& shown) {
     ("ground", po::value<Texts>(&methods_)->value_name("METHOD"), method.c_str())
     ("ground-z", po::value<Texts>(&heights_)->value_name("M"), height.c_str())
     ("min-range", rangeOption("--min-range", region.min_range),
-     "leave out returns nearer to (0, 0, 0) than this many metres")
+     "leave out returns nearer to the sensor (a cloud's VIEWPOINT, usually (0, 0, 0)) than this many metres")
     ("max-range", rangeOption("--max-range", region.max_range), "leave out returns farther away than this")
     ("ignore-box", po::value<Texts>(&boxes_)->value_name("X,Y,Z,X,Y,Z"),
      "leave out returns in the box between a lower and an upper corner, such as the sensor's own vehicle; may be given "

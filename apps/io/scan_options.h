@@ -26,12 +26,12 @@ GroundChoice groundChoiceOf(const std::string& text);
 /// As --ground names it, with a height of up to nine digits.
 std::string groundTextOf(const GroundChoice& ground);
 
-/// The returns that are looked at, by range and place.
+/// The returns that are looked at, by their range from the sensor and their place.
 struct Region {
   struct Box {
     std::array<float, 3> min, max;  ///< metres; its sides belong to it
   };
-  double min_range = 0;                                        ///< metres from (0, 0, 0)
+  double min_range = 0;                                        ///< metres
   double max_range = std::numeric_limits<double>::infinity();  ///< the same
   std::vector<Box> ignored;
 
@@ -39,7 +39,8 @@ struct Region {
   /// \return false in an ignored box
   bool isOutsideOfBoxes(float x, float y, float z) const;
   /// Whether a return is clustered, ground or not.
-  bool contains(float x, float y, float z) const;
+  /// \param sensor where it is, metres
+  bool contains(float x, float y, float z, const std::array<float, 3>& sensor = {}) const;
 };
 
 /// Which returns are clustered: the options --ground, --ground-z, --min-range, --max-range and --ignore-box.

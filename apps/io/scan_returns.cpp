@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "io/point_geometry.h"
@@ -25,10 +26,10 @@ bool isAroundSensor(const Cloud& cloud) {
   std::vector<bool> sides(kBins, false);
   std::size_t returns = 0;
   std::size_t steep = 0;
+  const std::array<float, 3> sensor = declaredOriginOf(cloud);
   for (const auto& point : cloud) {
     if (!isReturn(point)) continue;
-    const Eigen::Vector3f from_sensor = point.getVector3fMap() - cloud.sensor_origin_.head<3>();
-    const pcl::PointXYZ relative(from_sensor.x(), from_sensor.y(), from_sensor.z());
+    const pcl::PointXYZ relative(point.x - sensor[0], point.y - sensor[1], point.z - sensor[2]);
     const double turn = azimuthOf(relative) / (2 * kPi) + 0.5;
     sides[std::min(kBins - 1, static_cast<std::size_t>(turn * kBins))] = true;
     steep += std::fabs(elevationOf(relative)) > kSteep ? 1 : 0;
@@ -46,7 +47,7 @@ std::vector<std::uint8_t> groundBySlope(const Cloud& cloud, const Region& region
     const auto& p = cloud[laser * columns + column];
     return region.isOutsideOfBoxes(p.x, p.y, p.z) ? lisco::Return{p.x, p.y, p.z, 0} : lisco::kNoReturn;
   };
-  const std::array<float, 3> origin{cloud.sensor_origin_[0], cloud.sensor_origin_[1], cloud.sensor_origin_[2]};
+  const std::array<float, 3> origin = declaredOriginOf(cloud);
   std::vector<std::uint8_t> ground(cloud.size());
   lisco::GroundFilter filter;
   lisco::GroundParameters parameters;
@@ -81,11 +82,12 @@ ScanReturns returnsOf(const Cloud& cloud, const GroundChoice& ground, const Regi
     by_slope = groundBySlope(cloud, region, is_rotation);
     result.is_rotating = !by_slope.empty();
   }
+  const std::array<float, 3> sensor = declaredOriginOf(cloud);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const auto& point = cloud[i];
     if (!isReturn(point)) continue;
     ++result.returns;
-    if (!region.contains(point.x, point.y, point.z))
+    if (!region.contains(point.x, point.y, point.z, sensor))
       ++result.ignored;
     else if (!by_slope.empty() ? by_slope[i] != 0 : point.z < ground.height)
       result.ground.push_back(static_cast<pcl::index_t>(i));
@@ -93,6 +95,15 @@ ScanReturns returnsOf(const Cloud& cloud, const GroundChoice& ground, const Regi
       result.clustered.push_back(static_cast<pcl::index_t>(i));
   }
   return result;
+}
+
+float roundingOf(const Cloud& cloud, const pcl::Indices& points) {
+  float largest = 0;
+  for (const pcl::index_t i : points) {
+    const auto& point = cloud[static_cast<std::size_t>(i)];
+    largest = std::max({largest, std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)});
+  }
+  return std::nextafter(largest, std::numeric_limits<float>::infinity()) - largest;
 }
 
 std::string describe(const ScanReturns& returns, const GroundChoice& ground) {

@@ -25,6 +25,9 @@ struct ScanReturns {
 ///        sensor is estimated
 ScanReturns returnsOf(const Cloud& cloud, const GroundChoice& ground, const Region& region, bool is_rotation = false);
 
+/// Distance between adjacent floats as large as the largest coordinate of some points, metres.
+float roundingOf(const Cloud& cloud, const pcl::Indices& points);
+
 /// The lines "ignored" and "ground" of a summary; empty if nothing is to be said.
 std::string describe(const ScanReturns& returns, const GroundChoice& ground);
 

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <nlohmann/json.hpp>
 
 #include "io/scan_file.h"
@@ -200,6 +201,22 @@ TEST_F(LiscoCluster, LeavesOutReturnsByRangeAndPlace) {
   EXPECT_EQ(counts("--ignore-box 4,-9,-9,6,9,9 --ignore-box 8,-9,-9,9,9,-1"), (std::vector<int>{160, 100, 60}));
   EXPECT_NE(run("walls.pcd --tolerance 0.3 --min-range 6").out.find("ignored   80 returns (50 %) by range or place"),
             std::string::npos);
+  write("walls.pcd", boost::replace_all_copy(twoWalls(), "VIEWPOINT 0 0 0", "VIEWPOINT 10 0 0"));
+  EXPECT_EQ(counts("--min-range 4.9"), (std::vector<int>{160, 80, 80}));  // from the sensor
+}
+
+TEST_F(LiscoCluster, SaysThatMapCoordinatesAreRounded) {
+  const auto summary = [this](const std::string& point) {
+    write("map.pcd",
+          "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1\nHEIGHT 1\n"
+          "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 1\nDATA ascii\n" +
+              point + "\n");
+    return run("map.pcd --tolerance 1").out;
+  };
+  const char* const note = "note      coordinates as large as these are rounded to multiples of 0.5 m: subtract";
+  EXPECT_NE(summary("500000 5400000 1").find(note), std::string::npos);
+  EXPECT_NE(summary("500000 -5400000 1").find(note), std::string::npos);
+  EXPECT_EQ(summary("500000 2000000 1").find("rounded"), std::string::npos);
 }
 
 TEST_F(LiscoCluster, FindsTheGroundOfEachRotationByItself) {
