@@ -4,6 +4,7 @@
 // The ground filter on real scans: what it removes, what it leaves, what it takes.
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +15,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "ground_picture.h"
@@ -39,7 +41,8 @@ double threadSeconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-constexpr int kRuns = 25;
+constexpr int kRuns = 100;
+constexpr int kRunsTogether = 5;  ///< before a pause: disturbances last up to a tenth of a second
 
 struct Filtered {
   std::vector<std::uint8_t> ground;
@@ -56,6 +59,7 @@ Filtered filterCloud(const Cloud& cloud, lisco::GroundParameters parameters) {
   };
   lisco::GroundFilter filter;
   for (int run = 0; run < kRuns; ++run) {
+    if (run % kRunsTogether == 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
     if (cloud.height == 1) {
       const double begin = threadSeconds();
       lisco::LabelGroundParameters unorganized;
