@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs missing dependencies, builds the programs, simulates a scan (the paper's third scene), clusters it by PCL and
-# by Lisco side by side, and draws it. The results are in demo/ (or the folder given); the last line names a page that
-# shows the scene in a browser.
+# Installs missing dependencies, builds the programs, simulates a scan of a street, clusters it by PCL and by Lisco side
+# by side, and draws it. The results are in demo/ (or the folder given); the last line names a page that shows the scene
+# in a browser.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$root/cmake/script_tools.sh"

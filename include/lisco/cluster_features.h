@@ -19,7 +19,7 @@ struct OrientedBox {
   double height = 0;  ///< along z, metres
 };
 
-/// What a cluster is, as an object.
+/// Size, boxes, range and density of a cluster.
 struct ClusterFeatures {
   std::size_t size = 0;              ///< number of returns
   std::array<double, 3> centroid{};  ///< mean of the returns, metres
@@ -39,9 +39,9 @@ struct ClusterFeatures {
 ///   car.box.yaw, car.box.length, car.box.width ...
 ///
 /// The oriented box is an L-shape fit (Zhang et al. 2017, closeness criterion): a LiDAR sees two sides of a vehicle,
-/// and of the boxes around its returns, the one is taken whose sides the returns are nearest to. The candidates are
-/// the edges of the convex hull, so that the box turns with the cluster. (The box of the least area is up to 25 degrees
-/// wrong for two visible sides, as any right triangle has the same area between its legs as over its hypotenuse.)
+/// and of the boxes around its returns, the one is taken whose sides the returns are nearest to. The headings tried are
+/// the longest edges of the convex hull, then steps around the best one, so that the box turns with the cluster. (The
+/// box of the least area is up to 25 degrees wrong where two sides are visible: doc/objects.md.)
 ///
 /// Sums and differences are taken in double precision, relative to the first point: map coordinates lose nothing.
 /// Degenerate clusters: without extent along x and y, length, width and yaw are 0; with all points on one vertical

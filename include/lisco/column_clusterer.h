@@ -38,7 +38,7 @@ class LISCO_EXPORT ColumnClusterer {
   ColumnClusterer& operator=(const ColumnClusterer& other);  ///< the same
 
   /// Starts a new rotation and forgets the last one. After an exception that is not listed at the function (refused
-  /// memory, a throwing callable), every other call either throws std::logic_error or does nothing.
+  /// memory, a throwing callable), all calls but begin () throw std::logic_error or do nothing.
   void begin(const Parameters& parameters);
 
   /// Event "reception of step s".

@@ -52,7 +52,7 @@ class LISCO_EXPORT EndlessClusterer {
 
   /// Starts a new stream; of the last one, nothing more is delivered. After an exception that is not listed at the
   /// function (refused memory, a throwing callback, std::length_error for more than 2^28 runs in an eighth of a turn),
-  /// every other call either throws std::logic_error or does nothing.
+  /// all calls but begin () throw std::logic_error or do nothing.
   /// \throws std::invalid_argument if the stagger is not within 0..kMaxStagger, the origin is not finite, the start
   ///         azimuth is not within +-kMaxAzimuth, or the callback is empty; the stream before goes on then
   void begin(const EndlessParameters& parameters, Callback callback);
@@ -113,7 +113,7 @@ struct EndlessParameters {
 /// comparison may find neighbours on the other side of the sensor.
 inline constexpr double kNearMargin = 2e-6;
 
-/// A cluster that no later column can reach.
+/// A cluster that is delivered: no later column can reach it, unless it is cut.
 class EndlessCluster {
  public:
   std::size_t size() const { return size_; }                ///< number of its returns

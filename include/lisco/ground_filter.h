@@ -87,8 +87,8 @@ class LISCO_EXPORT GroundFilter {
     filterAll(parameters, columns, lasers, CellSource(cells), ground);
   }
 
-  /// Estimates the plane of the ground around the sensor from the whole scan, then filters as filter () does. Without a
-  /// clear plane, nothing is ground.
+  /// Estimates the plane of the ground around the sensor from columns spread over the scan, then filters as filter ()
+  /// does. Without a clear plane, nothing is ground.
   /// \param parameters as estimateGroundPlane takes them: the sensor's, and its height if it is known
   /// \return the parameters with the estimates; the height is NaN where nothing is ground
   template <typename Cells>
@@ -118,8 +118,9 @@ class LISCO_EXPORT GroundFilter {
 LISCO_EXPORT GroundParameters estimateGround(std::size_t columns, std::size_t lasers,
                                              const std::array<float, 3>& declared_origin, const CellSource& cells);
 
-/// The same for a known sensor.
-/// \param parameters those returned, but for the slope, and for the height if it is NaN
+/// Estimates the height, if it is NaN, and the slope of the ground around a known sensor.
+/// \param parameters the sensor, and its height if it is known
+/// \return the parameters with the estimates; unchanged where no ground is clearly seen
 /// \throws std::invalid_argument as GroundFilter::begin ()
 LISCO_EXPORT GroundParameters estimateGroundPlane(std::size_t columns, std::size_t lasers, GroundParameters parameters,
                                                   const CellSource& cells);

@@ -24,7 +24,7 @@ struct LabelGroundParameters {
 /// Labels the points of a scan that lie on the ground, by GroundFilter. The columns of a rotating sensor's organized
 /// scan are filtered as they are. The points of other clouds, in any order, are sorted into columns of equal azimuth as
 /// seen from the origin first, or from above it, where the ground is less than 0.5 m below, as in a vehicle's frame. If
-/// the height is not given, and the scan as a whole shows no ground clearly, none is.
+/// the height is not given, and the scan as a whole shows no ground clearly, all points get 0.
 /// \param points the first point: x, y and z as floats, metres; NaN, infinite or all 0 where there is no return
 /// \param count number of points, below 2^31
 /// \param stride bytes from one point to the next, at least 12; points need not be aligned

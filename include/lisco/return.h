@@ -33,8 +33,8 @@ inline bool isReturn(float x, float y, float z) {
   return finite && !(x == 0.0F && y == 0.0F && z == 0.0F);
 }
 
-/// Cells of lasers and columns, read by one function call per laser and block of columns. Refers to the callable that
-/// it is made of.
+/// Cells of lasers and columns, read by one function call per laser and block of columns. Keeps a reference to the
+/// callable, which must outlive it.
 class CellSource {
  public:
   /// Coordinates and source indices of consecutive cells of one laser: arrays that overlap neither each other nor what
@@ -128,19 +128,20 @@ struct SingleRunBlock {
 };
 
 /// Receives runs laser by laser, from the first on or from the last backwards: one function call per laser and block of
-/// columns. Refers to the callable that it is made of.
+/// columns. Keeps a reference to the callable, which must outlive it.
 class RunVisitor {
  public:
   /// Where a visit begins.
   enum class From { kFirst, kLast };
 
-  /// \param visit callable as void (From from, const std::uint32_t* source_indices, std::size_t count,
-  ///        std::uint32_t subcluster), or with the place of the first return of a run, as void (From from,
-  ///        std::uint32_t laser, std::uint32_t column, std::size_t count, std::uint32_t subcluster). If it is callable
-  ///        as void (From from, const std::uint32_t* source_indices, std::size_t count,
-  ///        const std::uint32_t* subclusters), too, or with places as void (From from, std::uint32_t laser,
-  ///        const std::uint32_t* columns, std::size_t count, const std::uint32_t* subclusters), that receives runs of
-  ///        one return each, several at once; from the last backwards, they are to be taken from the last on
+  /// \param visit callable as one of
+  ///          void (From, const std::uint32_t* source_indices, std::size_t count, std::uint32_t subcluster)
+  ///          void (From, std::uint32_t laser, std::uint32_t column, std::size_t count, std::uint32_t subcluster)
+  ///        where `column` is that of the run's first return; and, optional, for several runs of one return each, as
+  ///          void (From, const std::uint32_t* source_indices, std::size_t count, const std::uint32_t* subclusters)
+  ///          void (From, std::uint32_t laser, const std::uint32_t* columns, std::size_t count,
+  ///                const std::uint32_t* subclusters)
+  ///        whose arrays are in the order of the columns: with From::kLast, visit them from the last element backwards
   template <typename Visit>
   explicit RunVisitor(Visit& visit)
       : context_(std::addressof(visit)),

@@ -18,7 +18,7 @@ struct SensorHints {
   float elevation_step = 0.0087F;                 ///< typical angle between adjacent lasers, radians
   int steps_per_turn = 0;                         ///< columns of a whole turn; 0: unknown, or no rotating sensor
   bool clockwise = false;                         ///< sense of rotation, seen from above
-  float far_distance = 1e30F;                     ///< horizontal distance that few returns exceed, metres
+  float far_distance = 1e30F;                     ///< horizontal distance that a fifth of the returns exceed, metres
   float jitter = 0.0F;  ///< by how much azimuths of adjacent columns differ from a step of the turn, in steps
   float drift = 0.0F;   ///< by how much azimuths of columns that are 32 apart differ from 32 steps, in steps
   /// Typical difference between the ranges of one laser's returns in adjacent columns, metres; infinite if most have

@@ -43,9 +43,9 @@ class LISCO_EXPORT WindowClusterer {
   WindowClusterer(const WindowClusterer& other);             ///< a copy goes on from the same column
   WindowClusterer& operator=(const WindowClusterer& other);  ///< the same
 
-  /// Starts a new stream and forgets the last one. After an exception that is not listed at the function
-  /// (refused memory), every other call either throws std::logic_error or does nothing.
-  /// \throws std::invalid_argument if the window is no multiple, 1 or more, of the hop
+  /// Starts a new stream and forgets the last one. After an exception that is not listed at the function (refused
+  /// memory), all calls but begin () throw std::logic_error or do nothing.
+  /// \throws std::invalid_argument if the window is not a positive multiple of the hop
   void begin(const WindowParameters& parameters);
 
   /// Takes the next column.

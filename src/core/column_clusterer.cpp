@@ -50,7 +50,7 @@ class ColumnClusterer::Rotation {
   void receiveAtOnce(std::size_t columns, std::size_t lasers, const CellSource& cells);
   template <typename Read>
   void readInParallel(Read&& read);
-  void preparePart(std::size_t i, const SensorHints& hints, std::size_t columns, std::size_t room = 0);
+  void preparePart(std::size_t i, const SensorHints& hints, std::size_t columns, std::size_t capacity = 0);
   bool readFarAndNear(std::size_t lasers, const CellSource& cells);
   void readPart(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial);
   void reserveRuns(Partition& partition);
@@ -118,8 +118,8 @@ constexpr std::size_t kWorthSorting = 256;
 /// (recordings).
 constexpr std::size_t kTriedColumns = 128;
 static_assert(kTriedColumns % RingBlock::kColumns == 0, "whole blocks are read");
-/// Times the work of far returns that is worthwhile, from which on its measurement ends before. More: clouds without
-/// range images wait for it; less: columns that differ from the rest decide (recordings).
+/// Times the worthwhile work of far returns at which the trial ends before its last column. More: clouds without range
+/// images wait for it; less: columns that differ from the rest decide (recordings).
 constexpr double kClearlyTooMuch = 3.0;
 /// SensorHints::drift from which on returns leave their expected bins too often: of clouds that are motion-compensated.
 /// The first columns do not show it, as the motion grows from there. At rest 0.05, up to 0.8 in a vehicle's frame; in
@@ -201,9 +201,9 @@ void ColumnClusterer::Rotation::divide(std::size_t columns, std::size_t lasers, 
     partitions_[i].first_element = static_cast<std::uint32_t>(lasers * parts_[i].first);  // at most a run for each cell
 }
 
-/// Columns that come at once are read with their far returns in range images, if these prove worthwhile. Otherwise, if
-/// azimuths drift (SensorHints::drift), and if there are several turns, all returns are near: collected as runs, or
-/// without if they are unordered.
+/// Columns that come at once are read with their far returns in range images, if these prove worthwhile. If not, or if
+/// azimuths drift (SensorHints::drift), or if there are several turns, all returns are near: collected with their runs,
+/// or without runs if they are unordered.
 void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t lasers, const CellSource& cells) {
   if (partition_count_ == 1) parts_.assign(1, {0, columns});
   near_ = Near::kCollected;
@@ -220,7 +220,7 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
     readNear(lasers, cells);
 }
 
-/// Calls read (i) for each part by a thread of its own, whose time decides on its share of the next rotation.
+/// Calls read (i) for each part by a thread of its own, and records its time, which sets its later shares.
 template <typename Read>
 void ColumnClusterer::Rotation::readInParallel(Read&& read) {
   inParallel(partition_count_, [&](std::size_t i) {
@@ -230,13 +230,12 @@ void ColumnClusterer::Rotation::readInParallel(Read&& read) {
 }
 
 void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hints, std::size_t columns,
-                                            std::size_t room) {
-  partitions_[i].prepare(tolerance_, hints, columns, room);
+                                            std::size_t capacity) {
+  partitions_[i].prepare(tolerance_, hints, columns, capacity);
   partitions_[i].collectNear();
 }
 
-/// Each thread reads its part of the columns, and links its far returns as far as it goes without the others. Near
-/// returns are collected.
+/// Each thread reads its part of the columns, and links its far returns among themselves. Near returns are collected.
 /// \return false, with part of it read, if there are no far returns, or linking those of the first columns takes longer
 ///         than sorting them
 bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSource& cells) {
@@ -252,8 +251,10 @@ bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSou
       const auto has_memory_for = [&](std::size_t columns) {
         return partitions_[i].hasMemoryFor(lasers, columns, parameters_.sensor);
       };
-      const std::size_t room = has_memory_for(kWholeTurn) ? kWholeTurn : is_new || has_memory_for(all) ? all : expected;
-      preparePart(i, parameters_.sensor, expected, room);
+      const std::size_t capacity = has_memory_for(kWholeTurn)      ? kWholeTurn
+                                   : is_new || has_memory_for(all) ? all
+                                                                   : expected;
+      preparePart(i, parameters_.sensor, expected, capacity);
       if (partitions_[i].hasFar())
         readPart(i, lasers, cells, trial);
       else
@@ -377,9 +378,9 @@ void ColumnClusterer::Rotation::linkPartitions() {
   lastPartition().markLinked();  // the others have no voxels: see stopCollecting ()
 }
 
-/// Links far returns of different partitions and across the seam, as far as partitions from `first` on take part, by as
-/// many threads: the images in each other's reach, which are a few for each; each unplaced return with the images
-/// around it.
+/// Links far returns of different partitions and across the seam, of pairs with a partition from `first` on. As many
+/// threads share the overlaps of images in each other's reach, and the unplaced returns, each of which is compared with
+/// the images around it.
 void ColumnClusterer::Rotation::linkImages(std::size_t first) {
   images_.assign(partition_count_, [&](std::size_t i) -> const RangeImage& { return partitions_[i].image(); });
   overlaps_.clear();

@@ -17,13 +17,14 @@ constexpr std::size_t kWorkOfLinking = 2;
 
 }  // namespace
 
-void Partition::prepare(const Tolerance& tolerance, const SensorHints& hints, std::size_t columns, std::size_t room) {
+void Partition::prepare(const Tolerance& tolerance, const SensorHints& hints, std::size_t columns,
+                        std::size_t capacity) {
   tolerance_ = tolerance;
   runs.clear();
   collects_near_ = false;
   near_returns_.count = 0;
   voxels_.prepare(tolerance);
-  image_.prepare(tolerance, hints, columns, room);
+  image_.prepare(tolerance, hints, columns, capacity);
   segments_.prepare(image_);
 }
 

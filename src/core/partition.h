@@ -28,8 +28,8 @@ class alignas(kSeparate) Partition {
   /// Starts without columns. Keeps its memory.
   /// \param hints if steps_per_turn is 0, all returns are near
   /// \param columns number of columns expected; more than a turn needs no more memory
-  /// \param room number of columns for which expectColumns () moves no returns, if it is larger
-  void prepare(const Tolerance& tolerance, const SensorHints& hints, std::size_t columns, std::size_t room = 0);
+  /// \param capacity number of columns for which expectColumns () moves no returns, if it is larger
+  void prepare(const Tolerance& tolerance, const SensorHints& hints, std::size_t columns, std::size_t capacity = 0);
 
   /// See RangeImage::takeLargerMemory.
   void takeLargerMemory(NearReturns& near) noexcept { image_.takeLargerMemory(near.returns); }
@@ -115,8 +115,7 @@ class alignas(kSeparate) Partition {
   const RangeImage& image() const { return image_; }
   /// False if all returns are near.
   bool hasFar() const { return image_.inUse(); }
-  /// Whether linking far returns, as measured so far, takes less than sorting them would.
-  /// \param most times as long as that
+  /// Whether linking far returns, as measured so far, takes at most `most` times as long as sorting them would.
   bool isFarWorthwhile(double most = 1.0) const;
 
   /// See RangeImage::isFull.

@@ -133,7 +133,7 @@ class LiscoClusterWriter {
   }
 
  private:
-  /// Longest run of a size that is not accepted which is written there; longer ones are skipped by a branch.
+  /// Longest run of a size not accepted that is written to ignored (); a branch skips longer ones.
   static constexpr std::size_t kMaxIgnored = 64;
 
   /// Points from which on the memory of a cluster's indices has several pages.

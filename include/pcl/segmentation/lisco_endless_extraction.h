@@ -59,8 +59,8 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
    */
   bool beginStream();
 
-  /** \brief Set the receiver of the clusters. A cluster is valid during the call only. The receiver must neither throw
-   * nor call this object. Takes effect at once.
+  /** \brief Set the receiver of the clusters. A cluster is valid during the call only. The receiver must not call this
+   * object; if it throws, the stream ends. Takes effect at once.
    */
   inline void setClusterCallback(ClusterCallback callback) {
     Receiver receiver;

@@ -42,7 +42,7 @@ class LiscoWindowExtraction : public detail::LiscoColumnStream<PointT> {
   using PointCloud = typename Base::PointCloud;  ///< of its points
 
   /** \brief Begin a stream. Discards the last one.
-   * \return false, after a PCL_ERROR and without effect, if the window is no multiple, 1 or more, of the hop
+   * \return false, after a PCL_ERROR and without effect, if the window is not a positive multiple of the hop
    */
   bool beginStream();
 

@@ -15,7 +15,7 @@ namespace lisco {
 /// azimuths jitter, so that most returns of adjacent columns have adjacent bins, though masks grow.
 inline constexpr float kMinDeviation = 0.75F;
 inline constexpr float kMaxDeviation = 2.25F;
-inline constexpr float kWorthDeviation = 0.5F;  ///< jitter that is worth more than kMinDeviation
+inline constexpr float kWorthDeviation = 0.5F;  ///< jitter, in steps, above which more is allowed
 /// Radians, added to elevation bounds; more than 100 times their rounding.
 inline constexpr float kAngleRounding = 1e-4F;
 /// Metres; beyond, returns go to the voxels: their squares may overflow.

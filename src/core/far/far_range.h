@@ -25,7 +25,7 @@ inline float deviationFor(const SensorHints& hints) {
   return hints.jitter > kWorthDeviation ? std::min(hints.jitter + kRounding, kMaxDeviation) : kMinDeviation;
 }
 
-/// Which returns are far: those that see the tolerance under few bins and lasers. None (min_range infinite) if the
+/// Which returns are far: those for which the tolerance spans few bins and lasers. None (min_range infinite) if the
 /// hints are out of range or unknown.
 inline FarRange farRangeFor(const Tolerance& tolerance, const SensorHints& hints) {
   constexpr float kNone = std::numeric_limits<float>::infinity();

@@ -27,7 +27,7 @@ constexpr RangeImage::Row kNewRow{false, kInfinity, -kInfinity, RangeImage::kNoB
 }  // namespace
 
 void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hints, std::size_t columns,
-                         std::size_t room) {
+                         std::size_t capacity) {
   tolerance = new_tolerance;
   started = false;
   linked = scheduled = 0;
@@ -62,7 +62,7 @@ void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hint
   const std::size_t lasers_before = laserCount();
   rows.clear();
   layers = 1;
-  cells.clear(std::max(stride, strideFor(room, steps)));
+  cells.clear(std::max(stride, strideFor(capacity, steps)));
   addLasers(lasers_before);
 }
 

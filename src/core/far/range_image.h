@@ -20,10 +20,10 @@ namespace lisco {
 /// The far returns of consecutive columns by laser and *azimuth bin*: a row per laser, a bin per step of the turn.
 ///
 /// A return lies in the bin of its measured azimuth, whatever its column. A *row* holds one return in each bin. A laser
-/// has one row until a return finds its bin taken, then `layers` of them, one behind the other: the return goes to the
-/// first in which its bin is free. A far return for which no row has room, or beyond the memory of the image, is
-/// *unplaced*: its neighbours are searched one by one, and it must be kept in the voxels as well. Rows are reached by
-/// the elevations measured on their laser.
+/// has `layers` rows, one behind the other: a return goes to the first in which its bin is free. There is one layer at
+/// first, and one more whenever enough returns have no free bin (isLayerWorthwhile). A far return without a free bin,
+/// or beyond the bins of the image, is *unplaced*: its neighbours are searched one by one, and it must be kept in the
+/// voxels as well. Rows are reached by the elevations measured on their laser.
 ///
 /// Bins are counted from the first return's, less kMargin, in the sense of rotation. There are some more than a turn
 /// has; what comes behind the last one goes into the bins a turn before.
@@ -55,11 +55,11 @@ struct RangeImage {
 
   /// Starts a rotation, or a part of one. Keeps its memory.
   /// \param columns number of columns expected; more than a turn needs no more memory
-  /// \param room number of columns up to which expectColumns () moves no returns
-  void prepare(const Tolerance& new_tolerance, const SensorHints& hints, std::size_t columns, std::size_t room = 0);
+  /// \param capacity number of columns up to which expectColumns () moves no returns
+  void prepare(const Tolerance& new_tolerance, const SensorHints& hints, std::size_t columns, std::size_t capacity = 0);
 
-  /// Exchanges the memory of the first rows with that of an array, if the array's is larger, or if it is smaller. All
-  /// values are lost; prepare () comes next.
+  /// Exchanges the memory of the first rows with that of an array: takeLargerMemory () if the array's is larger,
+  /// leaveLargerMemory () if it is smaller. All values are lost; prepare () comes next.
   template <typename Element>
   void takeLargerMemory(GrowingArray<Element>& array) noexcept {
     if (cells.exchangedBytes() < array.size() * sizeof(Element)) cells.exchangeMemory(array);
@@ -79,7 +79,7 @@ struct RangeImage {
   /// Gives back the memory of columns that are not expected. All values are lost; prepare () comes next.
   void shrinkMemory() { cells.shrinkTo(stride); }
 
-  /// False if the hints give no steps, or the tolerance joins nothing: then no return is far.
+  /// False if no return is far: see farRangeFor.
   bool inUse() const { return steps > 0; }
 
   /// Grows to a number of lasers.

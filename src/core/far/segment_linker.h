@@ -40,7 +40,7 @@ struct Sector {
   void grow(std::size_t segments);
 };
 
-/// The paper's neighbor mask (Algorithm 2) of one laser's returns in a sector, from measured bounds.
+/// The paper's neighbor mask (Algorithm 2) of one row's returns in a sector, from measured bounds.
 struct NeighborMask {
   float nearest = 0;  ///< horizontal distance, metres
   int before = 0;     ///< sigma: bins that it reaches over
@@ -56,7 +56,7 @@ struct SegmentLinkerState {
 
   std::array<Sector, kSectorsKept> sectors;
   Sector beyond;                    ///< a sector of another image, or of this one a turn later
-  std::vector<NeighborMask> masks;  ///< of each laser in the sector at hand
+  std::vector<NeighborMask> masks;  ///< of each row in the sector at hand
   std::size_t work = 0;             ///< done so far, about in comparisons of registers
 };
 

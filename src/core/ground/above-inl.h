@@ -68,7 +68,7 @@ struct Above {
   Mask surface;        ///< a rising surface that begins at the return
   Mask seen;           ///< there is a return beyond
   Mask nearer;         ///< there is a return that is nearer
-  Floats slope, step;  ///< to it
+  Floats slope, step;  ///< to the return beyond
   Mask line;           ///< two returns beyond, on a line with this one
   Floats line_slope;
 };

@@ -37,7 +37,8 @@ inline constexpr std::size_t kMaxLines = 64;
 struct AgreedHeight {
   float height, weight;
 };
-/// Of the heights that at least `enough` of the most weight agrees with, the lowest. Without lines, of no weight.
+/// The lowest height whose support, the weight of the lines within the window, is at least `enough` of the greatest
+/// support. Without lines, of no weight.
 /// \param size at most kMaxLines
 /// \param window metres, within which heights agree
 AgreedHeight lowestAgreed(const ColumnLine* lines, std::size_t size, float window, float enough);

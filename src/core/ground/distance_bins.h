@@ -8,9 +8,9 @@
 
 namespace lisco::ground {
 
-// Bins of horizontal distance: eight of equal width in each octave of the squared distance, 3 to 6 % of it wide. Bin 0
-// begins at 0.5 m; nearer returns belong to it. A bin's number is the exponent and the three highest bits of the
-// mantissa of the squared distance, less those of 0.25 m2.
+// Bins of horizontal distance: eight of equal width in each octave of the squared distance, each 3 to 6 % of its
+// distance wide. Bin 0 begins at 0.5 m; nearer returns belong to it. A bin's number is the exponent and the three
+// highest bits of the mantissa of the squared distance, less those of 0.25 m2.
 inline constexpr std::int32_t kFirstDistanceBin = (127 - 2) << 3;
 inline constexpr int kDistanceBinShift = 20;
 

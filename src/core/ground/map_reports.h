@@ -24,7 +24,7 @@ struct Shown {
 };
 
 /// Writes a block's ground into the map. Arrays may be longer than their content. Distances and heights are metres.
-/// Flags are words, since stores of bytes may be to any pointer.
+/// Flags are words, since stores of bytes may alias any array.
 struct MapReports {
   /// Ground found from one distance to another.
   struct Stretches {

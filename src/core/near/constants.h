@@ -32,18 +32,21 @@ inline constexpr double kMinSortedTolerance = 1e-18;
 inline constexpr double kMaxSortedTolerance = 1e18;
 /// Side of a voxel over eps in a slice, whose returns differ along two axes: a little less than 1 / sqrt (2).
 inline constexpr double kSliceVoxelSide = 0.9999 / 1.4142135623730951;
-/// Slices from which on they are told from each other; threads share out planes, and so need a number of them. With
-/// slices, clouds in UTM coordinates take 0.8 to 0.95 times as long at tolerances below 0.5 m (recordings --cloud UTM).
+/// Least number of slices that count as such: threads share out planes, which slices are then. With slices, clouds in
+/// UTM coordinates take 0.8 to 0.95 times as long at tolerances below 0.5 m (recordings --cloud UTM).
 inline constexpr double kMinSlices = 32;
 /// Largest number of a voxel along an axis: fits a signed 32-bit conversion.
 inline constexpr double kMaxVoxelNumber = 2147480000.0;
 /// Work of a fragment beyond that of its returns, in returns: for dividing it among threads (threads).
 inline constexpr std::uint32_t kWorkOfFragment = 2;
-/// Returns from which on threads share the work: fewer take less time than the threads' meetings (threads).
+/// Returns from which on threads share the work: with fewer, synchronizing the threads takes longer than it saves
+/// (threads).
 inline constexpr std::size_t kMinSharedReturns = 8192;
-/// Side of the box, in voxels for each thread, from which on threads may share out planes across it: fewer planes
-/// divide the work less evenly. How much less their parts must overlap along it, of what they could (threads).
+/// Voxels along the middle axis, for each thread, from which on it may become the major one: fewer planes divide the
+/// work less evenly (threads).
 inline constexpr double kMinSharedSide = 32;
+/// Part of the most overlap possible by which the threads' parts must overlap less along the middle axis than along the
+/// major one, for it to become the major one (threads).
 inline constexpr double kMinOverlapGain = 0.25;
 /// Single returns of a brick that are compared with each other instead of by voxels: one vector, at most.
 inline constexpr std::size_t kFewReturns = 16;

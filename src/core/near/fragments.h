@@ -61,7 +61,7 @@ struct FragmentList {
   }
 };
 
-/// Fragments as they are sorted: each an item of its key, which is that of its voxel, and below it its number.
+/// Fragments for sorting: an item is the key of the fragment's voxel, and below it, in `number_bits`, its number.
 struct FragmentItems {
   unsigned number_bits = 0;  ///< of an item: the lowest
   unsigned plane_shift = 0;  ///< of an item: the bits from this one on are the number of its plane of bricks

@@ -14,7 +14,7 @@ inline constexpr std::size_t kOwnBrick = kNearBricks / 2;
 /// What is around one of the places in a box of at most 64, each of them a bit of a word: the lowest bits of its number
 /// count along x, the next along y, the highest along z.
 /// \tparam kReach by which numbers along an axis differ, at most
-/// \tparam kX bits of the number along x; kY and kZ likewise. Along an axis of no bits, words have nothing in common.
+/// \tparam kX bits of the number along x; kY and kZ likewise. Along an axis of no bits, only the own word has places.
 template <int kReach, int kX = 2, int kY = 2, int kZ = 2>
 struct Neighbourhood {
   static_assert(kX + kY + kZ <= 6, "a word holds 64 places");

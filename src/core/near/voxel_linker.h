@@ -36,7 +36,7 @@ class VoxelLinker {
   /// Marks all that is in the grid as linked, with other grids, too: no longer new.
   static void markLinked(VoxelGrid& grid);
 
-  enum class Part { kAll, kNew };  ///< new: VoxelGrid::State but kOld
+  enum class Part { kAll, kNew };  ///< kNew: cliques of any VoxelGrid::State but kOld
   /// Links a part of a grid with all of another one of the same tolerance. Both are linked within.
   static void linkTo(VoxelGrid& grid, VoxelGrid& other, Part part, PairVisitor& visitor);
 
