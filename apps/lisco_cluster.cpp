@@ -119,7 +119,7 @@ void printJson(const ClusteredScan& scan, const fs::path& file, const StepTimes&
   std::printf("%s\n", lineOf(json).c_str());
 }
 
-/// Part of the tolerance above which the rounding of coordinates is noted, as of map coordinates: clusters depend on it.
+/// Part of the tolerance above which the rounding of coordinates is noted, such as that of map coordinates.
 constexpr double kMaxRounding = 0.25;
 
 /// Prints the result for one scan.
