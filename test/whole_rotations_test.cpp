@@ -168,6 +168,27 @@ TEST_P(WholeRotations, EqualTheOracleInThreads) {
   tryRecordings(1'000'000, 100, GetParam(), true);
 }
 
+// One rotation like the other, of which some show that their far returns are not worth a range image: the later ones
+// are read without.
+TEST(WholeRotations, OneLikeTheOtherEqualTheOracle) {
+  for (std::uint64_t seed = 4'000'000; seed < 4'000'000 + timesEffort(200); ++seed) {
+    Random random(seed);
+    Recording recording = randomRecording(random);
+    const bool in_threads = random.chance(0.3);
+    if (in_threads) recording.scan = widened(random, recording.scan, 8192 / recording.scan.lasers + 1);
+    lisco::Parameters parameters = parametersFor(random, recording, in_threads ? 2 + random.below(2) : 1);
+    parameters.sensor = recording.hints;
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(parameters.threads) + " threads");
+    lisco::ColumnClusterer clusterer;
+    for (std::size_t rotation = 0; rotation < 5; ++rotation) {
+      Feeder feeder(clusterer, recording, parameters);
+      feeder.add(feeder.left());
+      feeder.expectExact();
+      if (HasFailure()) return;
+    }
+  }
+}
+
 // Single columns wait to be read in blocks: a whole rotation that follows does not overtake them.
 TEST(WholeRotations, KeepTheirPlaceBehindSomeColumns) {
   for (const std::size_t columns_before : {1, 15, 16, 63, 64, 65, 100}) {

@@ -9,6 +9,7 @@
 #include "core/block_scheduler.h"
 #include "core/disjoint_sets.h"
 #include "core/far/image_circle.h"
+#include "core/far_history.h"
 #include "core/far_trial.h"
 #include "core/laser_order.h"
 #include "core/load_balancer.h"
@@ -60,6 +61,7 @@ class ColumnClusterer::Rotation {
   void prepareForColumns();
   void receiveInSequence(std::size_t columns, std::size_t lasers, const CellSource& cells, const Return* column);
   void linkPartitions();
+  void recordFar();
   void linkImages(std::size_t first);
   void shareRows();
   void linkCollected();
@@ -98,6 +100,8 @@ class ColumnClusterer::Rotation {
   std::vector<Overlap> overlaps_;  ///< of range images
   VoxelSorter sorter_;
   std::vector<const NearReturns*> near_returns_;
+  enum class Far { kNone, kRefused, kInImages, kRests } far_ = Far::kNone;  ///< see recordFar ()
+  FarHistory far_history_;
   LoadBalancer balancer_;
   BlockScheduler scheduler_;
   std::vector<std::uint32_t> sizes_;  ///< of subclusters
@@ -118,9 +122,9 @@ constexpr std::size_t kWorthSorting = 256;
 /// (recordings).
 constexpr std::size_t kTriedColumns = 128;
 static_assert(kTriedColumns % RingBlock::kColumns == 0, "whole blocks are read");
-/// Times the worthwhile work of far returns at which the trial ends before its last column. More: clouds without range
-/// images wait for it; less: columns that differ from the rest decide (recordings).
-constexpr double kClearlyTooMuch = 3.0;
+/// Times the worthwhile work of far returns up to which the trial accepts them, as other columns may differ, and from
+/// which on it ends before its last column. More: clouds without range images wait for it (recordings, layouts).
+constexpr double kMostInTrial = 2.0, kClearlyTooMuch = 6.0;
 /// SensorHints::drift from which on returns leave their expected bins too often: of clouds that are motion-compensated.
 /// The first columns do not show it, as the motion grows from there. At rest 0.05, up to 0.8 in a vehicle's frame; in
 /// motion 1 to 20 (recordings).
@@ -184,6 +188,7 @@ void ColumnClusterer::Rotation::update() {
     scheduler_.finish(lastPartition(), subclusters_);
     linkPartitions();
   }
+  recordFar();
   numberSubclusters();
   usable_ = true;
 }
@@ -213,7 +218,12 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
   if (partition_count_ > 1) subclusters_.reserve(lasers * columns + RingBlock::kColumns, NewPages::kUntouched);
   const SensorHints& sensor = parameters_.sensor;
   const bool repeats = static_cast<double>(columns) > kMaxTurns * static_cast<double>(sensor.steps_per_turn);
-  if (!repeats && sensor.drift <= kMaxDrift && readFarAndNear(lasers, cells)) return;
+  const bool may_have_far = sensor.steps_per_turn != 0 && !repeats && sensor.drift <= kMaxDrift;
+  far_ = Far::kNone;
+  if (may_have_far && !far_history_.begin({columns, lasers, parameters_.tolerance}))
+    far_ = Far::kRests;
+  else if (may_have_far && readFarAndNear(lasers, cells))
+    return;
   if (UnorderedReturns::isUnordered(columns, lasers, cells, tolerance_))
     readUnordered(lasers, cells);
   else
@@ -239,7 +249,7 @@ void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hi
 /// \return false, with part of it read, if there are no far returns, or linking those of the first columns takes longer
 ///         than sorting them
 bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSource& cells) {
-  if (parameters_.sensor.steps_per_turn == 0) return false;   // nothing to prepare
+  for (std::size_t i = 0; i < partition_count_; ++i) partitions_[i].takeBackImageMemory();
   partitions_.front().takeLargerMemory(unordered_.memory());  // not in use before the trial ends
   const bool is_new = !partitions_.front().hasMemory();
   FarTrial trial;
@@ -265,6 +275,7 @@ bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSou
     }
   });
   const bool is_worthwhile = trial.await();
+  if (partitions_.front().hasFar()) far_ = is_worthwhile ? Far::kInImages : Far::kRefused;
   if (!is_worthwhile && is_new) partitions_.front().shrinkMemory();
   return is_worthwhile;
 }
@@ -278,8 +289,9 @@ void ColumnClusterer::Rotation::reserveNear(Partition& partition, std::size_t co
 /// Each thread reads its part of the columns, without far returns.
 void ColumnClusterer::Rotation::readNear(std::size_t lasers, const CellSource& cells) {
   readInParallel([&](std::size_t i) {
-    preparePart(i, SensorHints(), 0);
     Partition& partition = partitions_[i];
+    if (far_ == Far::kRests) partition.lendImageMemory();
+    preparePart(i, SensorHints(), 0);
     const auto [begin, end] = parts_[i];
     reserveRuns(partition);
     reserveNear(partition, end - begin);
@@ -315,9 +327,12 @@ void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, cons
     const std::size_t before = partition.workDone();
     partition.readColumns(cells, first, count, lasers, static_cast<std::uint32_t>(first), subclusters_);
     if (partition_count_ > 1) balancer_.record(first, count, count * lasers + partition.workDone() - before);
-    if (i == 0 && first + count < tried && !partition.isFarWorthwhile(kClearlyTooMuch)) return trial.decide(false);
+    const auto isWorthwhile = [&](double most) {
+      return partition.runs.returns == 0 || partition.farWork().isImageWorthwhile(most);
+    };
+    if (i == 0 && first + count < tried && !isWorthwhile(kClearlyTooMuch)) return trial.decide(false);
     if (i == 0 && first + count == tried) {
-      const bool is_worthwhile = partition.isFarWorthwhile();
+      const bool is_worthwhile = isWorthwhile(kMostInTrial);
       trial.decide(is_worthwhile);
       tried_near_ = {is_worthwhile ? partition.nearReturns().count : partition.runs.returns, first + count};
       if (!is_worthwhile) return;
@@ -376,6 +391,23 @@ void ColumnClusterer::Rotation::linkPartitions() {
   linkImages(first);
   subclusters_.share(false);
   lastPartition().markLinked();  // the others have no voxels: see stopCollecting ()
+}
+
+/// Adds a rotation that came at once, and whose returns might be far, to the history.
+void ColumnClusterer::Rotation::recordFar() {
+  if (comes_at_once_ && far_ != Far::kNone) {
+    FarHistory::Content content{returnCount(), 0};
+    FarWork work;
+    for (std::size_t i = 0; i < partition_count_; ++i) {
+      content.runs += runsOf(i).run_count;
+      work += partitions_[i].farWork();
+    }
+    if (far_ == Far::kRests)
+      far_history_.recordRest(content);
+    else
+      far_history_.recordImages(far_ == Far::kInImages && work.isImageWorthwhile(), content);
+  }
+  far_ = Far::kNone;
 }
 
 /// Links far returns of different partitions and across the seam, of pairs with a partition from `first` on. As many

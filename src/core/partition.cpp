@@ -19,6 +19,7 @@ constexpr std::size_t kWorkOfLinking = 2;
 
 void Partition::prepare(const Tolerance& tolerance, const SensorHints& hints, std::size_t columns,
                         std::size_t capacity) {
+  if (hints.steps_per_turn != 0) takeBackImageMemory();
   tolerance_ = tolerance;
   runs.clear();
   collects_near_ = false;
@@ -26,6 +27,17 @@ void Partition::prepare(const Tolerance& tolerance, const SensorHints& hints, st
   voxels_.prepare(tolerance);
   image_.prepare(tolerance, hints, columns, capacity);
   segments_.prepare(image_);
+}
+
+void Partition::lendImageMemory() noexcept {
+  if (is_image_memory_lent_ || !image_.hasLargerMemoryThan(near_returns_.returns)) return;
+  image_.exchangeMemory(near_returns_.returns);
+  is_image_memory_lent_ = true;
+}
+
+void Partition::takeBackImageMemory() noexcept {
+  if (is_image_memory_lent_) image_.exchangeMemory(near_returns_.returns);
+  is_image_memory_lent_ = false;
 }
 
 void Partition::takeCollected(Partition& other, DisjointSets& subclusters) {
@@ -72,9 +84,9 @@ void Partition::linkWithin(DisjointSets& subclusters) {
   near_.link(voxels_, subclusters);
 }
 
-bool Partition::isFarWorthwhile(double most) const {
-  const std::size_t returns = image_.placed + image_.unplaced.size();
-  if (returns == 0) return runs.returns == 0;  // all are near
+FarWork Partition::farWork() const {
+  const auto far = static_cast<double>(image_.placed + image_.unplaced.size());
+  if (far == 0) return {};
   const std::size_t begin = std::min(image_.begin, image_.end);
   const std::size_t bins = image_.end - begin;
   const std::size_t linked = std::max(image_.linked, begin) - begin;
@@ -82,7 +94,8 @@ bool Partition::isFarWorthwhile(double most) const {
   const double linking =
       static_cast<double>(segments_.workDone() * bins) / static_cast<double>(std::max<std::size_t>(1, linked));
   const std::size_t placing = kWorkOfRealigning * image_.realigned + kWorkOfUnplaced * image_.unplaced.size();
-  return linking + static_cast<double>(placing) <= most * kMaxWorkOfFar * static_cast<double>(returns);
+  const double runs_per_return = static_cast<double>(runs.run_count) / static_cast<double>(runs.returns);
+  return {linking + static_cast<double>(placing), (kWorkOfSortedReturn + kWorkOfSortedRun * runs_per_return) * far};
 }
 
 std::size_t Partition::workDone() const {

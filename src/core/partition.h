@@ -21,6 +21,20 @@
 
 namespace lisco {
 
+/// Work of far returns, in units of the segment linker's.
+struct FarWork {
+  double linking = 0;  ///< placing them in a range image, and linking them there
+  double sorting = 0;  ///< instead, with the near returns; 0 if none is far
+
+  FarWork& operator+=(const FarWork& other) {
+    linking += other.linking;
+    sorting += other.sorting;
+    return *this;
+  }
+  /// Whether a range image takes at most `most` times as long.
+  bool isImageWorthwhile(double most = 1.0) const { return sorting > 0 && linking <= most * sorting; }
+};
+
 /// Consecutive columns that are read and linked together: a thread's part of a rotation, or a stream's pane. Linking
 /// with other partitions comes later. Run i is element first_element + i of a forest of subclusters.
 class alignas(kSeparate) Partition {
@@ -31,6 +45,10 @@ class alignas(kSeparate) Partition {
   /// \param capacity number of columns for which expectColumns () moves no returns, if it is larger
   void prepare(const Tolerance& tolerance, const SensorHints& hints, std::size_t columns, std::size_t capacity = 0);
 
+  /// Lends the range image's memory to the near returns, for rotations without far returns; takes it back. So both keep
+  /// no more than one of them would. All values are lost; prepare () comes next.
+  void lendImageMemory() noexcept;
+  void takeBackImageMemory() noexcept;
   /// See RangeImage::takeLargerMemory.
   void takeLargerMemory(NearReturns& near) noexcept { image_.takeLargerMemory(near.returns); }
   void leaveLargerMemory(NearReturns& near) noexcept { image_.leaveLargerMemory(near.returns); }
@@ -115,8 +133,8 @@ class alignas(kSeparate) Partition {
   const RangeImage& image() const { return image_; }
   /// False if all returns are near.
   bool hasFar() const { return image_.inUse(); }
-  /// Whether linking far returns, as measured so far, takes at most `most` times as long as sorting them would.
-  bool isFarWorthwhile(double most = 1.0) const;
+  /// The work of far returns read so far; linking is measured, sorting estimated.
+  FarWork farWork() const;
 
   /// See RangeImage::isFull.
   void stopPlacing() { image_.stopPlacing(); }
@@ -138,6 +156,7 @@ class alignas(kSeparate) Partition {
   SegmentLinker segments_;
   // Near and unplaced returns: collected, or in voxels.
   bool collects_near_ = false;
+  bool is_image_memory_lent_ = false;
   NearReturns near_returns_;
   VoxelGrid voxels_;
   VoxelLinker near_;

@@ -62,10 +62,11 @@ inline constexpr std::uint32_t kWorkOfCutting = 20;   ///< of a laser
 inline constexpr std::uint32_t kWorkOfBins = 2;       ///< of comparing a register of bins
 inline constexpr std::uint32_t kWorkOfSegment = 10;
 inline constexpr std::uint32_t kWorkOfPair = 6;  ///< of segments that are compared
-/// Far returns are worth a range image if placing and linking them takes this much work each at most, about what
-/// sorting takes. Least regret over the scans at rest, moved, deskewed and with dual returns (benchmarks/suite.sh
-/// recordings).
-inline constexpr double kMaxWorkOfFar = 12;
+/// Far returns are worth a range image if placing and linking them takes no more work than sorting them would: this
+/// much for each return, and for each run. Least regret over the scans at rest, moved, deskewed and with dual returns
+/// (benchmarks/suite.sh recordings layouts).
+inline constexpr double kWorkOfSortedReturn = 1;
+inline constexpr double kWorkOfSortedRun = 23;
 inline constexpr std::uint32_t kWorkOfRealigning = 8;  ///< of placing a return off the expected bin
 inline constexpr std::uint32_t kWorkOfUnplaced = 200;
 /// Segments that exceed their laser's nearest one by this factor get a mask of their own.

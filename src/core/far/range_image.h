@@ -58,15 +58,23 @@ struct RangeImage {
   /// \param capacity number of columns up to which expectColumns () moves no returns
   void prepare(const Tolerance& new_tolerance, const SensorHints& hints, std::size_t columns, std::size_t capacity = 0);
 
-  /// Exchanges the memory of the first rows with that of an array: takeLargerMemory () if the array's is larger,
-  /// leaveLargerMemory () if it is smaller. All values are lost; prepare () comes next.
+  /// Exchanges the memory of the first rows with that of an array: exchangeMemory () always, takeLargerMemory () if the
+  /// array's is larger, leaveLargerMemory () if it is smaller. All values are lost; prepare () comes next.
+  template <typename Element>
+  void exchangeMemory(GrowingArray<Element>& array) noexcept {
+    cells.exchangeMemory(array);
+  }
   template <typename Element>
   void takeLargerMemory(GrowingArray<Element>& array) noexcept {
     if (cells.exchangedBytes() < array.size() * sizeof(Element)) cells.exchangeMemory(array);
   }
   template <typename Element>
   void leaveLargerMemory(GrowingArray<Element>& array) noexcept {
-    if (cells.exchangedBytes() > array.size() * sizeof(Element)) cells.exchangeMemory(array);
+    if (hasLargerMemoryThan(array)) cells.exchangeMemory(array);
+  }
+  template <typename Element>
+  bool hasLargerMemoryThan(const GrowingArray<Element>& array) const {
+    return cells.exchangedBytes() > array.size() * sizeof(Element);
   }
 
   /// Makes room for more columns than expected before, once returns are placed.
