@@ -95,6 +95,16 @@ void feed(lisco::ColumnClusterer& clusterer, Shape& shape, std::size_t columns, 
   holdExactUpTo(clusterer, shape, columns, tolerance);
 }
 
+/// Clusters a rotation; in one of eight cases several times, as later ones depend on those before (FarHistory).
+void rotate(lisco::ColumnClusterer& clusterer, const lisco::Parameters& parameters, Shape& shape, std::size_t columns,
+            unsigned portions) {
+  const int rotations = portions % 8 == 1 ? 4 : 1;
+  for (int rotation = 0; rotation < rotations; ++rotation) {
+    clusterer.begin(parameters);
+    feed(clusterer, shape, columns, portions, parameters.tolerance);
+  }
+}
+
 /// So many columns at once are sorted.
 constexpr std::size_t kSortedColumns = 256;
 
@@ -137,8 +147,7 @@ void clusterScan(Input& input, float unit, bool is_wide) {
   const std::size_t which = steps / 8 % 4 == 3 ? steps / 32 % 4 : parameters.sensor.steps_per_turn == 0 ? 0 : 1;
   lisco::ColumnClusterer& clusterer =
       parameters.sensor.steps_per_turn == 2048 ? clusterers[3] : clusterers[which < 3 ? which : 2];
-  clusterer.begin(parameters);
-  feed(clusterer, shape, columns, portions, parameters.tolerance);
+  rotate(clusterer, parameters, shape, columns, portions);
 }
 
 void clusterRecording(Input& input, float unit) {
@@ -160,8 +169,7 @@ void clusterRecording(Input& input, float unit) {
   if (portions < 192) shape.widen(kSortedColumns);
   if (parameters.threads > 1 && shape.lasers() == Shape::kMaxLasers) shape.widen(1040);
   lisco::ColumnClusterer& clusterer = clusterers[parameters.threads > 1 ? 1 : 0];
-  clusterer.begin(parameters);
-  feed(clusterer, shape, shape.columns(), portions, parameters.tolerance);
+  rotate(clusterer, parameters, shape, shape.columns(), portions);
 }
 
 void clusterWindows(Input& input, float unit) {
