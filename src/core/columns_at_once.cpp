@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026, the Lisco for PCL authors
+// Columns that come at once, as those of a whole scan: read by several threads, with or without range images.
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/far_history.h"
+#include "core/far_trial.h"
+#include "core/parallel.h"
+#include "core/partition.h"
+#include "core/rotation.h"
+#include "core/unordered_returns.h"
+
+namespace lisco {
+
+namespace {
+
+// In brackets, the section of benchmarks/suite.sh that shows the effect.
+
+/// Columns of these on which the work of far returns is measured. Fewer: a worse estimate; more: a later change
+/// (recordings).
+constexpr std::size_t kTriedColumns = 128;
+static_assert(kTriedColumns % RingBlock::kColumns == 0, "whole blocks are read");
+/// Times the worthwhile work of far returns up to which the trial accepts them, as other columns may differ, and from
+/// which on it ends before its last column. More: clouds without range images wait for it (recordings, layouts).
+constexpr double kMostInTrial = 2.0, kClearlyTooMuch = 6.0;
+/// SensorHints::drift from which on returns leave their expected bins too often: of clouds that are motion-compensated.
+/// The first columns do not show it, as the motion grows from there. At rest 0.05, up to 0.8 in a vehicle's frame; in
+/// motion 1 to 20 (recordings).
+constexpr float kMaxDrift = 1.25F;
+/// Turns of columns from which on many bins have been taken by the turn before.
+constexpr double kMaxTurns = 1.5;
+
+}  // namespace
+
+/// Columns that come at once are read with their far returns in range images, if these prove worthwhile. If not, or if
+/// azimuths drift (SensorHints::drift), or if there are several turns, all returns are near: collected with their runs,
+/// or without runs if they are unordered.
+void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t lasers, const CellSource& cells) {
+  if (partition_count_ == 1) parts_.assign(1, {0, columns});
+  near_ = Near::kCollected;
+  is_prepared_ = false;
+  tried_near_ = {0, 0};
+  scheduler_.skipColumns(columns);
+  if (partition_count_ > 1) subclusters_.reserve(lasers * columns + RingBlock::kColumns, NewPages::kUntouched);
+  const SensorHints& sensor = parameters_.sensor;
+  const bool repeats = static_cast<double>(columns) > kMaxTurns * static_cast<double>(sensor.steps_per_turn);
+  const bool may_have_far = sensor.steps_per_turn != 0 && !repeats && sensor.drift <= kMaxDrift;
+  far_ = Far::kNone;
+  if (may_have_far && !far_history_.begin({columns, lasers, parameters_.tolerance}))
+    far_ = Far::kRests;
+  else if (may_have_far && readFarAndNear(lasers, cells))
+    return;
+  if (UnorderedReturns::isUnordered(columns, lasers, cells, tolerance_))
+    readUnordered(lasers, cells);
+  else
+    readNear(lasers, cells);
+}
+
+/// Calls read (i) for each part by a thread of its own, and records its time, which sets its later shares.
+template <typename Read>
+void ColumnClusterer::Rotation::readInParallel(Read&& read) {
+  inParallel(partition_count_, [&](std::size_t i) {
+    if (partition_count_ == 1) return read(i);
+    balancer_.time(i, [&] { read(i); });
+  });
+}
+
+void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hints, std::size_t columns,
+                                            std::size_t capacity) {
+  partitions_[i].prepare(tolerance_, hints, columns, capacity);
+  partitions_[i].collectNear();
+}
+
+/// Each thread reads its part of the columns, and links its far returns among themselves. Near returns are collected.
+/// \return false, with part of it read, if there are no far returns, or linking those of the first columns takes longer
+///         than sorting them
+bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSource& cells) {
+  for (std::size_t i = 0; i < partition_count_; ++i) partitions_[i].takeBackImageMemory();
+  partitions_.front().takeLargerMemory(unordered_.memory());  // not in use before the trial ends
+  const bool is_new = !partitions_.front().hasMemory();
+  FarTrial trial;
+  readInParallel([&](std::size_t i) {
+    try {
+      const std::size_t all = parts_[i].end - parts_[i].first;
+      const std::size_t expected = partition_count_ > 1 ? all : std::min(kTriedColumns, all);
+      // After a refused trial, the next one takes no more memory than it needs. Other columns may follow these.
+      const auto has_memory_for = [&](std::size_t columns) {
+        return partitions_[i].hasMemoryFor(lasers, columns, parameters_.sensor);
+      };
+      const std::size_t capacity = has_memory_for(kWholeTurn)      ? kWholeTurn
+                                   : is_new || has_memory_for(all) ? all
+                                                                   : expected;
+      preparePart(i, parameters_.sensor, expected, capacity);
+      if (partitions_[i].hasFar())
+        readPart(i, lasers, cells, trial);
+      else
+        trial.decide(false);
+    } catch (...) {
+      if (i == 0) trial.decide(true);  // the others wait for it
+      throw;
+    }
+  });
+  const bool is_worthwhile = trial.await();
+  if (partitions_.front().hasFar()) far_ = is_worthwhile ? Far::kInImages : Far::kRefused;
+  if (!is_worthwhile && is_new) partitions_.front().shrinkMemory();
+  return is_worthwhile;
+}
+
+/// Makes room for the near returns of some columns: half of what the trial predicts, as scenes differ around the
+/// sensor.
+void ColumnClusterer::Rotation::reserveNear(Partition& partition, std::size_t columns) {
+  if (tried_near_.columns > 0) partition.reserveNear(tried_near_.expectedIn(columns) / 2 + 2 * RingBlock::kColumns);
+}
+
+/// Each thread reads its part of the columns, without far returns.
+void ColumnClusterer::Rotation::readNear(std::size_t lasers, const CellSource& cells) {
+  readInParallel([&](std::size_t i) {
+    Partition& partition = partitions_[i];
+    if (far_ == Far::kRests) partition.lendImageMemory();
+    preparePart(i, SensorHints(), 0);
+    const auto [begin, end] = parts_[i];
+    reserveRuns(partition);
+    reserveNear(partition, end - begin);
+    partition.readLasers(cells, begin, end, lasers, subclusters_);
+    if (partition_count_ > 1) balancer_.record(begin, end - begin, (end - begin) * lasers + partition.workDone());
+  });
+}
+
+/// The same without runs.
+void ColumnClusterer::Rotation::readUnordered(std::size_t lasers, const CellSource& cells) {
+  partitions_.front().leaveLargerMemory(unordered_.memory());  // which the trial has used
+  unordered_.begin(partition_count_);
+  readInParallel([&](std::size_t i) {
+    const auto [begin, end] = parts_[i];
+    unordered_.readPart(i, cells, begin, end, lasers);
+    if (partition_count_ > 1) balancer_.record(begin, end - begin, (end - begin) * lasers);
+  });
+  is_unordered_ = true;
+  usePartitions(1);
+  lastPartition().prepare(tolerance_, SensorHints(), 0);
+}
+
+/// Reads a part block by block, and links its far returns, until the trial refuses them.
+void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, const CellSource& cells, FarTrial& trial) {
+  Partition& partition = partitions_[i];
+  const auto [begin, end] = parts_[i];
+  const std::size_t middle = begin + (end - begin) / 2;
+  const std::size_t tried = std::min(kTriedColumns, end);
+  if (i > 0) reserveRuns(partition);  // of the first part after its trial, which may refuse it
+  for (std::size_t first = begin; first < end; first += RingBlock::kColumns) {
+    if (trial.isRefused()) return;
+    const std::size_t count = std::min(end - first, RingBlock::kColumns);
+    const std::size_t before = partition.workDone();
+    partition.readColumns(cells, first, count, lasers, static_cast<std::uint32_t>(first), subclusters_);
+    if (partition_count_ > 1) balancer_.record(first, count, count * lasers + partition.workDone() - before);
+    const auto isWorthwhile = [&](double most) {
+      return partition.runs.returns == 0 || partition.farWork().isImageWorthwhile(most);
+    };
+    if (i == 0 && first + count < tried && !isWorthwhile(kClearlyTooMuch)) return trial.decide(false);
+    if (i == 0 && first + count == tried) {
+      const bool is_worthwhile = isWorthwhile(kMostInTrial);
+      trial.decide(is_worthwhile);
+      tried_near_ = {is_worthwhile ? partition.nearReturns().count : partition.runs.returns, first + count};
+      if (!is_worthwhile) return;
+      partition.expectColumns(end - begin);
+      reserveRuns(partition);
+      reserveNear(partition, end - begin);
+    }
+    if (first < middle && first + count >= middle && first + count < end) {  // the rest is likely to have as many
+      const NearReturnsOf read{partition.nearReturns().count, first + count - begin};
+      partition.reserveNear(read.expectedIn(end - begin) + 2 * RingBlock::kColumns);
+    }
+  }
+}
+
+/// Adds a rotation that came at once, and whose returns might be far, to the history.
+void ColumnClusterer::Rotation::recordFar() {
+  if (comes_at_once_ && far_ != Far::kNone) {
+    FarHistory::Content content{returnCount(), 0};
+    FarWork work;
+    bool is_any_full = false;
+    for (std::size_t i = 0; i < partition_count_; ++i) {
+      content.runs += runsOf(i).run_count;
+      work += partitions_[i].farWork();
+      is_any_full = is_any_full || partitions_[i].image().isFull();
+    }
+    if (far_ == Far::kRests)
+      far_history_.recordRest(content);
+    else
+      far_history_.recordImages(far_ == Far::kInImages && !is_any_full && work.isImageWorthwhile(), content);
+  }
+  far_ = Far::kNone;
+}
+
+}  // namespace lisco
