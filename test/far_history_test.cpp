@@ -28,20 +28,20 @@ std::vector<bool> rotate(lisco::FarHistory& history, std::size_t rotations, bool
 }
 
 /// Has it rest.
-void refuseTwice(lisco::FarHistory& history) {
-  ASSERT_EQ(rotate(history, 2, false), std::vector<bool>({true, true}));
+void refuse(lisco::FarHistory& history) {
+  ASSERT_EQ(rotate(history, 3, false), std::vector<bool>(3, true));
 }
 
-TEST(FarHistory, LeavesOutImagesAfterTwoInTurnThatWereNotWorthIt) {
+TEST(FarHistory, LeavesOutImagesAfterThreeInTurnThatWereNotWorthIt) {
   lisco::FarHistory history;
-  EXPECT_EQ(rotate(history, 1, false), std::vector<bool>({true}));
-  EXPECT_EQ(rotate(history, 3, true), std::vector<bool>({true, true, true}));
-  EXPECT_EQ(rotate(history, 4, false), std::vector<bool>({true, true, false, false}));
+  EXPECT_EQ(rotate(history, 2, false), std::vector<bool>(2, true));
+  EXPECT_EQ(rotate(history, 3, true), std::vector<bool>(3, true));
+  EXPECT_EQ(rotate(history, 5, false), std::vector<bool>({true, true, true, false, false}));
 }
 
 TEST(FarHistory, TriesThemAgainEverMoreSeldom) {
   lisco::FarHistory history;
-  refuseTwice(history);
+  refuse(history);
   for (const std::size_t rest : {16, 32, 64, 64, 64}) {
     EXPECT_EQ(rotate(history, rest, false), std::vector<bool>(rest, false));
     EXPECT_EQ(rotate(history, 1, false), std::vector<bool>({true}));
@@ -50,10 +50,10 @@ TEST(FarHistory, TriesThemAgainEverMoreSeldom) {
 
 TEST(FarHistory, StartsAnewWhenTheyAreWorthIt) {
   lisco::FarHistory history;
-  refuseTwice(history);
+  refuse(history);
   rotate(history, 16, false);
   EXPECT_EQ(rotate(history, 20, true), std::vector<bool>(20, true));
-  refuseTwice(history);
+  refuse(history);
   EXPECT_EQ(rotate(history, 16, false), std::vector<bool>(16, false));
   EXPECT_TRUE(history.begin(kLayout));
 }
@@ -62,11 +62,11 @@ TEST(FarHistory, StartsAnewWithAnotherLayout) {
   for (const lisco::FarHistory::Layout& other :
        {lisco::FarHistory::Layout{1400, 64, 0.4F}, {2800, 64, 0.4F}, {2000, 32, 0.4F}, {2000, 64, 0.5F}}) {
     lisco::FarHistory history;
-    refuseTwice(history);
+    refuse(history);
     EXPECT_TRUE(history.begin(other));
   }
   lisco::FarHistory history;
-  refuseTwice(history);
+  refuse(history);
   EXPECT_FALSE(history.begin({2003, 64, 0.4F})) << "rotations of a sensor differ in some columns";
   EXPECT_FALSE(history.begin({1998, 64, 0.4F}));
 }
@@ -75,7 +75,7 @@ TEST(FarHistory, StartsAnewWithOtherContent) {
   for (const lisco::FarHistory::Content& other :
        {lisco::FarHistory::Content{40'000, 10'000}, {90'000, 10'000}, {60'000, 7'000}, {60'000, 14'000}}) {
     lisco::FarHistory history;
-    refuseTwice(history);
+    refuse(history);
     EXPECT_FALSE(history.begin(kLayout));
     history.recordRest(other);
     EXPECT_TRUE(history.begin(kLayout)) << other.returns << " returns, " << other.runs << " runs";
@@ -83,7 +83,7 @@ TEST(FarHistory, StartsAnewWithOtherContent) {
   for (const lisco::FarHistory::Content& alike :
        {lisco::FarHistory::Content{55'000, 11'000}, {66'000, 9'000}, {60'000, 0}}) {
     lisco::FarHistory history;
-    refuseTwice(history);
+    refuse(history);
     EXPECT_FALSE(history.begin(kLayout));
     history.recordRest(alike);
     EXPECT_FALSE(history.begin(kLayout)) << alike.returns << " returns, " << alike.runs << " runs";

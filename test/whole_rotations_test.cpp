@@ -180,7 +180,7 @@ TEST(WholeRotations, OneLikeTheOtherEqualTheOracle) {
     parameters.sensor = recording.hints;
     SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(parameters.threads) + " threads");
     lisco::ColumnClusterer clusterer;
-    for (std::size_t rotation = 0; rotation < 5; ++rotation) {
+    for (std::size_t rotation = 0; rotation < 6; ++rotation) {
       Feeder feeder(clusterer, recording, parameters);
       feeder.add(feeder.left());
       feeder.expectExact();

@@ -8,9 +8,9 @@
 namespace lisco {
 
 /// Whether far returns were worth range images in the rotations before. A whole rotation tells it better than the first
-/// columns of the next one (FarTrial): where two in turn were not worth it, those that follow are read without images,
-/// until their returns change or some have passed. Not one alone, so that an object's second call, which has the memory
-/// of the first, takes no more.
+/// columns of the next one (FarTrial): where three in turn were not worth it, those that follow are read without
+/// images, until their returns change or some have passed. Fewer: an object's second and third call would take more
+/// memory.
 class FarHistory {
  public:
   struct Layout {
@@ -51,7 +51,7 @@ class FarHistory {
   }
 
  private:
-  static constexpr std::size_t kRefusals = 2;
+  static constexpr std::size_t kRefusals = 3;
   /// Rotations without range images, before one shows again whether they are worth it: about a second's and some.
   static constexpr std::size_t kFirstRest = 16, kMaxRest = 64;
 

@@ -98,7 +98,7 @@ void feed(lisco::ColumnClusterer& clusterer, Shape& shape, std::size_t columns, 
 /// Clusters a rotation; in one of eight cases several times, as later ones depend on those before (FarHistory).
 void rotate(lisco::ColumnClusterer& clusterer, const lisco::Parameters& parameters, Shape& shape, std::size_t columns,
             unsigned portions) {
-  const int rotations = portions % 8 == 1 ? 4 : 1;
+  const int rotations = portions % 8 == 1 ? 5 : 1;
   for (int rotation = 0; rotation < rotations; ++rotation) {
     clusterer.begin(parameters);
     feed(clusterer, shape, columns, portions, parameters.tolerance);

@@ -58,6 +58,7 @@ TEST_F(MemoryUse, SeparatesTheOutputFromOtherMemory) {
     EXPECT_EQ(number("output_allocations"), number("clusters") + growth);
     EXPECT_GT(number("kept_bytes"), 0);
     EXPECT_GE(number("most_bytes"), number("kept_bytes"));
+    EXPECT_GT(number("later_bytes"), 0);
     EXPECT_GT(number("first_allocations_beyond"), 0);
     EXPECT_LE(number("second_allocations_beyond"), 0);
     EXPECT_GE(number("second_allocations_beyond"), -growth) << "unless a vector was allocated at its final size";
