@@ -11,7 +11,7 @@
 namespace lisco_test {
 namespace {
 
-constexpr lisco::FarHistory::Layout kLayout{2000, 64, 0.4F};
+constexpr lisco::FarHistory::Layout kLayout{2000, 64, 2000, 0.4F};
 constexpr lisco::FarHistory::Content kContent{60'000, 10'000};
 
 /// Rotations of one layout and content. \return for each, whether it may have had range images
@@ -20,14 +20,14 @@ std::vector<bool> rotate(lisco::FarHistory& history, std::size_t rotations, bool
   for (std::size_t i = 0; i < rotations; ++i) {
     tried.push_back(history.begin(kLayout));
     if (tried.back())
-      history.recordImages(are_worthwhile, kContent);
+      history.recordTried(are_worthwhile, kContent);
     else
-      history.recordRest(kContent);
+      history.recordLeftOut(kContent);
   }
   return tried;
 }
 
-/// Has it rest.
+/// Three rotations that are not worth images.
 void refuse(lisco::FarHistory& history) {
   ASSERT_EQ(rotate(history, 3, false), std::vector<bool>(3, true));
 }
@@ -59,16 +59,19 @@ TEST(FarHistory, StartsAnewWhenTheyAreWorthIt) {
 }
 
 TEST(FarHistory, StartsAnewWithAnotherLayout) {
-  for (const lisco::FarHistory::Layout& other :
-       {lisco::FarHistory::Layout{1400, 64, 0.4F}, {2800, 64, 0.4F}, {2000, 32, 0.4F}, {2000, 64, 0.5F}}) {
+  for (const lisco::FarHistory::Layout& other : {lisco::FarHistory::Layout{1400, 64, 2000, 0.4F},
+                                                 {2800, 64, 2000, 0.4F},
+                                                 {2000, 32, 2000, 0.4F},
+                                                 {2000, 64, 1000, 0.4F},
+                                                 {2000, 64, 2000, 0.5F}}) {
     lisco::FarHistory history;
     refuse(history);
     EXPECT_TRUE(history.begin(other));
   }
   lisco::FarHistory history;
   refuse(history);
-  EXPECT_FALSE(history.begin({2003, 64, 0.4F})) << "rotations of a sensor differ in some columns";
-  EXPECT_FALSE(history.begin({1998, 64, 0.4F}));
+  EXPECT_FALSE(history.begin({2003, 64, 2001, 0.4F})) << "rotations of a sensor differ in some columns";
+  EXPECT_FALSE(history.begin({1998, 64, 2000, 0.4F}));
 }
 
 TEST(FarHistory, StartsAnewWithOtherContent) {
@@ -77,7 +80,7 @@ TEST(FarHistory, StartsAnewWithOtherContent) {
     lisco::FarHistory history;
     refuse(history);
     EXPECT_FALSE(history.begin(kLayout));
-    history.recordRest(other);
+    history.recordLeftOut(other);
     EXPECT_TRUE(history.begin(kLayout)) << other.returns << " returns, " << other.runs << " runs";
   }
   for (const lisco::FarHistory::Content& alike :
@@ -85,7 +88,7 @@ TEST(FarHistory, StartsAnewWithOtherContent) {
     lisco::FarHistory history;
     refuse(history);
     EXPECT_FALSE(history.begin(kLayout));
-    history.recordRest(alike);
+    history.recordLeftOut(alike);
     EXPECT_FALSE(history.begin(kLayout)) << alike.returns << " returns, " << alike.runs << " runs";
   }
 }

@@ -168,10 +168,11 @@ TEST_P(WholeRotations, EqualTheOracleInThreads) {
   tryRecordings(1'000'000, 100, GetParam(), true);
 }
 
-// One rotation like the other, of which some show that their far returns are not worth a range image: the later ones
-// are read without.
+// One rotation like the other: where their far returns are not worth range images, later ones are read without, and
+// others of them with images again. Among them one column by column, and one of a copy.
 TEST(WholeRotations, OneLikeTheOtherEqualTheOracle) {
-  for (std::uint64_t seed = 4'000'000; seed < 4'000'000 + timesEffort(200); ++seed) {
+  constexpr std::size_t kRotations = 24, kColumnByColumn = 7, kOfACopy = 9;
+  for (std::uint64_t seed = 4'000'000; seed < 4'000'000 + timesEffort(60); ++seed) {
     Random random(seed);
     Recording recording = randomRecording(random);
     const bool in_threads = random.chance(0.3);
@@ -180,11 +181,12 @@ TEST(WholeRotations, OneLikeTheOtherEqualTheOracle) {
     parameters.sensor = recording.hints;
     SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(parameters.threads) + " threads");
     lisco::ColumnClusterer clusterer;
-    for (std::size_t rotation = 0; rotation < 6; ++rotation) {
+    for (std::size_t rotation = 0; rotation < kRotations; ++rotation) {
+      if (rotation == kOfACopy) clusterer = lisco::ColumnClusterer(clusterer);
       Feeder feeder(clusterer, recording, parameters);
-      feeder.add(feeder.left());
+      while (feeder.left() > 0) feeder.add(rotation == kColumnByColumn ? 1 : feeder.left());
       feeder.expectExact();
-      if (HasFailure()) return;
+      ASSERT_FALSE(HasFailure()) << "rotation " << rotation;
     }
   }
 }

@@ -44,6 +44,7 @@ void ColumnClusterer::Rotation::begin(const Parameters& parameters) {
   sizes_.clear();
   scheduler_.begin(parameters_.block_columns);
   is_prepared_ = false;
+  far_ = Far::kNone;
   if (parameters_.threads == 1 && !comes_at_once_) {
     usePartitions(1);
     prepareForColumns();  // here, so that the first column costs no more than the rest

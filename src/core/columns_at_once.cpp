@@ -22,9 +22,11 @@ namespace {
 /// (recordings).
 constexpr std::size_t kTriedColumns = 128;
 static_assert(kTriedColumns % RingBlock::kColumns == 0, "whole blocks are read");
-/// Times the worthwhile work of far returns up to which the trial accepts them, as other columns may differ, and from
-/// which on it ends before its last column. More: clouds without range images wait for it (recordings, layouts).
-constexpr double kMostInTrial = 2.0, kClearlyTooMuch = 6.0;
+/// Times the work of sorting that the trial accepts: other columns may take less. FarHistory corrects it (recordings,
+/// layouts).
+constexpr double kMostInTrial = 2.0;
+/// The same above which the trial ends before its last column. More: clouds without range images wait for it.
+constexpr double kClearlyTooMuch = 6.0;
 /// SensorHints::drift from which on returns leave their expected bins too often: of clouds that are motion-compensated.
 /// The first columns do not show it, as the motion grows from there. At rest 0.05, up to 0.8 in a vehicle's frame; in
 /// motion 1 to 20 (recordings).
@@ -47,9 +49,8 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
   const SensorHints& sensor = parameters_.sensor;
   const bool repeats = static_cast<double>(columns) > kMaxTurns * static_cast<double>(sensor.steps_per_turn);
   const bool may_have_far = sensor.steps_per_turn != 0 && !repeats && sensor.drift <= kMaxDrift;
-  far_ = Far::kNone;
-  if (may_have_far && !far_history_.begin({columns, lasers, parameters_.tolerance}))
-    far_ = Far::kRests;
+  if (may_have_far && !far_history_.begin({columns, lasers, sensor.steps_per_turn, parameters_.tolerance}))
+    far_ = Far::kLeftOut;
   else if (may_have_far && readFarAndNear(lasers, cells))
     return;
   if (UnorderedReturns::isUnordered(columns, lasers, cells, tolerance_))
@@ -74,8 +75,8 @@ void ColumnClusterer::Rotation::preparePart(std::size_t i, const SensorHints& hi
 }
 
 /// Each thread reads its part of the columns, and links its far returns among themselves. Near returns are collected.
-/// \return false, with part of it read, if there are no far returns, or linking those of the first columns takes longer
-///         than sorting them
+/// \return false, with part of it read, if there are no far returns, or those of the first columns take more work than
+///         the trial accepts
 bool ColumnClusterer::Rotation::readFarAndNear(std::size_t lasers, const CellSource& cells) {
   for (std::size_t i = 0; i < partition_count_; ++i) partitions_[i].takeBackImageMemory();
   partitions_.front().takeLargerMemory(unordered_.memory());  // not in use before the trial ends
@@ -118,7 +119,7 @@ void ColumnClusterer::Rotation::reserveNear(Partition& partition, std::size_t co
 void ColumnClusterer::Rotation::readNear(std::size_t lasers, const CellSource& cells) {
   readInParallel([&](std::size_t i) {
     Partition& partition = partitions_[i];
-    if (far_ == Far::kRests) partition.lendImageMemory();
+    if (far_ == Far::kLeftOut) partition.lendImageMemory();
     preparePart(i, SensorHints(), 0);
     const auto [begin, end] = parts_[i];
     reserveRuns(partition);
@@ -130,7 +131,8 @@ void ColumnClusterer::Rotation::readNear(std::size_t lasers, const CellSource& c
 
 /// The same without runs.
 void ColumnClusterer::Rotation::readUnordered(std::size_t lasers, const CellSource& cells) {
-  partitions_.front().leaveLargerMemory(unordered_.memory());  // which the trial has used
+  partitions_.front().takeBackImageMemory();
+  partitions_.front().leaveLargerMemory(unordered_.memory());  // which the trial uses
   unordered_.begin(partition_count_);
   readInParallel([&](std::size_t i) {
     const auto [begin, end] = parts_[i];
@@ -156,7 +158,7 @@ void ColumnClusterer::Rotation::readPart(std::size_t i, std::size_t lasers, cons
     partition.readColumns(cells, first, count, lasers, static_cast<std::uint32_t>(first), subclusters_);
     if (partition_count_ > 1) balancer_.record(first, count, count * lasers + partition.workDone() - before);
     const auto isWorthwhile = [&](double most) {
-      return partition.runs.returns == 0 || partition.farWork().isImageWorthwhile(most);
+      return partition.runs.returns == 0 || partition.expectedFarWork().isImageWorthwhile(most);
     };
     if (i == 0 && first + count < tried && !isWorthwhile(kClearlyTooMuch)) return trial.decide(false);
     if (i == 0 && first + count == tried) {
@@ -186,10 +188,10 @@ void ColumnClusterer::Rotation::recordFar() {
       work += partitions_[i].farWork();
       is_any_full = is_any_full || partitions_[i].image().isFull();
     }
-    if (far_ == Far::kRests)
-      far_history_.recordRest(content);
+    if (far_ == Far::kLeftOut)
+      far_history_.recordLeftOut(content);
     else
-      far_history_.recordImages(far_ == Far::kInImages && !is_any_full && work.isImageWorthwhile(), content);
+      far_history_.recordTried(far_ == Far::kInImages && !is_any_full && work.isImageWorthwhile(), content);
   }
   far_ = Far::kNone;
 }

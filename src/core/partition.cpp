@@ -87,15 +87,20 @@ void Partition::linkWithin(DisjointSets& subclusters) {
 FarWork Partition::farWork() const {
   const auto far = static_cast<double>(image_.placed + image_.unplaced.size());
   if (far == 0) return {};
-  const std::size_t begin = std::min(image_.begin, image_.end);
-  const std::size_t bins = image_.end - begin;
-  const std::size_t linked = std::max(image_.linked, begin) - begin;
-  // Some bins are not linked yet.
-  const double linking =
-      static_cast<double>(segments_.workDone() * bins) / static_cast<double>(std::max<std::size_t>(1, linked));
   const std::size_t placing = kWorkOfRealigning * image_.realigned + kWorkOfUnplaced * image_.unplaced.size();
   const double runs_per_return = static_cast<double>(runs.run_count) / static_cast<double>(runs.returns);
-  return {linking + static_cast<double>(placing), (kWorkOfSortedReturn + kWorkOfSortedRun * runs_per_return) * far};
+  return {static_cast<double>(segments_.workDone() + placing),
+          (kWorkOfSortedReturn + kWorkOfSortedRun * runs_per_return) * far};
+}
+
+FarWork Partition::expectedFarWork() const {
+  FarWork work = farWork();
+  const std::size_t begin = std::min(image_.begin, image_.end);
+  const std::size_t linked = std::max(image_.linked, begin);
+  const std::size_t left = image_.end - std::min(linked, image_.end);
+  work.in_image +=
+      static_cast<double>(segments_.workDone() * left) / static_cast<double>(std::max<std::size_t>(1, linked - begin));
+  return work;
 }
 
 std::size_t Partition::workDone() const {

@@ -23,16 +23,16 @@ namespace lisco {
 
 /// Work of far returns, in units of the segment linker's.
 struct FarWork {
-  double linking = 0;  ///< placing them in a range image, and linking them there
-  double sorting = 0;  ///< instead, with the near returns; 0 if none is far
+  double in_image = 0;  ///< placing them in a range image, and linking them there
+  double sorted = 0;    ///< sorting them with the near returns instead, estimated; 0 if none is far
 
   FarWork& operator+=(const FarWork& other) {
-    linking += other.linking;
-    sorting += other.sorting;
+    in_image += other.in_image;
+    sorted += other.sorted;
     return *this;
   }
-  /// Whether a range image takes at most `most` times as long.
-  bool isImageWorthwhile(double most = 1.0) const { return sorting > 0 && linking <= most * sorting; }
+  /// Whether a range image takes at most `most` times as long. False if no return is far.
+  bool isImageWorthwhile(double most = 1.0) const { return sorted > 0 && in_image <= most * sorted; }
 };
 
 /// Consecutive columns that are read and linked together: a thread's part of a rotation, or a stream's pane. Linking
@@ -45,8 +45,8 @@ class alignas(kSeparate) Partition {
   /// \param capacity number of columns for which expectColumns () moves no returns, if it is larger
   void prepare(const Tolerance& tolerance, const SensorHints& hints, std::size_t columns, std::size_t capacity = 0);
 
-  /// Lends the range image's memory to the near returns, for rotations without far returns; takes it back. So both keep
-  /// no more than one of them would. All values are lost; prepare () comes next.
+  /// Lends the range image's memory to the near returns, if it is larger than theirs, for rotations without far
+  /// returns; takes it back, as prepare () for far returns does too. All values are lost; prepare () comes next.
   void lendImageMemory() noexcept;
   void takeBackImageMemory() noexcept;
   /// See RangeImage::takeLargerMemory.
@@ -133,8 +133,10 @@ class alignas(kSeparate) Partition {
   const RangeImage& image() const { return image_; }
   /// False if all returns are near.
   bool hasFar() const { return image_.inUse(); }
-  /// The work of far returns read so far; linking is measured, sorting estimated.
+  /// The work of far returns so far.
   FarWork farWork() const;
+  /// The same, with that of linking all that have been read.
+  FarWork expectedFarWork() const;
 
   /// See RangeImage::isFull.
   void stopPlacing() { image_.stopPlacing(); }

@@ -105,7 +105,13 @@ class ColumnClusterer::Rotation {
   std::vector<Overlap> overlaps_;  ///< of range images
   VoxelSorter sorter_;
   std::vector<const NearReturns*> near_returns_;
-  enum class Far { kNone, kRefused, kInImages, kRests } far_ = Far::kNone;  ///< see recordFar ()
+  /// How the far returns of this rotation are read, until recordFar ().
+  enum class Far {
+    kNone,      ///< they cannot be worth range images
+    kRefused,   ///< the trial has refused range images
+    kInImages,  ///< in range images
+    kLeftOut    ///< without range images or a trial, as those of the rotations before were not worth it
+  } far_ = Far::kNone;
   FarHistory far_history_;
   LoadBalancer balancer_;
   BlockScheduler scheduler_;

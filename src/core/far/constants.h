@@ -66,7 +66,7 @@ inline constexpr std::uint32_t kWorkOfPair = 6;  ///< of segments that are compa
 /// much for each return, and for each run. Least regret over the scans at rest, moved, deskewed and with dual returns
 /// (benchmarks/suite.sh recordings layouts).
 inline constexpr double kWorkOfSortedReturn = 1;
-inline constexpr double kWorkOfSortedRun = 23;
+inline constexpr double kWorkOfSortedRun = 22;
 inline constexpr std::uint32_t kWorkOfRealigning = 8;  ///< of placing a return off the expected bin
 inline constexpr std::uint32_t kWorkOfUnplaced = 200;
 /// Segments that exceed their laser's nearest one by this factor get a mask of their own.
