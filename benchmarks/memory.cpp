@@ -163,7 +163,7 @@ struct MemoryResult {
   bool identical = false;
 };
 
-/// Calls after which an extraction has read scans in all ways that those before have shown to be faster.
+/// Calls that follow the first three: more than lisco::FarHistory leaves range images out of at first.
 constexpr int kLaterCalls = 20;
 
 MemoryResult measure(const ComparedScan& scan, double tolerance, unsigned min_size) {
@@ -299,7 +299,7 @@ bool measureFile(const fs::path& file, const std::string& name, const Options& o
     const MemoryResult result = measure(scan, tolerance, options.min_size);
     const bool frugal = result.second_beyond <= 0 && result.third_beyond <= 0;
     good = good && result.identical && frugal;
-    std::printf("%-22s %8zu %8zu %5.2f %8zu %8.1f %8.1f %8.1f %8.1f %8zu %6td %6td %6td  %s\n", name.c_str(),
+    std::printf("%-18s %8zu %8zu %5.2f %8zu %7.1f %6.1f %6.1f %6.1f %7zu %6td %6td %6td  %s\n", name.c_str(),
                 scan.cloud->size(), scan.returns->size(), tolerance, result.clusters, perCell(result.base.kept),
                 perCell(result.kept), perCell(result.later), perCell(result.most), result.needed, result.first_beyond,
                 result.second_beyond, result.third_beyond, result.identical ? "yes" : "NO");
@@ -325,8 +325,8 @@ int run(const Options& options) {
   CompareSettings untimed;
   untimed.runs = 0;
   std::fputs(describeRun(untimed).c_str(), stdout);
-  std::printf("%-22s %8s %8s %5s %8s %35s %8s %20s\n", "", "", "", "", "", "bytes per cell", "", "allocations beyond");
-  std::printf("%-22s %8s %8s %5s %8s %8s %8s %8s %8s %8s %6s %6s %6s  %s\n", "scan", "cells", "returns", "eps",
+  std::printf("%-18s %8s %8s %5s %8s %28s %7s %20s\n", "", "", "", "", "", "bytes per cell", "", "allocations beyond");
+  std::printf("%-18s %8s %8s %5s %8s %7s %6s %6s %6s %7s %6s %6s %6s  %s\n", "scan", "cells", "returns", "eps",
               "clusters", "PCLBase", "kept", "later", "most", "output", "1st", "2nd", "reused", "identical");
   bool good = true;
   std::size_t measured = 0;

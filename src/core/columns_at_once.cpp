@@ -182,16 +182,15 @@ void ColumnClusterer::Rotation::recordFar() {
   if (comes_at_once_ && far_ != Far::kNone) {
     FarHistory::Content content{returnCount(), 0};
     FarWork work;
-    bool is_any_full = false;
     for (std::size_t i = 0; i < partition_count_; ++i) {
       content.runs += runsOf(i).run_count;
       work += partitions_[i].farWork();
-      is_any_full = is_any_full || partitions_[i].image().isFull();
     }
+    const bool is_full = partitions_.front().image().isFull();  // all are once one is: see linkImages ()
     if (far_ == Far::kLeftOut)
       far_history_.recordLeftOut(content);
     else
-      far_history_.recordTried(far_ == Far::kInImages && !is_any_full && work.isImageWorthwhile(), content);
+      far_history_.recordTried(far_ == Far::kInImages && !is_full && work.isImageWorthwhile(), content);
   }
   far_ = Far::kNone;
 }
