@@ -113,6 +113,12 @@ class Probe {
   }
 
   void link() { part_->linker.link(part_->image, subclusters_); }
+  /// As many parts of sectors as are left, but no more than a number.
+  void linkParts(std::size_t most) {
+    part_->linker.schedule(part_->image);
+    for (; most > 0 && part_->linker.partsLeft(part_->image) > 0; --most)
+      part_->linker.linkPart(part_->image, subclusters_);
+  }
   void linkAll() {
     bool full = false;
     for (FarPart& part : parts_) part.linker.linkRest(part.image, subclusters_);
@@ -130,7 +136,8 @@ class Probe {
     };
     images.forEachPair(addOverlaps);
     for (std::size_t i = 0; i < parts_.size(); ++i) addOverlaps(i, i);
-    for (FarPart& part : parts_) parts_[0].image.shareRows(part.image);
+    for (FarPart& part : parts_) parts_[0].image.mergeRows(part.image);
+    parts_[0].image.sortLasers();
     for (FarPart& part : parts_) {
       part.image.shareRows(parts_[0].image);
       part.image.updateElevations();
@@ -627,6 +634,141 @@ TEST(SegmentLinker, JoinsPairsAboveEachOther) {
           EXPECT_TRUE(probe.joined(one, one + 1));
         }
   }
+}
+
+/// Ranks of lasers by elevation, from the highest one down, in an order that is neither.
+std::vector<std::size_t> mixedRanks(std::size_t lasers) {
+  std::vector<std::size_t> ranks;
+  for (std::size_t laser = 0; laser < lasers; ++laser) ranks.push_back((laser % 2) * ((lasers + 1) / 2) + laser / 2);
+  return ranks;
+}
+
+double slopeAt(double rank) {
+  return 0.1 - 0.02 * rank;
+}
+
+// Rows move with their returns. Lasers that come later are put between the others; the next rotation keeps the order.
+TEST(RangeImage, SortsLasersByElevation) {
+  constexpr std::size_t kLasers = 12;
+  constexpr double kRho = 30.0;
+  const std::vector<std::size_t> ranks = mixedRanks(kLasers);
+  Probe probe(kTolerance, kHints);
+  const auto isLate = [&](std::size_t laser) { return ranks[laser] == 3 || ranks[laser] == 8; };
+  const auto put = [&](bool late) {
+    for (std::size_t laser = 0; laser < kLasers; ++laser)
+      for (const std::uint32_t bin : {kFirstBin, kFirstBin + 1})
+        if (isLate(laser) == late) {
+          EXPECT_FALSE(probe.put(laser, bin, kRho, slopeAt(static_cast<double>(ranks[laser]))));
+        }
+    probe.link();
+  };
+  const auto expectSorted = [&](std::size_t seen) {
+    const lisco::RangeImage& image = probe.part().image;
+    std::vector<double> slopes;
+    for (std::size_t rank = 0; rank < seen; ++rank) {
+      const std::size_t laser = image.ranks.laserAt(rank);
+      ASSERT_EQ(image.firstRowOf(laser), rank * image.layers);
+      slopes.push_back(slopeAt(static_cast<double>(ranks[laser])));
+      EXPECT_NEAR(static_cast<double>(image.at(image.firstRowOf(laser), kFirstBin).z()[0]), kRho * slopes.back(), 1e-4);
+    }
+    EXPECT_TRUE(std::is_sorted(slopes.rbegin(), slopes.rend()));
+  };
+  put(false);
+  expectSorted(kLasers - 2);
+  put(true);
+  expectSorted(kLasers);
+  probe.linkAll();
+  EXPECT_EQ(difference(trueClusters(probe.points(), kTolerance), probe.clusters()), "");
+
+  const std::size_t reordered = probe.part().image.times_reordered;
+  probe.begin(kTolerance, kHints);
+  put(false);
+  put(true);
+  expectSorted(kLasers);
+  EXPECT_EQ(probe.part().image.times_reordered, reordered);
+}
+
+TEST(RangeImage, KeepsTheOrderOfSortedLasers) {
+  for (const double step : {1.0, -1.0})
+    for (const bool are_two_exchanged : {false, true}) {
+      std::vector<std::size_t> ranks(16);
+      std::iota(ranks.begin(), ranks.end(), std::size_t{0});
+      if (are_two_exchanged) std::swap(ranks[5], ranks[6]);
+      Probe probe(kTolerance, kHints);
+      for (std::size_t laser = 0; laser < ranks.size(); ++laser)
+        EXPECT_FALSE(probe.put(laser, kFirstBin, 30.0, step * slopeAt(static_cast<double>(ranks[laser]))));
+      probe.link();
+      EXPECT_EQ(probe.part().image.times_reordered, 0U);
+    }
+}
+
+// Each image has sorted the lasers that it has seen.
+TEST(SegmentLinker, JoinsAcrossImagesWhoseLasersAreInAnotherOrder) {
+  constexpr std::size_t kLasers = 12;
+  const std::vector<std::size_t> ranks = mixedRanks(kLasers);
+  Probe probe(kTolerance, kHints);
+  for (std::size_t part = 0; part < 2; ++part) {
+    probe.usePart(part);
+    for (std::size_t laser = 0; laser < kLasers; ++laser)
+      for (std::size_t i = 0; i < 64; ++i) {
+        if (part == 0 && laser % 3 == 0) continue;
+        const auto bin = static_cast<double>(kFirstBin + 64 * part + i);
+        EXPECT_FALSE(probe.put(laser, bin, 30.0, slopeAt(static_cast<double>(ranks[laser]))));
+      }
+    probe.link();
+  }
+  probe.usePart(0);
+  EXPECT_GT(probe.part().image.times_reordered, 0U);
+  probe.linkAll();
+  EXPECT_EQ(difference(trueClusters(probe.points(), kTolerance), probe.clusters()), "");
+  for (std::size_t laser = 0; laser < kLasers; ++laser) EXPECT_EQ(probe.part().image.ranks.rankOf(laser), ranks[laser]);
+}
+
+// Lasers appear, and change their order, while sectors are linked in parts, with one or two returns in a bin.
+TEST(SegmentLinker, JoinsWhileLasersAreSorted) {
+  Probe probe(kTolerance, kHints);
+  std::size_t reordered = 0;
+  for (std::uint64_t seed = 1; seed <= timesEffort(100); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    probe.begin(kTolerance, kHints);
+    std::vector<std::size_t> ranks(4 + random.below(20));
+    std::iota(ranks.begin(), ranks.end(), std::size_t{0});
+    random.shuffle(ranks);
+    std::vector<std::uint32_t> first_bin;
+    for (std::size_t i = 0; i < ranks.size(); ++i)
+      first_bin.push_back(random.chance(0.5) ? 0 : static_cast<std::uint32_t>(random.below(300)));
+    const double kept = random.between(0.01, 0.06);
+    const int most_in_bin = random.chance(0.3) ? 2 : 1;
+    for (std::uint32_t bin = kFirstBin; bin < 400; ++bin) {
+      for (std::size_t laser = 0; laser < ranks.size(); ++laser)
+        for (int i = 0; i < most_in_bin; ++i)
+          if (bin >= first_bin[laser] && random.chance(kept))
+            probe.put(laser, bin, random.between(29.0, 31.0), slopeAt(static_cast<double>(ranks[laser])));
+      if (random.chance(0.03)) probe.link();
+      if (random.chance(0.2)) probe.linkParts(random.below(300));
+    }
+    probe.linkAll();
+    ASSERT_EQ(difference(trueClusters(probe.points(), kTolerance), probe.clusters()), "");
+    reordered = probe.part().image.times_reordered;
+  }
+  EXPECT_GT(reordered, 100U);
+}
+
+// The masks of unsorted lasers span as many rows as those of sorted ones.
+TEST(SegmentLinker, UnsortedLasersTakeTheWorkOfSortedOnes) {
+  constexpr std::size_t kLasers = 32;
+  const auto workOf = [](const std::vector<std::size_t>& ranks) {
+    Probe probe(0.2F, hintsFor(1024, 0.02F));
+    for (int bin = kFirstBin; bin < 300; ++bin)
+      for (std::size_t laser = 0; laser < kLasers; ++laser)
+        EXPECT_FALSE(probe.put(laser, bin, 40.0, slopeAt(static_cast<double>(ranks[laser]))));
+    probe.linkAll();
+    return probe.part().linker.workDone();
+  };
+  std::vector<std::size_t> sorted(kLasers);
+  std::iota(sorted.begin(), sorted.end(), std::size_t{0});
+  EXPECT_EQ(workOf(mixedRanks(kLasers)), workOf(sorted));
 }
 
 // Each laser sweeps over all elevations.

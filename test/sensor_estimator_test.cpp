@@ -9,7 +9,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include "random.h"
 #include "scans.h"
@@ -252,6 +254,40 @@ TEST(SensorEstimator, MeasuresTheDriftOfAzimuths) {
   const float slow = estimate(movingRotation(1.0)).drift;
   EXPECT_GT(slow, 1.0F);
   EXPECT_GT(estimate(movingRotation(3.0)).drift, slow);
+}
+
+// Rows in the order in which lasers fire, which is not that of their elevations. Of few lasers all are sampled, most of
+// them twice; of many, some are.
+TEST(SensorEstimator, MeasuresTheElevationStepOfUnsortedLasers) {
+  for (const std::size_t lasers : {6U, 8U, 12U, 16U, 32U, 128U}) {
+    SCOPED_TRACE(std::to_string(lasers) + " lasers");
+    const auto stepWith = [&](const std::vector<std::size_t>& row_of) {
+      Scan scan(kColumns, lasers);
+      for (std::size_t laser = 0; laser < lasers; ++laser)
+        for (std::size_t column = 0; column < kColumns; ++column) {
+          const double azimuth = 6.283185307179586 * static_cast<double>(column) / static_cast<double>(kColumns);
+          scan.set(row_of[laser], column,
+                   {static_cast<float>(10.0 * std::cos(azimuth)), static_cast<float>(10.0 * std::sin(azimuth)),
+                    0.1F * (static_cast<float>(laser) - 0.5F * static_cast<float>(lasers))});
+        }
+      const lisco::SensorHints hints = estimate(scan);
+      EXPECT_EQ(hints.steps_per_turn, static_cast<int>(kColumns));
+      return hints.elevation_step;
+    };
+    std::vector<std::size_t> row_of(lasers);
+    std::iota(row_of.begin(), row_of.end(), std::size_t{0});
+    EXPECT_NEAR(stepWith(row_of), 0.01F, 0.001F);
+    for (std::size_t row = 0; row < lasers; ++row) row_of[(row % 2) * lasers / 2 + row / 2] = row;
+    EXPECT_GT(stepWith(row_of), 0.005F);
+    EXPECT_LT(stepWith(row_of), lasers < 16 ? 0.031F : 0.015F);
+    Random random(1);
+    for (int i = 0; i < 10; ++i) {
+      random.shuffle(row_of);
+      const float step = stepWith(row_of);
+      EXPECT_GT(step, 0.003F);
+      EXPECT_LT(step, 0.031F);
+    }
+  }
 }
 
 // As from a sensor that measures at every other step: no two returns are adjacent.

@@ -181,14 +181,15 @@ void ColumnClusterer::Rotation::linkImages(std::size_t first) {
   for (std::size_t i = 0; is_any_full && i < partition_count_; ++i) partitions_[i].stopPlacing();
 }
 
-/// Gives all range images with returns the same rows, with elevations that hold for all.
+/// Gives all range images with returns the same rows in one order, with elevations that hold for all.
 void ColumnClusterer::Rotation::shareRows() {
   Partition* shared = nullptr;
   for (std::size_t i = 0; i < partition_count_; ++i) {
     if (partitions_[i].image().placed == 0) continue;
     if (shared == nullptr) shared = &partitions_[i];
-    shared->shareRows(partitions_[i]);
+    shared->mergeRows(partitions_[i]);
   }
+  if (shared != nullptr) shared->sortLasers();
   for (std::size_t i = 0; i < partition_count_; ++i) {
     if (partitions_[i].image().placed == 0) continue;
     partitions_[i].shareRows(*shared);

@@ -108,7 +108,9 @@ class alignas(kSeparate) Partition {
     SegmentLinker::forEachOverlap(image_, earlier.image_, visit);
   }
   /// See RangeImage.
+  void mergeRows(const Partition& other) { image_.mergeRows(other.image_); }
   void shareRows(const Partition& other) { image_.shareRows(other.image_); }
+  void sortLasers() { image_.sortLasers(); }
   void updateElevations() { image_.updateElevations(); }
   /// Links the far returns of two partitions that overlap, in several parts, with this one's memory.
   void linkOverlap(const Partition& later, const Partition& earlier, double ahead, std::size_t part, std::size_t parts,

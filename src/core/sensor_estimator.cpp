@@ -36,6 +36,10 @@ constexpr double kMinStep = 1e-4;
 /// Median deviation of azimuths in steps; beyond, columns are no steps of a turn. More: clouds of cameras get a range
 /// image; less: clouds that jitter get none.
 constexpr double kMaxAzimuthDeviation = 0.5;
+/// Times the mean step between lasers, above which the median of adjacent rows shows that rows are unsorted. It is at
+/// most twice the mean if they are sorted. More: the step of unsorted lasers is that of distant ones; less: the lasers
+/// that are sampled decide the step of sensors whose lasers are spaced unevenly.
+constexpr double kUnsorted = 3.0;
 /// Part of the returns beyond SensorHints::far_distance, from which on a range image is worth its memory.
 constexpr double kFarShare = 0.2;
 
@@ -93,8 +97,11 @@ bool mayHaveSeen(const std::array<float, 3>& origin, const Box& box) {
   return true;
 }
 
-std::array<double, 3> toDouble(const std::array<float, 3>& point) {
-  return {static_cast<double>(point[0]), static_cast<double>(point[1]), static_cast<double>(point[2])};
+template <std::size_t kCount>
+std::array<double, kCount> toDouble(const std::array<float, kCount>& values) {
+  std::array<double, kCount> doubles{};
+  std::copy(values.begin(), values.end(), doubles.begin());
+  return doubles;
 }
 
 }  // namespace
@@ -117,7 +124,7 @@ bool SensorEstimator::estimateFrame(const std::array<float, 3>& declared_origin,
   };
   const auto before = static_cast<double>(former.slope_spread);
   if (before > 0 && !std::isinf(before) && mayHaveSeen(former.origin, box)) {
-    const std::array<double, 2> tilt{static_cast<double>(former.tilt[0]), static_cast<double>(former.tilt[1])};
+    const std::array<double, 2> tilt = toDouble(former.tilt);
     const double seen = frame_.spread({toDouble(former.origin), tilt});
     if (seen <= kAsBefore * before && before <= kAsBefore * seen) {
       take(former.origin, tilt, before);  // as estimated, so that many clouds do not add up to a worse frame
@@ -163,6 +170,9 @@ SensorHints SensorEstimator::estimate(const std::array<float, 3>& declared_origi
   for (const Pair& pair : along_column_)
     elevation_steps.push_back(elevationStep(Seen(pair.a, origin), Seen(pair.b, origin)));
   hints.elevation_step = median(elevation_steps, hints.elevation_step);
+  const auto of_lasers = frame_.elevationSteps({toDouble(origin), toDouble(hints.tilt)});
+  if (static_cast<double>(hints.elevation_step) > kUnsorted * of_lasers.mean)
+    hints.elevation_step = static_cast<float>(of_lasers.median);
 
   // Over many columns, the step and the sense of rotation are measured more finely.
   Sample<double> turns;

@@ -75,11 +75,28 @@ class SensorFrameEstimator::Slopes {
   /// The same in steps from laser to laser: that of all, or of those around if it is much less. From a point on flat
   /// ground most lasers have a slope of 0: there is no step between them, and the spread is large.
   double spreadInSteps() {
-    std::sort(rings_.begin(), rings_.end(), [](const Ring& a, const Ring& b) { return a.laser < b.laser; });
+    sortRings();
     Bounds bounds;
     for (const Ring& ring : rings_) bounds.add(ring);
     const double step_of_all = bounds.step();
     return spreadIn([&](const Ring& ring) { return std::min(step_of_all, kMostUneven * stepAround(ring)); });
+  }
+
+  ElevationSteps elevationSteps() {
+    sortRings();
+    Bounds bounds;
+    Sample<double> elevations, steps;
+    for (const Ring& ring : rings_) {
+      if (ring.laser == bounds.last) continue;  // a laser may have two rings, of about the same returns
+      bounds.add(ring);
+      elevations.push_back(std::atan(ring.median));
+    }
+    if (elevations.size() < 2) return {kInfinity, kInfinity};
+    std::sort(elevations.begin(), elevations.end());
+    for (std::size_t i = 1; i < elevations.size(); ++i) steps.push_back(elevations[i] - elevations[i - 1]);
+    const double lasers = bounds.last - bounds.first;
+    const double all = elevations[elevations.size() - 1] - elevations[0];
+    return {all / lasers, quantile(steps, 0.5) * static_cast<double>(steps.size()) / lasers};
   }
 
   /// By how much the frame is to change: a Gauss-Newton step on the deviations from each laser's mean, whose weights
@@ -145,6 +162,10 @@ class SensorFrameEstimator::Slopes {
     double step() const { return (highest - lowest) / std::max(1.0, last - first); }
   };
 
+  void sortRings() {
+    std::sort(rings_.begin(), rings_.end(), [](const Ring& a, const Ring& b) { return a.laser < b.laser; });
+  }
+
   /// The largest step to one of the two rings before and behind: with dual returns, two rings have the same slope.
   double stepAround(const Ring& ring) const {
     constexpr std::size_t kBeside = 2;
@@ -179,6 +200,10 @@ class SensorFrameEstimator::Slopes {
 
 double SensorFrameEstimator::spread(const SensorFrame& frame) const {
   return Slopes(returns_, frame).spreadInSteps();
+}
+
+SensorFrameEstimator::ElevationSteps SensorFrameEstimator::elevationSteps(const SensorFrame& frame) const {
+  return Slopes(returns_, frame).elevationSteps();
 }
 
 SensorFrame SensorFrameEstimator::middle() const {

@@ -31,6 +31,14 @@ class SensorFrameEstimator {
   /// there are too few returns. The same at any scale: from far away, all slopes are alike.
   double spread(const SensorFrame& frame) const;
 
+  /// Steps from laser to laser in elevation, radians; infinite if there are too few returns. Those added may be of some
+  /// lasers only: others are taken to lie evenly between these.
+  struct ElevationSteps {
+    double mean;    ///< whatever the order of the lasers
+    double median;  ///< if lasers come in any order
+  };
+  ElevationSteps elevationSteps(const SensorFrame& frame) const;
+
   /// The frame that makes the spread least, by Gauss-Newton steps from the middle of the returns, or from above it.
   SensorFrame fit() const;
 

@@ -79,6 +79,8 @@ class ImageCells {
   void addLayer(std::size_t layers) {
     insertLayer(rows_, layers, [](const float*) { return nullptr; });
   }
+  /// Exchanges two rows, with their memory.
+  void swapRows(std::size_t a, std::size_t b) { std::swap(rows_[a], rows_[b]); }
   std::size_t rowCount() const { return rows_.size(); }
   std::size_t rowSize() const { return row_size_; }
 

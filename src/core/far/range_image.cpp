@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/far/constants.h"
 #include "core/far/far_range.h"
@@ -33,8 +34,8 @@ void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hint
   linked = scheduled = 0;
   unplaced.clear();
   late.clear();
-  placed = realigned = end = 0;
-  full = elevations_changed = false;
+  placed = realigned = end = placed_when_sorted = 0;
+  full = elevations_changed = may_be_unsorted = false;
 
   range = farRangeFor(tolerance, hints);
   if (std::isinf(range.min_range)) {
@@ -53,6 +54,8 @@ void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hint
     cosine.clear();
     sine.clear();
     rows.clear();
+    ranks.clear();
+    known_when_sorted = 0;
   }
   steps = new_steps;
   radians_per_bin = static_cast<float>(2 * kPi / static_cast<double>(steps));
@@ -101,6 +104,7 @@ bool RangeImage::hasMemoryFor(std::size_t lasers, std::size_t columns, const Sen
 void RangeImage::addLasers(std::size_t count) {
   const std::size_t before = laserCount();
   if (count <= before) return;
+  ranks.addUpTo(count);
   rows.resize(count * layers, kNewRow);
   cells.addRows(rows.size() - before * layers);
   elevations_changed = true;
@@ -147,11 +151,11 @@ ColumnBits RangeImage::place(const RingBlock& block, const RingBlockInfo& info, 
   if (!started) start(block, info, column);
   const Row& first_row = rows[firstRowOf(laser)];
   if (info.lowest < first_row.lowest || info.highest > first_row.highest) {
-    for (std::size_t row = firstRowOf(laser); row < firstRowOf(laser + 1); ++row) {
+    for (std::size_t row = firstRowOf(laser); row < firstRowOf(laser) + layers; ++row) {
       rows[row].lowest = std::min(rows[row].lowest, info.lowest - kWidening * (1 + std::fabs(info.lowest)));
       rows[row].highest = std::max(rows[row].highest, info.highest + kWidening * (1 + std::fabs(info.highest)));
     }
-    elevations_changed = true;
+    elevations_changed = may_be_unsorted = true;
   }
   const ColumnBits not_placed = full ? info.far : placeReturns(*this, block, info, laser, column);
   forEachBit(not_placed, [&](std::size_t i) {
@@ -165,6 +169,37 @@ ColumnBits RangeImage::place(const RingBlock& block, const RingBlockInfo& info, 
 void RangeImage::stopPlacing() {
   full = true;
   unplaced.clear();
+}
+
+void RangeImage::sortLasers() {
+  if (!may_be_unsorted) return;
+  may_be_unsorted = false;
+  constexpr float kSteepest = 1e6F;
+  for (std::size_t laser = 0; laser < laserCount(); ++laser) {
+    const Row& row = rows[firstRowOf(laser)];
+    if (row.lowest <= row.highest)
+      ranks.setSlope(laser, 0.5F * (std::max(row.lowest, -kSteepest) + std::min(row.highest, kSteepest)));
+  }
+  if (ranks.knownCount() == known_when_sorted && placed < 2 * placed_when_sorted) return;
+  if (!ranks.areUnsorted()) return;
+  known_when_sorted = ranks.knownCount();
+  placed_when_sorted = placed;
+  orderLasers(ranks.sorted());
+}
+
+void RangeImage::orderLasers(const std::vector<std::uint32_t>& lasers) {
+  for (std::size_t rank = 0; rank < lasers.size(); ++rank) swapLasers(rank, ranks.rankOf(lasers[rank]));
+}
+
+void RangeImage::swapLasers(std::size_t a, std::size_t b) {
+  if (a == b) return;
+  ranks.swap(a, b);
+  for (std::size_t layer = 0; layer < layers; ++layer) {
+    std::swap(rows[a * layers + layer], rows[b * layers + layer]);
+    cells.swapRows(a * layers + layer, b * layers + layer);
+  }
+  ++times_reordered;
+  elevations_changed = true;
 }
 
 void RangeImage::updateElevations() {
@@ -197,18 +232,23 @@ void RangeImage::updateElevations() {
   for (std::size_t i = count; i-- > 0;) highest_below[i] = bound = std::max(bound, highest[i]);
 }
 
-void RangeImage::shareRows(const RangeImage& other) {
+void RangeImage::mergeRows(const RangeImage& other) {
   while (layers < other.layers) addLayer();
   addLasers(other.laserCount());
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::size_t laser = i / layers;
-    if (laser >= other.laserCount()) break;
+    const std::size_t laser = ranks.laserAt(i / layers);
+    if (laser >= other.laserCount()) continue;
     const Row& measured = other.rows[other.firstRowOf(laser)];
     if (measured.lowest >= rows[i].lowest && measured.highest <= rows[i].highest) continue;
     rows[i].lowest = std::min(rows[i].lowest, measured.lowest);
     rows[i].highest = std::max(rows[i].highest, measured.highest);
-    elevations_changed = true;
+    elevations_changed = may_be_unsorted = true;
   }
+}
+
+void RangeImage::shareRows(const RangeImage& other) {
+  mergeRows(other);
+  orderLasers(other.ranks.lasers());
 }
 
 std::size_t RangeImage::passed() const {

@@ -10,6 +10,7 @@
 
 #include "core/bits.h"
 #include "core/far/image_cells.h"
+#include "core/far/laser_ranks.h"
 #include "core/growing_array.h"
 #include "core/neighbour.h"
 #include "core/ring_block.h"
@@ -18,6 +19,7 @@
 namespace lisco {
 
 /// The far returns of consecutive columns by laser and *azimuth bin*: a row per laser, a bin per step of the turn.
+/// Rows are in the order of the lasers, or of their elevations if these come unsorted (sortLasers).
 ///
 /// A return lies in the bin of its measured azimuth, whatever its column. A *row* holds one return in each bin. A laser
 /// has `layers` rows, one behind the other: a return goes to the first in which its bin is free. There is one layer at
@@ -104,16 +106,21 @@ struct RangeImage {
   bool isFull() const { return full; }
   void stopPlacing();
 
+  /// Puts the rows in the order of the lasers' slopes if they are unsorted, and if lasers have been seen since the last
+  /// time, or twice as many returns. Later rotations keep the order.
+  void sortLasers();
   /// Brings the elevations of the rows up to date.
   void updateElevations();
-  /// Takes over the number of rows of another image of the same sensor, and the elevations measured there.
+  /// Takes over the number of rows of another image of the same sensor, and the elevations measured there; shareRows ()
+  /// takes over the order of the lasers, too.
+  void mergeRows(const RangeImage& other);
   void shareRows(const RangeImage& other);
 
   /// The end of the sectors that all lasers have passed, bins.
   std::size_t passed() const;
 
   std::size_t laserCount() const { return rows.size() / layers; }
-  std::size_t firstRowOf(std::size_t laser) const { return laser * layers; }
+  std::size_t firstRowOf(std::size_t laser) const { return ranks.rankOf(laser) * layers; }
   /// The row below whose bins linkSameBins compares with those of a row; kNoRow: none.
   std::size_t rowInSameBins(std::size_t row) const {
     return row % layers == 0 && row + layers < rows.size() ? row + layers : kNoRow;
@@ -132,6 +139,10 @@ struct RangeImage {
   void setBins(std::size_t columns);
   /// Adds a layer: every laser gets one more row, without memory yet. Rows are numbered anew.
   void addLayer();
+  /// Gives the lasers, which come by rank, the rows in this order.
+  void orderLasers(const std::vector<std::uint32_t>& lasers);
+  /// Exchanges all rows of the lasers at two ranks.
+  void swapLasers(std::size_t a, std::size_t b);
   /// Gives a row memory, without values yet.
   void addMemory(std::size_t row);
   /// Gives a row memory, if it has none, and frees all its bins, before its first return.
@@ -177,8 +188,13 @@ struct RangeImage {
   std::size_t steps_of_tables = 0;  ///< for which they hold
   ImageCells cells;                 ///< of the rows
 
-  std::vector<Row> rows;  ///< by laser and layer
+  std::vector<Row> rows;  ///< by rank of the laser, and layer
   std::size_t layers = 1;
+  LaserRanks ranks;                                ///< with the slopes of this rotation, and of those before
+  bool may_be_unsorted = false;                    ///< slopes have changed since sortLasers ()
+  std::size_t known_when_sorted = 0;               ///< lasers
+  std::size_t placed_when_sorted = 0;              ///< returns of this rotation
+  std::size_t times_reordered = 0;                 ///< how often lasers have been exchanged
   bool upside_down = false;                        ///< the rows come from bottom to top
   std::vector<float> lowest, highest;              ///< radians, of each row; turned over if upside down
   std::vector<float> lowest_above, highest_below;  ///< of all rows up to, and from, each one

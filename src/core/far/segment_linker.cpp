@@ -146,11 +146,12 @@ void SegmentLinker::prepare(const RangeImage& image) {
   fit(image);
 }
 
-/// Grows to the rows of the image.
+/// Adapts to the rows of the image, and to their order.
 void SegmentLinker::fit(const RangeImage& image) {
   const std::size_t count = image.rows.size();
-  if (masks.size() == count) return;
-  linked_parts_ = 0;  // of a sector with fewer rows
+  if (masks.size() == count && times_reordered_ == image.times_reordered) return;
+  times_reordered_ = image.times_reordered;
+  linked_parts_ = 0;  // of a sector with other rows
   masks.assign(count, NeighborMask());
   forgetSectors();
   for (Sector& sector : sectors) sector.begin.resize(count + 1);
@@ -172,6 +173,7 @@ void SegmentLinker::forgetSectors() {
 
 void SegmentLinker::schedule(RangeImage& image) {
   if (!image.started) return;
+  image.sortLasers();
   fit(image);
   if (image.late.size() > kFewLate) {
     // The next turn of a long scan: linking starts again.

@@ -104,7 +104,8 @@ class SegmentLinker : private SegmentLinkerState {
   void fit(const RangeImage& image);
   void forgetSectors();
 
-  std::size_t linked_parts_ = 0;  ///< of the sector at image.linked
+  std::size_t linked_parts_ = 0;     ///< of the sector at image.linked
+  std::size_t times_reordered_ = 0;  ///< of the image's rows, when the sectors were cut
 };
 
 template <typename Visit>

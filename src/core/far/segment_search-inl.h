@@ -74,7 +74,7 @@ class SegmentSearch {
   }
 
   /// Links one of several equal parts of another image with this one, whose bin 0 is this one's bin `later`: the image
-  /// itself a turn later joins its end with its beginning. Both share elevations.
+  /// itself a turn later joins its end with its beginning. Both share the order of rows, and elevations.
   void linkAcross(const RangeImage& other, double later, std::size_t part, std::size_t parts) {
     // Bins of different images differ by a fraction.
     const double reach = binsWithin(asinBound(image_.reach / image_.range.min_range)) + 1;
