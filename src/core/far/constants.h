@@ -53,7 +53,7 @@ inline constexpr float kWidening = 1e-3F;
 inline constexpr double kReturnsPerSquare = 100.0;
 inline constexpr double kRoughReturnsPerSquare = 60.0;
 inline constexpr double kMinRangeInTolerances = 2.5;
-inline constexpr double kMinBinInCoarseness = 2;  ///< width of a bin over the rounding of coordinates
+inline constexpr double kMinBinInCoarseness = 1;  ///< width of a bin over the resolution of coordinates
 
 // --- Cost of linking: measured --------------------------------------------------------------------------------------
 

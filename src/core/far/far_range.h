@@ -41,7 +41,7 @@ inline FarRange farRangeFor(const Tolerance& tolerance, const SensorHints& hints
                                    static_cast<double>(hints.elevation_step));
   // In map coordinates, azimuths are as coarse as the coordinates.
   const float from_zero = std::max(std::fabs(hints.origin[0]), std::fabs(hints.origin[1]));
-  const double coarseness = static_cast<double>(from_zero) * static_cast<double>(std::numeric_limits<float>::epsilon());
+  const double coarseness = static_cast<double>(std::nextafter(from_zero, kNone)) - static_cast<double>(from_zero);
   // As near as that, unless a mask would reach over more than kMaxReach bins.
   const double max_bins = static_cast<double>(kMaxReach) - 2 * static_cast<double>(deviationFor(hints)) - 1.5;
   const double min_range =
