@@ -24,7 +24,7 @@ constexpr std::size_t kTriedColumns = 128;
 static_assert(kTriedColumns % RingBlock::kColumns == 0, "whole blocks are read");
 /// Times the work of sorting that the trial accepts: other columns may take less. FarHistory corrects it (recordings,
 /// layouts).
-constexpr double kMostInTrial = 2.0;
+constexpr double kMostInTrial = 2.4;
 /// The same above which the trial ends before its last column. More: clouds without range images wait for it.
 constexpr double kClearlyTooMuch = 6.0;
 /// SensorHints::drift from which on returns leave their expected bins too often: of clouds that are motion-compensated.

@@ -89,8 +89,8 @@ FarWork Partition::farWork() const {
   if (far == 0) return {};
   const std::size_t placing = kWorkOfRealigning * image_.realigned + kWorkOfUnplaced * image_.unplaced.size();
   const double runs_per_return = static_cast<double>(runs.run_count) / static_cast<double>(runs.returns);
-  return {static_cast<double>(segments_.workDone() + placing),
-          (kWorkOfSortedReturn + kWorkOfSortedRun * runs_per_return) * far};
+  const double sorted = std::min(kWorkOfSortedReturn + kWorkOfSortedRun * runs_per_return, kMaxWorkOfSorted);
+  return {static_cast<double>(segments_.workDone() + placing), sorted * far};
 }
 
 FarWork Partition::expectedFarWork() const {
