@@ -124,6 +124,22 @@ CloudPtr sector(const ComparedCloud& cloud) {
                    [&cloud](std::size_t row, std::size_t column) { return cloud[row * cloud.width + column]; });
 }
 
+/// Rows in the order in which Velodyne's sensors fire: the lasers of the upper half between those of the lower one.
+CloudPtr unsortedLasers(const ComparedCloud& cloud) {
+  return organized(cloud.width, cloud.height, [&cloud](std::size_t row, std::size_t column) {
+    return cloud[(row % 2 * ((cloud.height + 1) / 2) + row / 2) * cloud.width + column];
+  });
+}
+
+CloudPtr halfMissing(const ComparedCloud& cloud) {
+  auto result = std::make_shared<ComparedCloud>(cloud);
+  result->is_dense = false;
+  lisco_simulation::Random random(1);
+  for (ComparedPoint& point : *result)
+    if (random.chance(0.5)) point.x = point.y = point.z = std::numeric_limits<float>::quiet_NaN();
+  return result;
+}
+
 /// Turns of the same scene, with noise in the ranges.
 /// \param below as more rows, otherwise as more columns
 CloudPtr severalTurns(const ComparedCloud& cloud, std::size_t turns, bool below) {
@@ -317,6 +333,8 @@ void addRotatingScan(std::vector<Recording>& recordings, const fs::path& file) {
   else
     addDeskewed(adder, inMotion);
   adder.add(7, "a column per laser", columnPerLaser);
+  adder.add(7, "unsorted lasers", unsortedLasers);
+  adder.add(7, "half missing", halfMissing);
   adder.add(7, "sector", sector);
   adder.add(7, "two turns", [](const ComparedCloud& c) { return severalTurns(c, 2, false); });
   adder.add(7, "four turns in rows", [](const ComparedCloud& c) { return severalTurns(c, 4, true); });
