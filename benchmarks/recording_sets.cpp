@@ -176,6 +176,9 @@ constexpr Mount kMounts[] = {{"vehicle", 2, 4, 30, 1.2, -0.4, 1.9},
                              {"UTM", 1, -2, 140, 512345.6, 5403210.4, 312.7},
                              {"OSGB", 1, -2, 140, 512345.6, 403210.4, 312.7}};
 
+/// A sensor that looks down.
+constexpr Mount kTilted{"tilted", 0, 15, 0, 1.2, 0.3, 1.8};
+
 CloudPtr moved(const ComparedCloud& cloud, const Mount& mount, bool origin_known) {
   auto result = std::make_shared<ComparedCloud>(cloud);
   const Eigen::Affine3d transform = mount.transform();
@@ -335,6 +338,7 @@ void addRotatingScan(std::vector<Recording>& recordings, const fs::path& file) {
   adder.add(7, "a column per laser", columnPerLaser);
   adder.add(7, "unsorted lasers", unsortedLasers);
   adder.add(7, "half missing", halfMissing);
+  adder.add(7, "tilted", [](const ComparedCloud& c) { return moved(c, kTilted, false); });
   adder.add(7, "sector", sector);
   adder.add(7, "two turns", [](const ComparedCloud& c) { return severalTurns(c, 2, false); });
   adder.add(7, "four turns in rows", [](const ComparedCloud& c) { return severalTurns(c, 4, true); });

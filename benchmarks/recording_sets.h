@@ -39,8 +39,8 @@ const char* titleOf(int set);
 ///   two returns per firing, interleaved
 /// 6 other: RGB-D and airborne scans, a room from several places, worst cases
 /// 7 laid out otherwise: a column per laser, as Velodyne's ROS driver organizes clouds; rows in the order in which
-///   lasers fire; half of the returns missing, at random; a sector of 30 degrees; two and more turns beside each other
-///   or as more rows, each with other noise
+///   lasers fire; half of the returns missing, at random; of a sensor tilted by 15 degrees; a sector of 30 degrees; two
+///   and more turns beside each other or as more rows, each with other noise
 /// \param data the folder of real scans
 /// \throws std::runtime_error if the folder holds no scans
 std::vector<Recording> allRecordings(const std::filesystem::path& data);

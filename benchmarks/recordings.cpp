@@ -80,7 +80,8 @@ bool parse(int argc, char** argv, Options& options) {
       "  4  moved into a vehicle's frame and into map coordinates (UTM, OSGB)\n"
       "  5  of a moving sensor, deskewed; over one turn; dual returns\n"
       "  6  RGB-D, airborne, from several stations, worst cases\n"
-      "  7  organized with a column per laser; lasers unsorted; half of the returns missing; a sector; several turns\n"
+      "  7  organized with a column per laser; lasers unsorted; half of the returns missing; sensor tilted by 15\n"
+      "     degrees; a sector; several turns in one cloud\n"
       "Clusters are compared first, then the grid and Lisco run in turn; medians, milliseconds.\n\n"
       "Exit code: 1 if any clusters differ, 2 on bad input or usage.\n\n"
       "Options");

@@ -28,8 +28,9 @@ struct Parameters;
 /// Returns that lie within eps of each other belong to the same subcluster. update() makes the subclusters exact for
 /// all columns added so far; more columns may follow it.
 ///
-/// Nothing is allocated once the buffers have grown to the largest rotation seen, in both ways to read one (with
-/// several threads, whose parts change with the scene, to the largest parts). Not thread safe; any number may be used.
+/// Nothing is allocated once the buffers have grown to the largest rotation seen (with several threads, whose parts
+/// change with the scene, to the largest parts), except where another way to read rotations is tried: after three at
+/// first, then after up to 64. Not thread safe; any number may be used.
 class LISCO_EXPORT ColumnClusterer {
  public:
   ColumnClusterer();

@@ -2,8 +2,10 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 // Columns that come at once, as those of a whole scan: read by several threads, with or without range images.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "core/far_history.h"
 #include "core/far_trial.h"
@@ -28,9 +30,11 @@ constexpr double kMostInTrial = 2.4;
 /// The same above which the trial ends before its last column. More: clouds without range images wait for it.
 constexpr double kClearlyTooMuch = 6.0;
 /// SensorHints::drift from which on returns leave their expected bins too often: of clouds that are motion-compensated.
-/// The first columns do not show it, as the motion grows from there. At rest 0.05, up to 0.8 in a vehicle's frame; in
-/// motion 1 to 20 (recordings).
+/// The first columns do not show it, as the motion grows from there. At rest 0.05; in motion 1 to 20 (recordings).
 constexpr float kMaxDrift = 1.25F;
+/// What the drift may exceed that by for a slope of 1 of the sensor's horizon: azimuths about another axis grow
+/// unevenly all around, which takes little. At a slope of 0.27 the drift is 1.4 to 2.6.
+constexpr float kDriftOfTilt = 8.0F;
 /// Turns of columns from which on many bins have been taken by the turn before.
 constexpr double kMaxTurns = 1.5;
 
@@ -48,11 +52,14 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
   if (partition_count_ > 1) subclusters_.reserve(lasers * columns + RingBlock::kColumns, NewPages::kUntouched);
   const SensorHints& sensor = parameters_.sensor;
   const bool repeats = static_cast<double>(columns) > kMaxTurns * static_cast<double>(sensor.steps_per_turn);
-  const bool may_have_far = sensor.steps_per_turn != 0 && !repeats && sensor.drift <= kMaxDrift;
-  if (may_have_far && !far_history_.begin({columns, lasers, sensor.steps_per_turn, parameters_.tolerance}))
+  const float max_drift = kMaxDrift + kDriftOfTilt * std::hypot(sensor.tilt[0], sensor.tilt[1]);
+  const bool may_have_far = sensor.steps_per_turn != 0 && !repeats && sensor.drift <= max_drift;
+  if (may_have_far && !far_history_.begin({columns, lasers, sensor.steps_per_turn, parameters_.tolerance})) {
     far_ = Far::kLeftOut;
-  else if (may_have_far && readFarAndNear(lasers, cells))
-    return;
+  } else if (may_have_far) {
+    if (std::exchange(has_given_back_, false)) sorter_ = VoxelSorter();
+    if (readFarAndNear(lasers, cells)) return;
+  }
   if (UnorderedReturns::isUnordered(columns, lasers, cells, tolerance_))
     readUnordered(lasers, cells);
   else
@@ -129,10 +136,15 @@ void ColumnClusterer::Rotation::readNear(std::size_t lasers, const CellSource& c
   });
 }
 
-/// The same without runs.
+/// The same without runs. Where range images are left out, their memory, and that of runs, is given back, as they and
+/// the sorted returns do not fit into 64 bytes per cell; where they are tried again, that of the sorter is.
 void ColumnClusterer::Rotation::readUnordered(std::size_t lasers, const CellSource& cells) {
   partitions_.front().takeBackImageMemory();
   partitions_.front().leaveLargerMemory(unordered_.memory());  // which the trial uses
+  if (far_ == Far::kLeftOut && !has_given_back_) {
+    for (Partition& partition : partitions_) partition = Partition();
+    has_given_back_ = true;
+  }
   unordered_.begin(partition_count_);
   readInParallel([&](std::size_t i) {
     const auto [begin, end] = parts_[i];

@@ -113,6 +113,7 @@ class ColumnClusterer::Rotation {
     kLeftOut    ///< without range images or a trial, as those of the rotations before were not worth it
   } far_ = Far::kNone;
   FarHistory far_history_;
+  bool has_given_back_ = false;  ///< the memory of partitions, while range images are left out
   LoadBalancer balancer_;
   BlockScheduler scheduler_;
   std::vector<std::uint32_t> sizes_;  ///< of subclusters
