@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/disjoint_sets.h"
+#include "core/far/far_range.h"
 #include "core/far/image_circle.h"
 #include "core/ring_block.h"
 #include "engine.h"
@@ -636,6 +637,18 @@ TEST(SegmentLinker, JoinsPairsAboveEachOther) {
   }
 }
 
+// In map coordinates, a bin must be wider than the step from one coordinate to the next.
+TEST(FarRange, BeginsWhereBinsAreWiderThanTheResolutionOfCoordinates) {
+  constexpr float kPowerOfTwo = 524288.0F;
+  const auto minRangeAt = [](float x) {
+    lisco::SensorHints hints = hintsFor(1024, 0.01F);
+    hints.origin = {x, 0.0F, 0.0F};
+    return static_cast<double>(lisco::farRangeFor(lisco::Tolerance(0.1F), hints).min_range);
+  };
+  EXPECT_NEAR(minRangeAt(std::nextafter(kPowerOfTwo, 0.0F)), 0.03125 * 1024 / (2 * kPi), 0.01);
+  EXPECT_NEAR(minRangeAt(kPowerOfTwo), 0.0625 * 1024 / (2 * kPi), 0.01);
+}
+
 /// Ranks of lasers by elevation, from the highest one down, in an order that is neither.
 std::vector<std::size_t> mixedRanks(std::size_t lasers) {
   std::vector<std::size_t> ranks;
@@ -702,7 +715,7 @@ TEST(RangeImage, KeepsTheOrderOfSortedLasers) {
     }
 }
 
-// Each image has sorted the lasers that it has seen.
+// Each image has sorted the lasers that it has seen, which are not the same.
 TEST(SegmentLinker, JoinsAcrossImagesWhoseLasersAreInAnotherOrder) {
   constexpr std::size_t kLasers = 12;
   const std::vector<std::size_t> ranks = mixedRanks(kLasers);
@@ -711,17 +724,21 @@ TEST(SegmentLinker, JoinsAcrossImagesWhoseLasersAreInAnotherOrder) {
     probe.usePart(part);
     for (std::size_t laser = 0; laser < kLasers; ++laser)
       for (std::size_t i = 0; i < 64; ++i) {
-        if (part == 0 && laser % 3 == 0) continue;
+        if (laser % 3 == part) continue;
         const auto bin = static_cast<double>(kFirstBin + 64 * part + i);
         EXPECT_FALSE(probe.put(laser, bin, 30.0, slopeAt(static_cast<double>(ranks[laser]))));
       }
     probe.link();
   }
-  probe.usePart(0);
-  EXPECT_GT(probe.part().image.times_reordered, 0U);
+  const auto rankOf = [&](std::size_t part, std::size_t laser) {
+    probe.usePart(part);
+    return probe.part().image.ranks.rankOf(laser);
+  };
+  EXPECT_NE(rankOf(0, 4), rankOf(1, 4));
   probe.linkAll();
   EXPECT_EQ(difference(trueClusters(probe.points(), kTolerance), probe.clusters()), "");
-  for (std::size_t laser = 0; laser < kLasers; ++laser) EXPECT_EQ(probe.part().image.ranks.rankOf(laser), ranks[laser]);
+  for (const std::size_t part : {0U, 1U})
+    for (std::size_t laser = 0; laser < kLasers; ++laser) EXPECT_EQ(rankOf(part, laser), ranks[laser]);
 }
 
 // Lasers appear, and change their order, while sectors are linked in parts, with one or two returns in a bin.

@@ -29,8 +29,8 @@ struct Parameters;
 /// all columns added so far; more columns may follow it.
 ///
 /// Nothing is allocated once the buffers have grown to the largest rotation seen (with several threads, whose parts
-/// change with the scene, to the largest parts), except where another way to read rotations is tried: after three at
-/// first, then after up to 64. Not thread safe; any number may be used.
+/// change with the scene, to the largest parts), except where rotations are read in another way than those before, as
+/// after the first three if that is faster. Not thread safe; any number may be used.
 class LISCO_EXPORT ColumnClusterer {
  public:
   ColumnClusterer();

@@ -33,7 +33,7 @@ constexpr double kClearlyTooMuch = 6.0;
 /// The first columns do not show it, as the motion grows from there. At rest 0.05; in motion 1 to 20 (recordings).
 constexpr float kMaxDrift = 1.25F;
 /// What the drift may exceed that by for a slope of 1 of the sensor's horizon: azimuths about another axis grow
-/// unevenly all around, which takes little. At a slope of 0.27 the drift is 1.4 to 2.6.
+/// unevenly, but no more so later in the turn. At a slope of 0.27 the drift is 1.4 to 2.6.
 constexpr float kDriftOfTilt = 8.0F;
 /// Turns of columns from which on many bins have been taken by the turn before.
 constexpr double kMaxTurns = 1.5;
@@ -57,7 +57,7 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
   if (may_have_far && !far_history_.begin({columns, lasers, sensor.steps_per_turn, parameters_.tolerance})) {
     far_ = Far::kLeftOut;
   } else if (may_have_far) {
-    if (std::exchange(has_given_back_, false)) sorter_ = VoxelSorter();
+    if (std::exchange(is_sorter_grown_, false)) sorter_ = VoxelSorter();
     if (readFarAndNear(lasers, cells)) return;
   }
   if (UnorderedReturns::isUnordered(columns, lasers, cells, tolerance_))
@@ -136,14 +136,15 @@ void ColumnClusterer::Rotation::readNear(std::size_t lasers, const CellSource& c
   });
 }
 
-/// The same without runs. Where range images are left out, their memory, and that of runs, is given back, as they and
-/// the sorted returns do not fit into 64 bytes per cell; where they are tried again, that of the sorter is.
+/// The same without runs. Where range images are left out, the partitions' memory is given back: an image, runs and
+/// sorted returns together take more than 64 bytes per cell. So is the sorter's when images are tried again.
 void ColumnClusterer::Rotation::readUnordered(std::size_t lasers, const CellSource& cells) {
   partitions_.front().takeBackImageMemory();
   partitions_.front().leaveLargerMemory(unordered_.memory());  // which the trial uses
-  if (far_ == Far::kLeftOut && !has_given_back_) {
-    for (Partition& partition : partitions_) partition = Partition();
-    has_given_back_ = true;
+  if (far_ == Far::kLeftOut) {
+    is_sorter_grown_ = true;
+    if (partitions_.front().runs.runs.size() > 0 || partitions_.front().hasMemory())
+      for (Partition& partition : partitions_) partition = Partition();
   }
   unordered_.begin(partition_count_);
   readInParallel([&](std::size_t i) {

@@ -113,7 +113,7 @@ class ColumnClusterer::Rotation {
     kLeftOut    ///< without range images or a trial, as those of the rotations before were not worth it
   } far_ = Far::kNone;
   FarHistory far_history_;
-  bool has_given_back_ = false;  ///< the memory of partitions, while range images are left out
+  bool is_sorter_grown_ = false;  ///< by rotations without range images, since some had them
   LoadBalancer balancer_;
   BlockScheduler scheduler_;
   std::vector<std::uint32_t> sizes_;  ///< of subclusters

@@ -87,7 +87,8 @@ class SensorFrameEstimator::Slopes {
     Bounds bounds;
     Sample<double> elevations, steps;
     for (const Ring& ring : rings_) {
-      if (ring.laser == bounds.last) continue;  // a laser may have two rings, of about the same returns
+      // A laser may have two rings, of about the same returns.
+      if (ring.laser == bounds.last || !(std::fabs(ring.median) < kInfinity)) continue;
       bounds.add(ring);
       elevations.push_back(std::atan(ring.median));
     }

@@ -35,7 +35,7 @@ class SensorFrameEstimator {
   /// lasers only: others are taken to lie evenly between these.
   struct ElevationSteps {
     double mean;    ///< whatever the order of the lasers
-    double median;  ///< if lasers come in any order
+    double median;  ///< the same; about 0 if rows repeat each other
   };
   ElevationSteps elevationSteps(const SensorFrame& frame) const;
 

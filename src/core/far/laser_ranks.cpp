@@ -45,7 +45,7 @@ bool LaserRanks::areUnsorted() const {
   return unsorted * kFewUnsorted > known_count_;
 }
 
-/// The number of lasers below which one before is clearly lower, or above which one behind is clearly higher.
+/// The number of lasers with a clearly lower one before, and of those with a clearly higher one behind.
 /// \param direction 1 for lasers from top to bottom, -1 from bottom to top
 std::size_t LaserRanks::countUnsorted(float direction, float margin) const {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();

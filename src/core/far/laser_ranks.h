@@ -8,8 +8,8 @@
 
 namespace lisco {
 
-/// An order of lasers, and the rank of each there: at first its number. Lasers are unsorted if many of them are below a
-/// lower one, or above a higher one.
+/// An order of lasers, and the rank of each there: at first its number. Lasers are unsorted if many of them have a
+/// lower one before or a higher one behind.
 class LaserRanks {
  public:
   void clear();

@@ -249,6 +249,7 @@ void RangeImage::mergeRows(const RangeImage& other) {
 void RangeImage::shareRows(const RangeImage& other) {
   mergeRows(other);
   orderLasers(other.ranks.lasers());
+  known_when_sorted = other.known_when_sorted;
 }
 
 std::size_t RangeImage::passed() const {
