@@ -40,8 +40,8 @@ inline constexpr std::size_t kFewTaken = 32;
 inline constexpr std::size_t kPlacedPerTaken = 1024;
 /// Late returns, from which on it takes less to link their sectors again than to search each alone.
 inline constexpr std::size_t kFewLate = 2048;
-/// Rows are sorted by elevation if more than one in kFewUnsorted lasers has a lower one before it or a higher one behind
-/// it. More: rows of sensors whose rings sway are sorted; fewer: masks span many rows, though few lasers are unsorted.
+/// Rows are sorted by elevation if more than one in kFewUnsorted lasers has a lower one before or a higher one behind.
+/// More: rows of sensors whose rings sway are sorted; fewer: masks span many rows, though few lasers are unsorted.
 inline constexpr std::size_t kFewUnsorted = 8;
 /// Added to a laser's elevation bounds when they grow, relative: they settle after a few columns.
 inline constexpr float kWidening = 1e-3F;
