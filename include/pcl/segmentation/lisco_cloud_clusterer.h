@@ -41,17 +41,20 @@ class LISCO_EXPORT LiscoCloudClusterer {
     const auto read_points = [&cloud](std::size_t, std::size_t first, std::size_t count,
                                       const lisco::CellSource::Destination& to) {
       const PointT* const points = cloud.points.data() + first;
-      // The same columns of the next row, which are often read next.
-      constexpr std::size_t kCacheLine = 64;
-      if (first + cloud.width + count <= cloud.size())
-        for (std::size_t i = 0; i < count; i += std::max<std::size_t>(1, kCacheLine / sizeof(PointT)))
-          __builtin_prefetch(points + cloud.width + i, 0, 2);
       for (std::size_t i = 0; i < count; ++i) {
         to.x[i] = points[i].x;
         to.y[i] = points[i].y;
         to.z[i] = points[i].z;
         to.source_index[i] = static_cast<std::uint32_t>(first + i);
       }
+      // What is mostly read next: the same columns of the next row, or the next columns of the first one. Requested
+      // after the copy, whose own loads would wait for these.
+      constexpr std::size_t kCacheLine = 64;
+      const std::size_t below = first + cloud.width;
+      const std::size_t next = below < cloud.size() ? below : below - cloud.size() + count;
+      const std::size_t end = std::min(next + count, cloud.size());
+      for (std::size_t i = next; i < end; i += std::max<std::size_t>(1, kCacheLine / sizeof(PointT)))
+        __builtin_prefetch(cloud.points.data() + i, 0, 2);
     };
     const auto& origin = cloud.sensor_origin_;
     const Layout layout{cloud.size(), cloud.width, cloud.height, {origin[0], origin[1], origin[2]}};
