@@ -19,7 +19,7 @@ constexpr std::size_t kHugePage = std::size_t{1} << 21;  ///< bytes
 enum class NewPages { kPopulated, kUntouched };
 
 /// Has the system provide the pages of new memory in one call, where it can (Linux 5.14); otherwise the first write to
-/// each page causes a page fault. On virtual machines, a fault takes 2 to 10 microseconds, and a page of such a call
+/// each page causes a page fault. On virtual machines, a fault takes 1 to 10 microseconds, and a page of such a call
 /// less than 2, but most of 1 if it is there already (first_call). So the page in the middle tells whether the memory
 /// has been in use before, and a few pages are left to their first writes.
 inline void populatePages([[maybe_unused]] void* begin, [[maybe_unused]] void* end) noexcept {

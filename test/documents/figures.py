@@ -75,9 +75,15 @@ class Tables:
         """All such numbers."""
         return [float(one) for one in re.findall(pattern, self.document(path).sections[section])]
 
+    def form(self, name):
+        """The numbers of one form of clouds in the table of recordings: cases, then mean and lowest of both ratios."""
+        table = self.document("doc/benchmarks.md").sections["recordings"]
+        line = re.search(rf"^ *{re.escape(name)}  +(.*)$", table, re.M).group(1)
+        return [float(cell) for cell in line.split()[:5]]
+
     def names(self):
         return {"rows": self.rows, "col": self.col, "cell": self.cell, "stars": self.stars, "find": self.find,
-                "finds": self.finds,
+                "finds": self.finds, "form": self.form,
                 "gmean": lambda values: math.exp(sum(map(math.log, values)) / len(values)),
                 "ratio": lambda a, b: [x / y for x, y in zip(a, b)], "len": len, "min": min, "max": max, "sum": sum,
                 "all": all, "any": any, "number": number, "round": round, "int": int, "zip": zip, "float": float}
