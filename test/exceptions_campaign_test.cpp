@@ -143,7 +143,7 @@ class RotationSession {
 
 TEST(ExceptionsCampaign, RotationsSurviveRefusedMemory) {
   std::array<std::size_t, RotationSession::kCalls> refused{};
-  for (std::uint64_t seed = 1; seed <= timesEffort(2); ++seed) {
+  for (std::uint64_t seed = 1; seed <= timesEffort(10); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const SimdLevel level(levels()[seed % levels().size()]);

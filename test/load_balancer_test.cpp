@@ -10,8 +10,13 @@
 #include <vector>
 
 #include "core/block_scheduler.h"
+#include "core/disjoint_sets.h"
 #include "core/load_balancer.h"
+#include "core/neighbour.h"
+#include "core/partition.h"
 #include "core/work_shares.h"
+#include "lisco/return.h"
+#include "lisco/sensor_hints.h"
 #include "random.h"
 
 namespace lisco_test {
@@ -48,6 +53,31 @@ Spent spend(const std::vector<std::size_t>& work_of_part, std::size_t parts_per_
     }
   }
   return spent;
+}
+
+TEST(BlockScheduler, BlocksBecomeSmallerTowardsTheEndExpected) {
+  const std::vector<lisco::Return> column(2, lisco::kNoReturn);
+  lisco::BlockScheduler scheduler;
+  lisco::Partition partition;
+  lisco::DisjointSets subclusters;
+  const auto blocksOf = [&](std::size_t columns, std::size_t block_columns) {
+    scheduler.begin(block_columns);
+    partition.prepare(lisco::Tolerance(0.4F), lisco::SensorHints(), 0);
+    std::vector<std::size_t> blocks;
+    for (std::size_t i = 0; i < columns; ++i) {
+      if (scheduler.isStageEmpty()) blocks.push_back(scheduler.columnsLeft());
+      scheduler.add(column.data(), column.size(), partition, subclusters);
+    }
+    scheduler.finish(partition, subclusters);
+    EXPECT_EQ(scheduler.columnsRead(), columns);
+    return blocks;
+  };
+  using Blocks = std::vector<std::size_t>;
+  EXPECT_EQ(blocksOf(300, 64), Blocks({64, 64, 64, 64, 64}));  // nothing is expected yet
+  EXPECT_EQ(blocksOf(300, 64), Blocks({64, 64, 64, 54, 27, 16, 16}));
+  EXPECT_EQ(blocksOf(430, 64), Blocks({64, 64, 64, 54, 27, 16, 16, 64, 64}));  // it went on
+  EXPECT_EQ(blocksOf(30, 8), Blocks({8, 8, 8, 8}));
+  EXPECT_EQ(blocksOf(30, 8), Blocks({8, 8, 8, 8}));
 }
 
 TEST(WorkBudget, SpreadsEvenWorkEvenly) {

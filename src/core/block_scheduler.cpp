@@ -9,8 +9,10 @@ namespace {
 /// Columns over which the work that is left is spread: more make it more even and leave more for the end
 /// (benchmarks/suite.sh latency).
 constexpr std::size_t kSpreadOver = 128;
-/// The same shortly before the end.
-constexpr std::size_t kMinSpreadOver = 48;
+/// The same shortly before the end: fewer leave less for the end, and more for the last columns.
+constexpr std::size_t kMinSpreadOver = 32;
+/// The smallest blocks: smaller ones leave no less for the end.
+constexpr std::size_t kMinBlock = 16;
 
 }  // namespace
 
@@ -20,8 +22,18 @@ void BlockScheduler::begin(std::size_t block_columns) {
   pending_.clear();
   pending_laser_ = columns_since_block_ = 0;
   columns_expected_ = std::exchange(columns_read_, 0);
+  beginBlock();
   far_budget_.begin();
   near_budget_.begin();
+}
+
+/// Sets the size of the block that begins: towards the end of the rotation blocks become smaller, as the last two wait
+/// for update ().
+void BlockScheduler::beginBlock() {
+  staged_columns_ = block_columns_;
+  const std::size_t before = columns_read_ + pending_.columns();
+  if (before < columns_expected_)
+    staged_columns_ = std::clamp((columns_expected_ - before) / 2, std::min(kMinBlock, block_columns_), block_columns_);
 }
 
 /// Does the work that is due with some columns that were taken.
@@ -29,6 +41,7 @@ void BlockScheduler::workAfter(std::size_t columns, Partition& partition, Disjoi
   if (columnsLeft() == 0) {
     finishPending(partition, subclusters);
     std::swap(staged_, pending_);
+    beginBlock();
     columns_since_block_ = 0;
   }
   far_budget_.addColumns(columns);
@@ -47,8 +60,8 @@ void BlockScheduler::workAfter(std::size_t columns, Partition& partition, Disjoi
 void BlockScheduler::readPending(std::size_t columns, Partition& partition, DisjointSets& subclusters) {
   if (pending_.columns() == 0) return;
   partition.addLasers(pending_.lasers());
-  columns_since_block_ = std::min(columns_since_block_ + columns, block_columns_);
-  for (; pending_laser_ < pending_.lasers() * columns_since_block_ / block_columns_; ++pending_laser_)
+  columns_since_block_ = std::min(columns_since_block_ + columns, staged_columns_);
+  for (; pending_laser_ < pending_.lasers() * columns_since_block_ / staged_columns_; ++pending_laser_)
     partition.readRing(pending_.ring(pending_laser_), pending_laser_, columns_read_, pending_.columns(), subclusters);
   if (pending_laser_ < pending_.lasers()) return;
   pending_laser_ = 0;

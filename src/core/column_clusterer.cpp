@@ -27,6 +27,8 @@ constexpr std::size_t kWorthSorting = 256;
 constexpr std::size_t kWorthReadingAtOnce = 16;
 /// Cells from which on several threads take less time than one (threads).
 constexpr std::size_t kWorthThreads = 8192;
+/// Runs that are requested ahead when all are numbered (stages).
+constexpr std::uint32_t kPrefetchedRuns = 64;
 
 }  // namespace
 
@@ -233,8 +235,6 @@ void ColumnClusterer::Rotation::stopCollecting() {
 void ColumnClusterer::Rotation::numberSubclusters() {
   if (is_unordered_) return;  // numbered when they were linked
   SetNumbering numbering(subclusters_, sizes_);
-  for (std::size_t i = 0; i < partition_count_; ++i)
-    numbering.addRoots(partitions_[i].first_element, runsOf(i).run_count);
   for (std::size_t i = 0; i < partition_count_; ++i) {
     Run* const runs = partitions_[i].runs.runs.data();
     const std::size_t count = partitions_[i].runs.run_count;
@@ -245,9 +245,12 @@ void ColumnClusterer::Rotation::numberSubclusters() {
       while (parent < partitions_[owner].first_element) --owner;
       return runsOf(owner).runs[parent - partitions_[owner].first_element].subcluster;
     };
-    for (std::uint32_t run = 0; run < count; ++run)
+    for (std::uint32_t run = 0; run < count; ++run) {
+      __builtin_prefetch(runs + run + kPrefetchedRuns, 1);
       runs[run].subcluster = numbering.numberOf(first + run, runs[run].count, subclusterOf);
+    }
   }
+  numbering.finish();
 }
 
 void ColumnClusterer::Rotation::usePartitions(std::size_t count) {

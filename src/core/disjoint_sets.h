@@ -32,14 +32,6 @@ class DisjointSets {
   /// The element itself if it is a root, else a lower one of its set.
   std::uint32_t parentOf(std::uint32_t element) const { return __atomic_load_n(&parents_[element], __ATOMIC_RELAXED); }
 
-  /// Number of roots among elements first..first+count-1.
-  std::size_t rootCount(std::uint32_t first, std::size_t count) const {
-    const std::uint32_t* const parents = parents_.data();
-    std::uint32_t roots = 0;
-    for (std::uint32_t element = first; element < first + count; ++element) roots += parents[element] == element;
-    return roots;
-  }
-
   /// getH: the root of the set that holds the element.
   std::uint32_t find(std::uint32_t element) {
     std::uint32_t parent = parentOf(element);
@@ -101,16 +93,9 @@ class DisjointSets {
 /// Numbers sets in the order of their roots, and adds up their sizes.
 class SetNumbering {
  public:
-  /// \param sizes receives those of the sets
+  /// \param sizes receives those of the sets; finish () gives it its length
   SetNumbering(const DisjointSets& sets, std::vector<std::uint32_t>& sizes) : sets_(sets), sizes_(sizes) {
     sizes.clear();
-  }
-
-  /// Makes room for the sets whose roots are among some elements, before any element is numbered.
-  void addRoots(std::uint32_t first, std::size_t count) {
-    const std::size_t size = sizes_.size() + sets_.rootCount(first, count);
-    reserveInSteps(sizes_, size);
-    sizes_.resize(size);
   }
 
   /// The number of an element's set. Elements come ascending: a parent, lower than its children, before these.
@@ -118,6 +103,7 @@ class SetNumbering {
   /// \param number_of callable as std::uint32_t (std::uint32_t parent): the number returned for it; of a root, any
   template <typename NumberOf>
   std::uint32_t numberOf(std::uint32_t element, std::uint32_t size, NumberOf&& number_of) {
+    if (next_ == sizes_.size()) makeRoom();
     const std::uint32_t parent = sets_.parentOf(element);
     const std::uint32_t of_parent = number_of(parent);
     // Without a branch, as roots come irregularly.
@@ -128,7 +114,18 @@ class SetNumbering {
     return number;
   }
 
+  /// After the last element.
+  void finish() { sizes_.resize(next_); }
+
  private:
+  /// Counting the roots first would read all elements twice (benchmarks/suite.sh stages).
+  [[gnu::noinline]] void makeRoom() {
+    constexpr std::size_t kStep = 256;
+    const std::size_t size = sizes_.size() + kStep;
+    reserveInSteps(sizes_, size);
+    sizes_.resize(size);
+  }
+
   const DisjointSets& sets_;
   std::vector<std::uint32_t>& sizes_;
   std::uint32_t next_ = 0;

@@ -140,10 +140,10 @@ void WindowClusterer::Window::numberWithin(Pane& pane) {
   const std::size_t count = pane.runs.run_count;
   pane.subcluster.resize(count);
   SetNumbering numbering(pane.subclusters, pane.sizes);
-  numbering.addRoots(0, count);
   for (std::uint32_t run = 0; run < count; ++run)
     pane.subcluster[run] =
         numbering.numberOf(run, runs[run].count, [&](std::uint32_t parent) { return pane.subcluster[parent]; });
+  numbering.finish();
 }
 
 /// Makes each subcluster of the window's panes an element of its forest.
@@ -208,14 +208,13 @@ void WindowClusterer::Window::keepUsefulEdges(Pane& older) {
 /// Numbers the subclusters of the window.
 void WindowClusterer::Window::numberSubclusters() {
   SetNumbering numbering(window_, sizes_);
-  for (std::uint64_t number = oldest_; number != newest_ + 1; ++number)
-    numbering.addRoots(pane(number).first_in_window, pane(number).sizes.size());
   for (std::uint64_t number = oldest_; number != newest_ + 1; ++number) {
     Pane& own = pane(number);
     for (std::uint32_t i = 0; i < own.sizes.size(); ++i)
       subcluster_of_element_[own.first_in_window + i] = numbering.numberOf(
           own.first_in_window + i, own.sizes[i], [&](std::uint32_t parent) { return subcluster_of_element_[parent]; });
   }
+  numbering.finish();
 }
 
 void WindowClusterer::Window::visitRuns(const RunVisitor& visit, const SizeRange& sizes) {

@@ -85,11 +85,11 @@ bool VoxelSorter::chooseNumbering(const Tolerance& tolerance) {
 void VoxelSorter::numberSets(std::vector<std::uint32_t>& sizes) {
   Sets* const all = sets();
   SetNumbering numbering(voxels_, sizes);
-  for (const Slab& slab : division_.slabs) numbering.addRoots(static_cast<std::uint32_t>(slab.begin), slab.voxels);
   for (const Slab& slab : division_.slabs)
     for (std::size_t voxel = slab.begin; voxel < slab.begin + slab.voxels; ++voxel)
       all[voxel].of_voxel = numbering.numberOf(static_cast<std::uint32_t>(voxel), all[voxel].of_voxel,
                                                [all](std::uint32_t parent) { return all[parent].of_voxel; });
+  numbering.finish();
 }
 
 /// Hands the numbers of sets to the returns.
