@@ -9,8 +9,8 @@ namespace {
 /// Columns over which the work that is left is spread: more make it more even and leave more for the end
 /// (benchmarks/suite.sh latency).
 constexpr std::size_t kSpreadOver = 128;
-/// The same shortly before the end: fewer leave less for the end, and more for the last columns.
-constexpr std::size_t kMinSpreadOver = 32;
+/// The same shortly before the end.
+constexpr std::size_t kMinSpreadOver = 48;
 /// The smallest blocks: smaller ones leave no less for the end.
 constexpr std::size_t kMinBlock = 16;
 
