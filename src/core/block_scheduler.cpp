@@ -22,18 +22,19 @@ void BlockScheduler::begin(std::size_t block_columns) {
   pending_.clear();
   pending_laser_ = columns_since_block_ = 0;
   columns_expected_ = std::exchange(columns_read_, 0);
-  beginBlock();
   far_budget_.begin();
   near_budget_.begin();
 }
 
-/// Sets the size of the block that begins: towards the end of the rotation blocks become smaller, as the last two wait
-/// for update ().
-void BlockScheduler::beginBlock() {
-  staged_columns_ = block_columns_;
-  const std::size_t before = columns_read_ + pending_.columns();
-  if (before < columns_expected_)
-    staged_columns_ = std::clamp((columns_expected_ - before) / 2, std::min(kMinBlock, block_columns_), block_columns_);
+/// Half of the columns that are expected after the first `before`; `most` if none is.
+std::size_t BlockScheduler::halfOfLeft(std::size_t before, std::size_t least, std::size_t most) const {
+  return before < columns_expected_ ? std::clamp((columns_expected_ - before) / 2, least, most) : most;
+}
+
+/// Number of columns of the staged block, once it is complete: towards the end of the rotation blocks become smaller,
+/// as the last two wait for update ().
+std::size_t BlockScheduler::stagedColumns() const {
+  return halfOfLeft(columns_read_ + pending_.columns(), std::min(kMinBlock, block_columns_), block_columns_);
 }
 
 /// Does the work that is due with some columns that were taken.
@@ -41,7 +42,6 @@ void BlockScheduler::workAfter(std::size_t columns, Partition& partition, Disjoi
   if (columnsLeft() == 0) {
     finishPending(partition, subclusters);
     std::swap(staged_, pending_);
-    beginBlock();
     columns_since_block_ = 0;
   }
   far_budget_.addColumns(columns);
@@ -60,8 +60,9 @@ void BlockScheduler::workAfter(std::size_t columns, Partition& partition, Disjoi
 void BlockScheduler::readPending(std::size_t columns, Partition& partition, DisjointSets& subclusters) {
   if (pending_.columns() == 0) return;
   partition.addLasers(pending_.lasers());
-  columns_since_block_ = std::min(columns_since_block_ + columns, staged_columns_);
-  for (; pending_laser_ < pending_.lasers() * columns_since_block_ / staged_columns_; ++pending_laser_)
+  const std::size_t until_next = stagedColumns();
+  columns_since_block_ = std::min(columns_since_block_ + columns, until_next);
+  for (; pending_laser_ < pending_.lasers() * columns_since_block_ / until_next; ++pending_laser_)
     partition.readRing(pending_.ring(pending_laser_), pending_laser_, columns_read_, pending_.columns(), subclusters);
   if (pending_laser_ < pending_.lasers()) return;
   pending_laser_ = 0;
@@ -74,8 +75,7 @@ void BlockScheduler::readPending(std::size_t columns, Partition& partition, Disj
 
 /// Towards the end of the rotation the work is spread over fewer columns, so that less is left for update ().
 std::size_t BlockScheduler::columnsToSpreadOver() const {
-  if (columns_expected_ <= columns_read_) return kSpreadOver;
-  return std::clamp<std::size_t>((columns_expected_ - columns_read_) / 2, kMinSpreadOver, kSpreadOver);
+  return halfOfLeft(columns_read_, kMinSpreadOver, kSpreadOver);
 }
 
 void BlockScheduler::finish(Partition& partition, DisjointSets& subclusters) {

@@ -55,7 +55,7 @@ class BlockScheduler {
   bool hasColumns() const { return columns_read_ > 0 || !isStageEmpty() || pending_.columns() > 0; }
 
   /// Number of columns until the block is complete.
-  std::size_t columnsLeft() const { return staged_columns_ - staged_.columns(); }
+  std::size_t columnsLeft() const { return stagedColumns() - staged_.columns(); }
   bool isStageEmpty() const { return staged_.columns() == 0; }
 
   /// Takes at most columnsLeft () columns, and does the work that is due.
@@ -72,30 +72,27 @@ class BlockScheduler {
 
   /// Reads the block that is pending.
   void finishPending(Partition& partition, DisjointSets& subclusters) {
-    readPending(staged_columns_, partition, subclusters);
+    readPending(block_columns_, partition, subclusters);
   }
   /// Reads all columns taken.
   void finish(Partition& partition, DisjointSets& subclusters);
 
   /// Counts columns that were read without the scheduler.
-  void skipColumns(std::size_t columns) {
-    columns_read_ += static_cast<std::uint32_t>(columns);
-    beginBlock();
-  }
+  void skipColumns(std::size_t columns) { columns_read_ += static_cast<std::uint32_t>(columns); }
   /// Number of columns read or skipped.
   std::uint32_t columnsRead() const { return columns_read_; }
 
  private:
-  void beginBlock();
+  std::size_t halfOfLeft(std::size_t before, std::size_t least, std::size_t most) const;
+  std::size_t stagedColumns() const;
   void workAfter(std::size_t columns, Partition& partition, DisjointSets& subclusters);
   void readPending(std::size_t columns, Partition& partition, DisjointSets& subclusters);
   std::size_t columnsToSpreadOver() const;
 
-  std::size_t block_columns_ = RingBlock::kColumns;   ///< of the largest blocks
-  std::size_t staged_columns_ = RingBlock::kColumns;  ///< of the staged block, once it is complete
-  ColumnBlock staged_;                                ///< an incomplete block
-  ColumnBlock pending_;                               ///< a complete block, read while the next one is staged
-  std::size_t pending_laser_ = 0;                     ///< the next to be read
+  std::size_t block_columns_ = RingBlock::kColumns;  ///< of the largest blocks
+  ColumnBlock staged_;                               ///< an incomplete block
+  ColumnBlock pending_;                              ///< a complete block, read while the next one is staged
+  std::size_t pending_laser_ = 0;                    ///< the next to be read
   std::size_t columns_since_block_ = 0;
   std::uint32_t columns_read_ = 0;
   std::uint32_t columns_expected_ = 0;   ///< as many as the rotation before had
