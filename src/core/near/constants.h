@@ -39,6 +39,9 @@ inline constexpr double kMinSlices = 32;
 inline constexpr double kMaxVoxelNumber = 2147480000.0;
 /// Work of a fragment beyond that of its returns, in returns: for dividing it among threads (threads).
 inline constexpr std::uint32_t kWorkOfFragment = 2;
+/// Fragments that a thread takes at least when it takes planes that another may take: thin ones, as slices are, would
+/// take it more time than their fragments (threads).
+inline constexpr std::size_t kLeastTaken = 128;
 /// Returns from which on threads share the work: with fewer, synchronizing the threads takes longer than it saves
 /// (threads).
 inline constexpr std::size_t kMinSharedReturns = 8192;

@@ -143,7 +143,29 @@ namespace {
 HWY_EXPORT(boundReturns);
 HWY_EXPORT(cutPart);
 
+/// Fragments of a plane from which on the search for its end doubles its steps: planes are short compared with all.
+constexpr std::size_t kFirstStep = 32;
+
 }  // namespace
+
+std::size_t FragmentItems::beginOfPlane(std::size_t i, std::size_t begin) const {
+  const std::uint64_t plane = planeOf(all[i]);
+  std::size_t step = kFirstStep;
+  for (; i >= begin + step && planeOf(all[i - step]) == plane; step *= 2) i -= step;
+  const std::uint64_t* const items = all.data();
+  const auto is_before = [&](std::uint64_t item) { return planeOf(item) < plane; };
+  const std::uint64_t* const first = items + (i >= begin + step ? i - step : begin);
+  return static_cast<std::size_t>(std::partition_point(first, items + i, is_before) - items);
+}
+
+std::size_t FragmentItems::endOfPlane(std::size_t i, std::size_t end) const {
+  const std::uint64_t plane = planeOf(all[i]);
+  std::size_t step = kFirstStep;
+  for (; i + step < end && planeOf(all[i + step]) == plane; step *= 2) i += step;
+  const std::uint64_t* const items = all.data();
+  const auto is_within = [&](std::uint64_t item) { return planeOf(item) == plane; };
+  return static_cast<std::size_t>(std::partition_point(items + i, items + std::min(i + step, end), is_within) - items);
+}
 
 Box boxAround(const FragmentList::Part& part) {
   Box box{};

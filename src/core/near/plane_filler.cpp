@@ -56,14 +56,15 @@ class PlaneFiller {
           returns += size;
           ++i;
         } while (i < count_ && keyOf(i) == voxel);
-        endVoxel(box.box(), returns, root);
+        plane_.root[voxels_] = root;
+        endVoxel(box.box(), returns);
       } while (i < count_ && brickOf(i) == brick);
     }
     return finish();
   }
 
-  /// Single returns. Voxels are elements.
-  std::size_t fillFromSingle(std::uint32_t first_voxel) {
+  /// Single returns.
+  std::size_t fillFromSingle() {
     plane_.begins_voxel.growInSteps(count_);
     std::uint8_t* const begins_voxel = plane_.begins_voxel.data();
     for (std::size_t i = 0; i < count_;) {
@@ -73,7 +74,7 @@ class PlaneFiller {
       while (end < most && brickOf(end) == brick) ++end;
       beginBrick(brick);
       if (end - i <= kFewReturns) {
-        addFew(i, end, first_voxel, begins_voxel);
+        addFew(i, end, begins_voxel);
         i = end;
         continue;
       }
@@ -87,7 +88,7 @@ class PlaneFiller {
           begins_voxel[i] = 0;
           box.add(addPoint(i));
         }
-        endVoxel(box, points_ - first_point, first_voxel + voxels_);
+        endVoxel(box, points_ - first_point);
       } while (i < count_ && brickOf(i) == brick);
     }
     return finish();
@@ -114,13 +115,12 @@ class PlaneFiller {
     plane_.bricks[bricks_ - 1].occupied |= std::uint64_t{1} << (key & 63U);
   }
 
-  void endVoxel(const BoxLanes& box, std::size_t returns, std::uint32_t root) {
+  void endVoxel(const BoxLanes& box, std::size_t returns) {
     plane_.return_count[voxels_] = static_cast<std::uint32_t>(returns);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       plane_.lo[axis][voxels_] = box.lo(axis);
       plane_.hi[axis][voxels_] = box.hi(axis);
     }
-    plane_.root[voxels_] = root;
     VoxelPlane::Brick& brick = plane_.bricks[bricks_ - 1];
     if (brick.first_voxel == voxels_)
       brick.box = box;
@@ -143,12 +143,11 @@ class PlaneFiller {
   }
 
   /// Adds the returns of a brick as voxels of their own.
-  void addFew(std::size_t begin, std::size_t end, std::uint32_t first_voxel, std::uint8_t* begins_voxel) {
+  void addFew(std::size_t begin, std::size_t end, std::uint8_t* begins_voxel) {
     plane_.reserveVoxels(voxels_ + kFewReturns);
     BoxLanes box(*returnOf(begin));
     for (std::size_t i = begin; i < end; ++i, ++voxels_) {
       plane_.return_count[voxels_] = 1;
-      plane_.root[voxels_] = first_voxel + voxels_;
       begins_voxel[i] = 1;
       const NearReturn& near = nextReturn(i);
       plane_.lo[0][voxels_] = plane_.hi[0][voxels_] = near.x;
@@ -200,9 +199,8 @@ std::size_t fillFromRuns(VoxelPlane& plane, const std::uint64_t* items, std::siz
 }
 
 std::size_t fillFromSingle(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,
-                           const FragmentList& fragments, std::uint32_t first_voxel) {
-  return fillWith(plane, items, count, layout, fragments,
-                  [&](auto& filler) { return filler.fillFromSingle(first_voxel); });
+                           const FragmentList& fragments) {
+  return fillWith(plane, items, count, layout, fragments, [](auto& filler) { return filler.fillFromSingle(); });
 }
 
 }  // namespace HWY_NAMESPACE
@@ -218,14 +216,14 @@ HWY_EXPORT(fillFromSingle);
 
 }  // namespace
 
-void fillPlaneFromRuns(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,
-                       const FragmentList& fragments, DisjointSets& subclusters) {
-  HWY_DYNAMIC_DISPATCH(fillFromRuns)(plane, items, count, layout, fragments, subclusters);
+std::size_t fillPlaneFromRuns(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
+                              const PlaneLayout& layout, const FragmentList& fragments, DisjointSets& subclusters) {
+  return HWY_DYNAMIC_DISPATCH(fillFromRuns)(plane, items, count, layout, fragments, subclusters);
 }
 
 std::size_t fillPlaneFromSingle(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
-                                const PlaneLayout& layout, const FragmentList& fragments, std::uint32_t first_voxel) {
-  return HWY_DYNAMIC_DISPATCH(fillFromSingle)(plane, items, count, layout, fragments, first_voxel);
+                                const PlaneLayout& layout, const FragmentList& fragments) {
+  return HWY_DYNAMIC_DISPATCH(fillFromSingle)(plane, items, count, layout, fragments);
 }
 
 }  // namespace lisco

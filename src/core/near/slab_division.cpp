@@ -10,6 +10,23 @@
 
 namespace lisco {
 
+bool SlabPair::take(bool last, const FragmentItems& items, Planes& taken) {
+  std::uint64_t left = inWord(this->left());
+  while (true) {
+    const Planes planes{left & kMask, left >> kBits};
+    if (planes.begin == planes.end) return false;
+    const std::size_t least = std::min(kLeastTaken, planes.end - planes.begin);
+    taken = planes;
+    Planes rest = planes;
+    if (last)
+      rest.end = taken.begin = items.beginOfPlane(planes.end - least, planes.begin);
+    else
+      rest.begin = taken.end = items.endOfPlane(planes.begin + least - 1, planes.end);
+    if (__atomic_compare_exchange_n(&left_, &left, inWord(rest), false, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+      return true;
+  }
+}
+
 /// Assigns each slab to the thread that has read most of it, about: both are in order along an axis, the major one.
 void SlabDivision::assign(std::size_t axis, const std::vector<Box>& parts) {
   thread_of_.resize(parts.size());
@@ -28,7 +45,7 @@ void SlabDivision::join(const FragmentList& fragments, FragmentItems& items) {
     std::copy_n(items.all.data() + fragments.parts[part].first, size, items.all.data() + end);  // to the front
     end += size;
   }
-  slabs.assign(1, {0, end, 0});
+  slabs.assign(1, {{0, end}});
 }
 
 void SlabDivision::divide(const FragmentList& fragments, const std::vector<Box>& boxes, const VoxelNumbering& numbering,
@@ -47,7 +64,7 @@ void SlabDivision::divide(const FragmentList& fragments, const std::vector<Box>&
     const std::uint64_t* const own_items = &items.all[own.first];
     std::size_t end = own.first + own.near->count;
     for (std::size_t i = items.part_sizes[part]; i-- > 0;) {
-      Planes& planes = histogram_[part * kGroups + (own_items[i] >> shift)];
+      PlaneGroup& planes = histogram_[part * kGroups + (own_items[i] >> shift)];
       const std::size_t number = own_items[i] & number_mask;
       ++planes.fragments;
       planes.work += static_cast<std::uint32_t>(kWorkOfFragment + end - number);
@@ -56,7 +73,7 @@ void SlabDivision::divide(const FragmentList& fragments, const std::vector<Box>&
   });
   // Where each part's fragments of each group of planes go.
   double all = 0;
-  for (const Planes& planes : histogram_) all += planes.work;
+  for (const PlaneGroup& planes : histogram_) all += planes.work;
   slabs.clear();
   std::uint32_t sum = 0;
   std::size_t begin = 0;
@@ -66,24 +83,39 @@ void SlabDivision::divide(const FragmentList& fragments, const std::vector<Box>&
     const std::uint32_t end = sum;
     const double before = work;
     for (std::size_t part = 0; part < parts; ++part) {
-      Planes& planes = histogram_[part * kGroups + group];
+      PlaneGroup& planes = histogram_[part * kGroups + group];
       work += planes.work;
       sum += std::exchange(planes.fragments, sum);
     }
     // A slab ends at the planes nearest to its share.
     if (end > begin && slabs.size() + 1 < parts && work > share && work - share > share - before) {
-      slabs.push_back({begin, end, 0});
+      slabs.push_back({{begin, end}});
       share += all * shares_.of(thread_of_[slabs.size()]);
       begin = end;
     }
   }
-  slabs.push_back({begin, sum, 0});
+  slabs.push_back({{begin, sum}});
   inParallel(parts, [&](std::size_t part) {
     const std::uint64_t* const own_items = &items.all[fragments.parts[part].first];
     for (std::size_t i = 0; i < items.part_sizes[part]; ++i)
       items.scratch[histogram_[part * kGroups + (own_items[i] >> shift)].fragments++] = own_items[i];
   });
   std::swap(items.all, items.scratch);
+}
+
+Planes SlabDivision::outerPlane(std::size_t slab, const FragmentItems& items) const {
+  const auto [begin, end] = static_cast<const Planes&>(slabs[slab]);
+  if (descends(slab)) return {items.beginOfPlane(end - 1, begin), end};
+  return {begin, items.endOfPlane(begin, end)};
+}
+
+void SlabDivision::beginLinking(const FragmentItems& items) {
+  pairs_.resize((slabs.size() + 1) / 2);
+  for (std::size_t slab = 0; slab < slabs.size(); slab += 2) {
+    const bool is_pair = slab + 1 < slabs.size();
+    pairs_[slab / 2].begin(
+        {outerPlane(slab, items).end, is_pair ? outerPlane(slab + 1, items).begin : slabs[slab].end});
+  }
 }
 
 }  // namespace lisco

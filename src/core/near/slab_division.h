@@ -14,10 +14,46 @@
 
 namespace lisco {
 
-/// Fragments of consecutive planes, the work of one thread.
-struct alignas(kSeparate) Slab {
-  std::size_t begin, end;  ///< among the sorted fragments
-  std::size_t voxels = 0;  ///< of single returns: number of them; voxel i is element begin + i
+/// Consecutive planes, among the sorted fragments.
+struct Planes {
+  std::size_t begin, end;
+};
+
+/// Consecutive planes, sorted by one thread, which begins to link them at their first one, or at their last one.
+struct alignas(kSeparate) Slab : Planes {
+  std::size_t voxels = 0;  ///< of single returns, in the planes that the thread has linked
+};
+
+/// Two slabs side by side. Their threads link the planes from the outer ones on, until they meet: so neither waits long
+/// for the other, whatever their work.
+class alignas(kSeparate) SlabPair {
+ public:
+  /// \param left the planes that remain to be taken
+  void begin(const Planes& left) {
+    left_ = inWord(left);
+    ended_ = 0;
+  }
+
+  /// Takes some of the planes that are left, the first ones or the last ones. \return false if none is left
+  bool take(bool last, const FragmentItems& items, Planes& taken);
+
+  /// The planes that are left. Once there are none, it is empty at the place where the threads have met.
+  Planes left() const {
+    const std::uint64_t word = __atomic_load_n(&left_, __ATOMIC_RELAXED);
+    return {word & kMask, word >> kBits};
+  }
+
+  /// Each thread calls this once it finds no plane left. \return true for the later one, which knows all that the
+  /// other has done
+  bool end() { return __atomic_fetch_add(&ended_, 1U, __ATOMIC_ACQ_REL) == 1; }
+
+ private:
+  static constexpr unsigned kBits = 32;
+  static constexpr std::uint64_t kMask = ~std::uint32_t{0};
+  static std::uint64_t inWord(const Planes& planes) { return std::uint64_t{planes.end} << kBits | planes.begin; }
+
+  std::uint64_t left_ = 0;
+  std::uint32_t ended_ = 0;  ///< threads
 };
 
 /// Divides planes of bricks into slabs, a thread's work each, by the times that threads took for theirs before.
@@ -43,15 +79,28 @@ class SlabDivision {
     });
   }
 
+  /// Whether a slab's thread links from its last plane on: every second one does.
+  static bool descends(std::size_t slab) { return slab % 2 != 0; }
+  SlabPair& pairOf(std::size_t slab) { return pairs_[slab / 2]; }
+  /// Begins the linking. The outer plane of each slab, where its thread begins, is taken.
+  void beginLinking(const FragmentItems& items);
+  Planes outerPlane(std::size_t slab, const FragmentItems& items) const;
+  /// The planes that a slab's thread has linked, when all are.
+  Planes linkedFrom(std::size_t slab) const {
+    const std::size_t meeting = pairs_[slab / 2].left().begin;
+    return descends(slab) ? Planes{meeting, slabs[slab].end} : Planes{slabs[slab].begin, meeting};
+  }
+
  private:
-  struct Planes {
+  struct PlaneGroup {
     std::uint32_t fragments;  ///< number of them; then where the next one goes
     std::uint32_t work;       ///< of linking them, about in returns
   };
 
   void assign(std::size_t axis, const std::vector<Box>& parts);
 
-  std::vector<Planes> histogram_;       ///< of groups of planes, of each part
+  std::vector<PlaneGroup> histogram_;   ///< of groups of planes, of each part
+  std::vector<SlabPair> pairs_;         ///< the last one may be of one slab
   std::vector<std::size_t> thread_of_;  ///< by slab, if the work is shared
   std::vector<std::size_t> slab_of_;    ///< by thread
   WorkShares shares_;                   ///< of threads

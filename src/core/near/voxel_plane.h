@@ -117,6 +117,20 @@ struct alignas(kSeparate) VoxelPlane {
     place.growInSteps(size);
   }
   void reservePoints(std::size_t count) { points.growInSteps(count + kReadBehind); }
+  /// Makes room for as much as there is room for in another plane.
+  void reserveAs(const VoxelPlane& other) {
+    bricks.grow(other.bricks.size());
+    map.reserveAs(other.map);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      lo[axis].grow(other.lo[axis].size());
+      hi[axis].grow(other.hi[axis].size());
+    }
+    root.grow(other.root.size());
+    return_count.grow(other.return_count.size());
+    place.grow(other.place.size());
+    points.grow(other.points.size());
+    begins_voxel.grow(other.begins_voxel.size());
+  }
 };
 
 /// The parts of an item, which is a key and a fragment's number, and the tolerance.
@@ -132,15 +146,17 @@ struct PlaneLayout {
 
 /// Fills a plane with sorted fragments of runs, and joins those of each voxel.
 /// \param items may be read up to kPrefetch behind the last
-void fillPlaneFromRuns(VoxelPlane& plane, const std::uint64_t* items, std::size_t count, const PlaneLayout& layout,
-                       const FragmentList& fragments, DisjointSets& subclusters);
+/// \return number of voxels
+std::size_t fillPlaneFromRuns(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
+                              const PlaneLayout& layout, const FragmentList& fragments, DisjointSets& subclusters);
 
-/// Fills a plane with sorted single returns. Voxel i is element first_voxel + i. In a brick of at most kFewReturns,
-/// each return counts as a voxel: comparing them with each other takes less than telling their voxels apart.
+/// Fills a plane with sorted single returns. Voxels, which are elements, receive their roots from the caller. In a brick
+/// of at most kFewReturns, each return counts as a voxel: comparing them with each other takes less than telling their
+/// voxels apart.
 /// \param items as above
 /// \return number of voxels
 std::size_t fillPlaneFromSingle(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
-                                const PlaneLayout& layout, const FragmentList& fragments, std::uint32_t first_voxel);
+                                const PlaneLayout& layout, const FragmentList& fragments);
 
 /// Joins neighbours within a plane.
 void linkPlane(VoxelPlane& plane, const PlaneLayout& layout, DisjointSets& subclusters);

@@ -3,6 +3,7 @@
 #include "core/near/voxel_sorter.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "core/bits.h"
@@ -12,6 +13,13 @@
 #include "core/radix_sort.h"
 
 namespace lisco {
+
+namespace {
+
+/// The number of no plane, nor of one beside a plane.
+constexpr std::uint64_t kNoPlane = ~std::uint64_t{0} / 2;
+
+}  // namespace
 
 bool VoxelSorter::link(const std::vector<const NearReturns*>& parts, const Tolerance& tolerance,
                        DisjointSets& subclusters) {
@@ -37,7 +45,7 @@ bool VoxelSorter::number(std::vector<SingleReturns>& parts, const Tolerance& tol
   begins_voxel_[most] = 0;
   linkSlabs(tolerance, voxels_);
   numberSets(sizes);
-  division_.forEach([&](std::size_t slab) { numberReturns(division_.slabs[slab]); });
+  division_.forEach([&](std::size_t slab) { numberReturns(slab); });
   return true;
 }
 
@@ -50,16 +58,29 @@ bool VoxelSorter::sortFragments(const Tolerance& tolerance) {
     division_.divide(fragments_, boxes_, numbering_, items_);
   else
     division_.join(fragments_, items_);
-  if (planes_.size() < 2 * division_.slabs.size()) planes_.resize(2 * division_.slabs.size());
+  if (planes_.size() < division_.slabs.size()) planes_.resize(division_.slabs.size());
   division_.forEach([&](std::size_t slab) { sort(division_.slabs[slab]); });
   std::fill_n(&items_.all[division_.slabs.back().end], kPrefetch, 0);
   return true;
 }
 
 void VoxelSorter::linkSlabs(const Tolerance& tolerance, DisjointSets& subclusters) {
-  subclusters.share(division_.slabs.size() > 1);
-  division_.forEach([&](std::size_t slab) { linkSlab(slab, tolerance, subclusters); });
+  const PlaneLayout layout{items_.number_bits, numbering_.minor_bits, numbering_.minor_bits + numbering_.middle_bits,
+                           tolerance.squared(), numbering_.has_slices ? kSliceNeighbourhood.of : kNeighbourhood.of};
+  const std::size_t slabs = division_.slabs.size();
+  division_.beginLinking(items_);
+  subclusters.share(slabs > 1);
+  division_.forEach([&](std::size_t slab) { linkSlab(slab, layout, subclusters); });
   subclusters.share(false);
+  if (slabs == 1) return;
+  // Next time, any thread may take the largest plane.
+  VoxelPlane& largest = planes_.front().latestPlane();
+  const auto forEachPlane = [&](auto&& visit) {
+    for (std::size_t slab = 0; slab < slabs; ++slab)
+      for (VoxelPlane& plane : planes_[slab].planes) visit(plane);
+  };
+  forEachPlane([&](const VoxelPlane& plane) { largest.reserveAs(plane); });
+  forEachPlane([&](VoxelPlane& plane) { plane.reserveAs(largest); });
 }
 
 /// Calls work(part) for each part, by a thread of its own if they share the work.
@@ -81,25 +102,34 @@ bool VoxelSorter::chooseNumbering(const Tolerance& tolerance) {
   return numbering_.bits + items_.number_bits <= 64;
 }
 
+/// The first element of the voxels that a slab's thread has linked.
+std::size_t VoxelSorter::firstVoxel(std::size_t slab) const {
+  const Slab& own = division_.slabs[slab];
+  return SlabDivision::descends(slab) ? own.end - own.voxels : own.begin;
+}
+
 /// Numbers the sets of voxels by their first ones.
 void VoxelSorter::numberSets(std::vector<std::uint32_t>& sizes) {
   Sets* const all = sets();
   SetNumbering numbering(voxels_, sizes);
-  for (const Slab& slab : division_.slabs)
-    for (std::size_t voxel = slab.begin; voxel < slab.begin + slab.voxels; ++voxel)
+  for (std::size_t slab = 0; slab < division_.slabs.size(); ++slab) {
+    const std::size_t first = firstVoxel(slab);
+    for (std::size_t voxel = first; voxel < first + division_.slabs[slab].voxels; ++voxel)
       all[voxel].of_voxel = numbering.numberOf(static_cast<std::uint32_t>(voxel), all[voxel].of_voxel,
                                                [all](std::uint32_t parent) { return all[parent].of_voxel; });
+  }
   numbering.finish();
 }
 
-/// Hands the numbers of sets to the returns.
-void VoxelSorter::numberReturns(const Slab& slab) {
+/// Hands the numbers of sets to the returns that a slab's thread has linked.
+void VoxelSorter::numberReturns(std::size_t slab) {
   Sets* const all = sets();
   const std::uint64_t number_mask = items_.numberMask();
   const std::uint64_t* const items = items_.all.data();
   const std::uint8_t* const begins_voxel = begins_voxel_.data();
-  std::size_t voxel = slab.begin;
-  for (std::size_t i = slab.begin; i < slab.end; ++i) {
+  std::size_t voxel = firstVoxel(slab);
+  const auto [begin, end] = division_.linkedFrom(slab);
+  for (std::size_t i = begin; i < end; ++i) {
     all[items[i] & number_mask].of_return = all[voxel].of_voxel;
     voxel += begins_voxel[i + 1];
   }
@@ -127,61 +157,76 @@ void VoxelSorter::sort(const Slab& slab) {
             items_.number_bits, numbering_.bits);
 }
 
-std::size_t VoxelSorter::endOfPlane(std::size_t begin, std::size_t end) const {
-  const std::uint64_t plane = items_.planeOf(items_.all[begin]);
-  // Planes are short compared with all that follows.
-  std::size_t step = 32;
-  while (begin + step < end && items_.planeOf(items_.all[begin + step]) == plane) {
-    begin += step;
-    step *= 2;
-  }
-  const std::uint64_t* const items = items_.all.data();
-  const auto is_before = [&](std::uint64_t item) { return items_.planeOf(item) == plane; };
-  return static_cast<std::size_t>(std::partition_point(items + begin, items + std::min(begin + step, end), is_before) -
-                                  items);
+/// Links planes from the outer one of a slab on, until its thread meets that of the other slab of the pair.
+void VoxelSorter::linkSlab(std::size_t slab, const PlaneLayout& layout, DisjointSets& subclusters) {
+  division_.slabs[slab].voxels = 0;
+  planes_[slab].number = kNoPlane;
+  const bool descends = SlabDivision::descends(slab);
+  if (slab > 0 && !descends && linksPlanes()) fillPlaneBefore(slab, layout, subclusters);
+  SlabPair& pair = division_.pairOf(slab);
+  Planes taken = division_.outerPlane(slab, items_);
+  do linkPlanesOf(slab, taken, layout, subclusters);
+  while (pair.take(descends, items_, taken));
+  if (!pair.end() || !linksPlanes()) return;
+  TwoPlanes& lower = planes_[slab / 2 * 2];
+  TwoPlanes& upper = planes_[slab / 2 * 2 + 1];
+  if (lower.number + 1 == upper.number) linkPlanes(lower.latestPlane(), upper.latestPlane(), layout, subclusters);
 }
 
-/// Enters a plane's voxels, which are elements, and those of its returns [begin, end).
-void VoxelSorter::addVoxels(std::size_t slab, const VoxelPlane& plane, std::size_t voxels, std::size_t begin,
-                            std::size_t end) {
-  Sets* const all = sets() + division_.slabs[slab].begin + division_.slabs[slab].voxels;
+/// Fills a slab's latest plane with the last one of the slab before, of another pair, whose thread links it within.
+void VoxelSorter::fillPlaneBefore(std::size_t slab, const PlaneLayout& layout, DisjointSets& subclusters) {
+  TwoPlanes& own = planes_[slab];
+  const Planes before = division_.outerPlane(slab - 1, items_);
+  const std::size_t voxels = fillPlane(own.latestPlane(), before, layout, subclusters);
+  own.number = items_.planeOf(items_.all[before.begin]);
+  // There, it is the first to be linked.
+  if (fragments_.are_single)
+    std::iota(own.latestPlane().root.data(), own.latestPlane().root.data() + voxels,
+              static_cast<std::uint32_t>(before.end - voxels));
+}
+
+/// Links the planes that a slab's thread has taken within and, unless they are slices, with those before, in the
+/// thread's direction.
+void VoxelSorter::linkPlanesOf(std::size_t slab, Planes planes, const PlaneLayout& layout, DisjointSets& subclusters) {
+  TwoPlanes& own = planes_[slab];
+  const bool descends = SlabDivision::descends(slab);
+  while (planes.begin < planes.end) {
+    Planes one = planes;
+    if (descends)
+      planes.end = one.begin = items_.beginOfPlane(planes.end - 1, planes.begin);
+    else
+      planes.begin = one.end = items_.endOfPlane(planes.begin, planes.end);
+    VoxelPlane& plane = own.otherPlane();
+    VoxelPlane& last = own.latestPlane();
+    const std::size_t voxels = fillPlane(plane, one, layout, subclusters);
+    if (fragments_.are_single) addVoxels(slab, plane, voxels, one);
+    linkPlane(plane, layout, subclusters);
+    const std::uint64_t number = items_.planeOf(items_.all[one.begin]);
+    if (linksPlanes() && own.number == (descends ? number + 1 : number - 1))
+      linkPlanes(descends ? plane : last, descends ? last : plane, layout, subclusters);
+    own.latest = 1 - own.latest;
+    own.number = number;
+  }
+}
+
+/// \return number of voxels
+std::size_t VoxelSorter::fillPlane(VoxelPlane& plane, const Planes& one, const PlaneLayout& layout,
+                                   DisjointSets& subclusters) {
+  const std::uint64_t* const items = &items_.all[one.begin];
+  const std::size_t count = one.end - one.begin;
+  if (fragments_.are_single) return fillPlaneFromSingle(plane, items, count, layout, fragments_);
+  return fillPlaneFromRuns(plane, items, count, layout, fragments_, subclusters);
+}
+
+/// Enters the voxels of a plane of single returns, which are elements behind or before those of its slab.
+void VoxelSorter::addVoxels(std::size_t slab, VoxelPlane& plane, std::size_t voxels, const Planes& one) {
+  Slab& own = division_.slabs[slab];
+  const std::size_t first = SlabDivision::descends(slab) ? own.end - own.voxels - voxels : own.begin + own.voxels;
+  own.voxels += voxels;
+  std::iota(plane.root.data(), plane.root.data() + voxels, static_cast<std::uint32_t>(first));
+  Sets* const all = sets() + first;
   for (std::size_t voxel = 0; voxel < voxels; ++voxel) all[voxel].of_voxel = plane.return_count[voxel];
-  division_.slabs[slab].voxels += voxels;
-  std::copy_n(plane.begins_voxel.data(), end - begin, &begins_voxel_[begin]);
-}
-
-/// Links the planes of a slab within and, unless they are slices, with the next ones, the first of the next slab
-/// included.
-void VoxelSorter::linkSlab(std::size_t slab, const Tolerance& tolerance, DisjointSets& subclusters) {
-  const PlaneLayout layout{items_.number_bits, numbering_.minor_bits, numbering_.minor_bits + numbering_.middle_bits,
-                           tolerance.squared(), numbering_.has_slices ? kSliceNeighbourhood.of : kNeighbourhood.of};
-  VoxelPlane* plane = &planes_[2 * slab];
-  VoxelPlane* last = plane + 1;
-  std::uint64_t last_number = ~std::uint64_t{0} - 1;
-  std::size_t first_voxel = division_.slabs[slab].begin;
-  const bool links_planes = !numbering_.has_slices;
-  const std::size_t end_of_all = links_planes ? division_.slabs.back().end : division_.slabs[slab].end;
-  for (std::size_t begin = division_.slabs[slab].begin; begin < end_of_all;) {
-    const std::uint64_t number = items_.planeOf(items_.all[begin]);
-    const bool is_own = begin < division_.slabs[slab].end;
-    if (!is_own && number != last_number + 1) return;
-    const std::size_t end = endOfPlane(begin, end_of_all);
-    if (!is_own) first_voxel = division_.slabs[slab + 1].begin;
-    if (fragments_.are_single) {
-      const std::size_t voxels = fillPlaneFromSingle(*plane, &items_.all[begin], end - begin, layout, fragments_,
-                                                     static_cast<std::uint32_t>(first_voxel));
-      if (is_own) addVoxels(slab, *plane, voxels, begin, end);
-      first_voxel += voxels;
-    } else {
-      fillPlaneFromRuns(*plane, &items_.all[begin], end - begin, layout, fragments_, subclusters);
-    }
-    if (is_own) linkPlane(*plane, layout, subclusters);
-    if (links_planes && number == last_number + 1) linkPlanes(*last, *plane, layout, subclusters);
-    if (!is_own) return;
-    std::swap(plane, last);
-    last_number = number;
-    begin = end;
-  }
+  std::copy_n(plane.begins_voxel.data(), one.end - one.begin, &begins_voxel_[one.begin]);
 }
 
 }  // namespace lisco

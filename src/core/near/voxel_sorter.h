@@ -22,8 +22,9 @@ namespace lisco {
 ///
 /// The returns of a run in a voxel are a *fragment*. Fragments are sorted by key (radix sort), so that the returns of a
 /// voxel, of a brick of 4 x 4 x 4 voxels (8 x 4 in a slice), and of a plane of bricks across the major axis lie side by
-/// side. Each plane is linked within and, unless it is a slice, with the plane before. Each thread links a slab of
-/// consecutive planes, where possible of the returns that it has read itself.
+/// side. Each plane is linked within and, unless it is a slice, with the plane before. Each thread sorts a slab of
+/// consecutive planes, where possible of the returns that it has read itself, and links planes from one end of it on,
+/// until it meets the thread that began at the other end of the slab beside.
 class VoxelSorter {
  public:
   /// \param min_shared returns from which on the threads that have read them share the work
@@ -59,6 +60,16 @@ class VoxelSorter {
   Sets* sets() { return reinterpret_cast<Sets*>(items_.scratch.data()); }
   const Sets* sets() const { return reinterpret_cast<const Sets*>(items_.scratch.data()); }
 
+  /// The two planes that a thread has in memory.
+  struct alignas(kSeparate) TwoPlanes {
+    VoxelPlane planes[2];
+    std::size_t latest = 0;    ///< which of them was linked last
+    std::uint64_t number = 0;  ///< of that one, among all planes
+
+    VoxelPlane& latestPlane() { return planes[latest]; }
+    VoxelPlane& otherPlane() { return planes[1 - latest]; }
+  };
+
   bool sortFragments(const Tolerance& tolerance);
   bool chooseNumbering(const Tolerance& tolerance);
   void cutFragments();
@@ -67,10 +78,14 @@ class VoxelSorter {
   void forEachPart(Work&& work);
   void linkSlabs(const Tolerance& tolerance, DisjointSets& subclusters);
   void numberSets(std::vector<std::uint32_t>& sizes);
-  void numberReturns(const Slab& slab);
-  void linkSlab(std::size_t slab, const Tolerance& tolerance, DisjointSets& subclusters);
-  void addVoxels(std::size_t slab, const VoxelPlane& plane, std::size_t voxels, std::size_t begin, std::size_t end);
-  std::size_t endOfPlane(std::size_t begin, std::size_t end) const;
+  void numberReturns(std::size_t slab);
+  std::size_t firstVoxel(std::size_t slab) const;
+  void linkSlab(std::size_t slab, const PlaneLayout& layout, DisjointSets& subclusters);
+  void fillPlaneBefore(std::size_t slab, const PlaneLayout& layout, DisjointSets& subclusters);
+  void linkPlanesOf(std::size_t slab, Planes planes, const PlaneLayout& layout, DisjointSets& subclusters);
+  std::size_t fillPlane(VoxelPlane& plane, const Planes& one, const PlaneLayout& layout, DisjointSets& subclusters);
+  void addVoxels(std::size_t slab, VoxelPlane& plane, std::size_t voxels, const Planes& one);
+  bool linksPlanes() const { return !numbering_.has_slices; }
 
   std::size_t min_shared_;
   bool is_shared_ = false;  ///< the work, by several threads
@@ -79,7 +94,7 @@ class VoxelSorter {
   VoxelNumbering numbering_{};
   FragmentItems items_;  ///< the scratch memory: once they are sorted, sets ()
   SlabDivision division_;
-  std::vector<VoxelPlane> planes_;  ///< two for each slab
+  std::vector<TwoPlanes> planes_;  ///< by slab
   // Of single returns, whose voxels are elements:
   DisjointSets voxels_;
   GrowingArray<std::uint8_t> begins_voxel_;  ///< whether each return, as sorted, begins a voxel; and behind the last
