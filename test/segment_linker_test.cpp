@@ -143,12 +143,10 @@ class Probe {
       part.image.shareRows(parts_[0].image);
       part.image.updateElevations();
     }
-    constexpr std::size_t kParts = 2;
-    for (std::size_t i = 0; i < kParts * overlaps.size(); ++i) {
-      const auto& [a, b, ahead] = overlaps[i / kParts];
+    for (std::size_t i = 0; i < overlaps.size(); ++i) {
+      const auto& [a, b, ahead] = overlaps[i];
       const std::size_t linker = i % parts_.size();
-      parts_[linker].linker.linkOverlap(parts_[a].image, parts_[b].image, ahead, i % kParts, kParts, linker == a,
-                                        subclusters_);
+      parts_[linker].linker.linkOverlap(parts_[a].image, parts_[b].image, ahead, linker == a, subclusters_);
     }
     for (FarPart& part : parts_) {
       for (const lisco::RangeImage::Unplaced& unplaced : part.image.unplaced)

@@ -167,18 +167,19 @@ void ColumnClusterer::Rotation::linkImages(std::size_t first) {
     is_any_unplaced = is_any_unplaced || !partitions_[i].image().unplaced.empty();
   }
   const std::size_t threads = overlaps_.empty() && !is_any_unplaced ? 0 : partition_count_ - first;
-  const std::size_t parts = threads > 1 ? 2 : 1;  // of each overlap: their work differs
   inParallel(threads, [&](std::size_t thread) {
-    for (std::size_t i = thread; i < overlaps_.size() * parts; i += threads) {
-      const Overlap& overlap = overlaps_[i / parts];
+    for (std::size_t i = thread; i < overlaps_.size(); i += threads) {
+      const Overlap& overlap = overlaps_[i];
       partitions_[first + thread].linkOverlap(partitions_[overlap.later], partitions_[overlap.earlier], overlap.ahead,
-                                              i % parts, parts, subclusters_);
+                                              subclusters_);
     }
-    for (std::size_t i = thread; i < partition_count_; i += threads)
-      for (const RangeImage::Unplaced& unplaced : partitions_[i].image().unplaced)
-        images_.forEachAround(unplaced, [&](std::size_t other) {
-          if (std::max(i, other) >= first) partitions_[other].linkUnplaced(unplaced, subclusters_);
+    for (std::size_t i = 0; i < partition_count_; ++i) {
+      const std::vector<RangeImage::Unplaced>& all = partitions_[i].image().unplaced;
+      for (std::size_t k = thread; k < all.size(); k += threads)
+        images_.forEachAround(all[k], [&](std::size_t other) {
+          if (std::max(i, other) >= first) partitions_[other].linkUnplaced(all[k], subclusters_);
         });
+    }
   });
   for (std::size_t i = 0; is_any_full && i < partition_count_; ++i) partitions_[i].stopPlacing();
 }

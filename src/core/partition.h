@@ -112,10 +112,9 @@ class alignas(kSeparate) Partition {
   void shareRows(const Partition& other) { image_.shareRows(other.image_); }
   void sortLasers() { image_.sortLasers(); }
   void updateElevations() { image_.updateElevations(); }
-  /// Links the far returns of two partitions that overlap, in several parts, with this one's memory.
-  void linkOverlap(const Partition& later, const Partition& earlier, double ahead, std::size_t part, std::size_t parts,
-                   DisjointSets& subclusters) {
-    segments_.linkOverlap(later.image_, earlier.image_, ahead, part, parts, &later == this, subclusters);
+  /// Links the far returns of two partitions that overlap, with this one's memory.
+  void linkOverlap(const Partition& later, const Partition& earlier, double ahead, DisjointSets& subclusters) {
+    segments_.linkOverlap(later.image_, earlier.image_, ahead, &later == this, subclusters);
   }
   /// Links an unplaced return of the same rotation with the far returns of the partition.
   void linkUnplaced(const RangeImage::Unplaced& unplaced, DisjointSets& subclusters) const {

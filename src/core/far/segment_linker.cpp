@@ -82,8 +82,25 @@ void linkPartOfSector(const RangeImage& image, SegmentLinkerState& state, std::s
 }
 
 void linkAcross(const RangeImage& image, SegmentLinkerState& state, const RangeImage& other, double later,
-                std::size_t part, std::size_t parts, DisjointSets& subclusters) {
-  SegmentSearch(image, state, subclusters).linkAcross(other, later, part, parts);
+                DisjointSets& subclusters) {
+  SegmentSearch(image, state, subclusters).linkAcross(other, later);
+}
+
+/// Calls visit(row) for each open row with returns between two elevations, perhaps.
+template <typename Visit>
+void forEachRowWithin(const RangeImage& image, float lowest, float highest, Visit&& visit) {
+  const auto visitOpen = [&](std::size_t row) {
+    if (image.rows[row].is_open) visit(row);
+  };
+  const std::size_t rows = image.rows.size();
+  std::size_t k = 0;
+  for (; k + kLanes <= rows; k += kLanes) {
+    const FloatMask within = hn::And(hn::Le(hn::LoadU(kFloats, &image.lowest[k]), hn::Set(kFloats, highest)),
+                                     hn::Ge(hn::LoadU(kFloats, &image.highest[k]), hn::Set(kFloats, lowest)));
+    forEachBit(bitsOf(within), [&](std::size_t i) { visitOpen(k + i); });
+  }
+  for (; k < rows; ++k)
+    if (image.lowest[k] <= highest && image.highest[k] >= lowest) visitOpen(k);
 }
 
 /// Compares one return with all bins that may hold its neighbours.
@@ -108,9 +125,7 @@ void searchOne(const RangeImage& image, const RangeImage::Unplaced& point, Disjo
     const std::int64_t from = std::max<std::int64_t>(0, center - before);
     const std::int64_t to = std::min(last, center + before);
     if (from > to) continue;
-    for (std::size_t row = 0; row < image.rows.size(); ++row) {
-      if (!image.rows[row].is_open || image.lowest[row] > elevation + around || image.highest[row] < elevation - around)
-        continue;
+    forEachRowWithin(image, elevation - around, elevation + around, [&](std::size_t row) {
       // Bins behind the last one are free.
       const RowBins bins = image.at(row, from);
       for (std::int64_t k = 0; k <= to - from; k += std::int64_t{kLanes}) {
@@ -120,7 +135,7 @@ void searchOne(const RangeImage& image, const RangeImage::Unplaced& point, Disjo
         for (std::uint32_t left = bitsOf(near); left != 0; left &= left - 1)
           subclusters.merge(point.element, bins.element()[k + __builtin_ctz(left)]);
       }
-    }
+    });
   }
 }
 
@@ -215,11 +230,11 @@ void SegmentLinker::linkRest(RangeImage& image, DisjointSets& subclusters) {
   image.late.clear();
 }
 
-void SegmentLinker::linkOverlap(const RangeImage& image, const RangeImage& other, double ahead, std::size_t part,
-                                std::size_t parts, bool is_own, DisjointSets& subclusters) {
+void SegmentLinker::linkOverlap(const RangeImage& image, const RangeImage& other, double ahead, bool is_own,
+                                DisjointSets& subclusters) {
   if (!is_own) forgetSectors();
   fit(image);
-  HWY_DYNAMIC_DISPATCH(linkAcross)(image, *this, other, ahead, part, parts, subclusters);
+  HWY_DYNAMIC_DISPATCH(linkAcross)(image, *this, other, ahead, subclusters);
   forgetSectors();
 }
 

@@ -89,11 +89,11 @@ class SegmentLinker : private SegmentLinkerState {
   /// before. After linkRest () of both.
   template <typename Visit>
   static void forEachOverlap(const RangeImage& image, const RangeImage& other, Visit&& visit);
-  /// Links the returns of two images that overlap so, in several parts. Threads may link different parts at once, each
-  /// by its own linker. Both have the same rows (RangeImage::shareRows), with elevations up to date.
+  /// Links the returns of two images that overlap so. Threads may link different overlaps at once, each by its own
+  /// linker. Both images have the same rows (RangeImage::shareRows), with elevations up to date.
   /// \param is_own whether the image is the one that the linker serves otherwise
-  void linkOverlap(const RangeImage& image, const RangeImage& other, double ahead, std::size_t part, std::size_t parts,
-                   bool is_own, DisjointSets& subclusters);
+  void linkOverlap(const RangeImage& image, const RangeImage& other, double ahead, bool is_own,
+                   DisjointSets& subclusters);
   /// Links a return that is unplaced, in this image or another one of the same rotation, with the returns of the image.
   static void linkUnplaced(const RangeImage& image, const RangeImage::Unplaced& unplaced, DisjointSets& subclusters);
 

@@ -73,9 +73,9 @@ class SegmentSearch {
     }
   }
 
-  /// Links one of several equal parts of another image with this one, whose bin 0 is this one's bin `later`: the image
-  /// itself a turn later joins its end with its beginning. Both share the order of rows, and elevations.
-  void linkAcross(const RangeImage& other, double later, std::size_t part, std::size_t parts) {
+  /// Links another image with this one, whose bin 0 is this one's bin `later`: the image itself a turn later joins its
+  /// end with its beginning. Both share the order of rows, and elevations.
+  void linkAcross(const RangeImage& other, double later) {
     // Bins of different images differ by a fraction.
     const double reach = binsWithin(asinBound(image_.reach / image_.range.min_range)) + 1;
     const auto last = sectorAt(static_cast<double>(image_.end - 1));
@@ -83,11 +83,7 @@ class SegmentSearch {
         sectorAt(std::max(static_cast<double>(other.begin), static_cast<double>(image_.begin) - reach - later));
     const auto last_of_other =
         sectorAt(std::min(static_cast<double>(other.end), static_cast<double>(image_.end) + reach - later));
-    const std::int64_t count = std::max<std::int64_t>(0, last_of_other - first_of_other + 1);
-    const auto beginOf = [&](std::size_t i) {
-      return first_of_other + count * static_cast<std::int64_t>(i) / static_cast<std::int64_t>(parts);
-    };
-    for (std::int64_t number = beginOf(part); number < beginOf(part + 1); ++number) {
+    for (std::int64_t number = first_of_other; number <= last_of_other; ++number) {
       Sector& sector = state_.beyond;
       cutSector(other, number, static_cast<float>(later), image_.allRows(), sector, subclusters_);
       for (std::size_t row = 0; row < image_.rows.size(); ++row) {
