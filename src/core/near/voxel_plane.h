@@ -150,9 +150,9 @@ struct PlaneLayout {
 std::size_t fillPlaneFromRuns(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
                               const PlaneLayout& layout, const FragmentList& fragments, DisjointSets& subclusters);
 
-/// Fills a plane with sorted single returns. Voxels, which are elements, receive their roots from the caller. In a brick
-/// of at most kFewReturns, each return counts as a voxel: comparing them with each other takes less than telling their
-/// voxels apart.
+/// Fills a plane with sorted single returns. Voxels, which are elements, receive their roots from the caller. In a
+/// brick of at most kFewReturns, each return counts as a voxel: comparing them with each other takes less than telling
+/// their voxels apart.
 /// \param items as above
 /// \return number of voxels
 std::size_t fillPlaneFromSingle(VoxelPlane& plane, const std::uint64_t* items, std::size_t count,
