@@ -10,6 +10,15 @@ namespace lisco {
 /// Sets of a ring block's 64 columns, bit i for column i.
 using ColumnBits = std::uint64_t;
 
+/// Bits of a vector mask that were stored in one or two bytes, as a word. GCC 12 may store a mask register in as many
+/// bytes and load eight, seen with -fsanitize=thread; not if the word is in a general register in between.
+inline std::uint32_t wordOf(std::uint32_t mask_bits) {
+#if defined(__GNUC__) && !defined(__clang__)
+  asm("" : "+r"(mask_bits));
+#endif
+  return mask_bits;
+}
+
 /// Calls visit(i) for each bit that is set, ascending.
 template <typename Visit>
 void forEachBit(ColumnBits bits, Visit&& visit) {

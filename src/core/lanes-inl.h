@@ -17,6 +17,8 @@
 
 #include <hwy/highway.h>
 
+#include "core/bits.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace lisco {
 namespace HWY_NAMESPACE {
@@ -40,7 +42,7 @@ HWY_INLINE std::uint32_t bitsOf(FloatMask mask) {
   std::conditional_t<sizeof bytes == 1, std::uint8_t, std::uint16_t> bits;
   static_assert(sizeof bits == sizeof bytes);
   std::memcpy(&bits, bytes, sizeof bits);
-  return bits;
+  return wordOf(bits);
 }
 
 /// The mask of the lowest kLanes bits: the inverse of bitsOf.

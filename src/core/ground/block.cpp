@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/bits.h"
 #include "core/ground/targets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -61,7 +62,7 @@ void measureRows(Block& block, const Columns& columns, std::size_t first, const 
       hn::StoreU(rho, kLanes, block_rho + to);
       std::uint8_t bits[8] = {};
       hn::StoreMaskBits(kLanes, hn::Gt(rho, least), bits);
-      returns |= static_cast<unsigned>(bits[0]) << k;
+      returns |= wordOf(bits[0]) << k;
       const auto horizon = hn::Add(hn::Mul(set(tilt[0]), x), hn::Mul(set(tilt[1]), y));
       const auto height = hn::IfThenElseZero(is_return, hn::Sub(z, horizon));
       hn::StoreU(height, kLanes, block_height + to);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/bits.h"
 #include "core/ground/targets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -197,7 +198,7 @@ HWY_INLINE void advance(const FollowedRow& row, std::size_t k, Mask reached, Flo
 HWY_INLINE std::uint8_t bitsOf(Mask mask, std::size_t k) {
   std::uint8_t bits[8] = {};
   hn::StoreMaskBits(kLanes, mask, bits);
-  return static_cast<std::uint8_t>(bits[0] << k);
+  return static_cast<std::uint8_t>(wordOf(bits[0]) << k);
 }
 
 HWY_INLINE Mask lanesOf(std::uint8_t bits, std::size_t k) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/bits.h"
 #include "core/ground/column_profile.h"
 #include "core/ground/targets.h"
 
@@ -36,7 +37,7 @@ HWY_INLINE unsigned besideAt(const float* azimuths, std::int32_t j, float azimut
   const auto nearer = hn::Min(apart, hn::Sub(hn::Set(kAzimuths, kTurn), apart));
   std::uint8_t bits[8] = {};
   hn::StoreMaskBits(kAzimuths, hn::Lt(nearer, hn::Set(kAzimuths, kSameAzimuth)), bits);
-  return bits[0];
+  return wordOf(bits[0]);
 }
 
 /// The first position before `end` with an azimuth beside that of i, or kNone.

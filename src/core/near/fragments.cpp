@@ -93,7 +93,7 @@ HWY_INLINE std::uint64_t changes(const std::uint64_t* keys, const std::uint32_t*
   for (std::size_t i = 0; i < kBatch; i += hn::Lanes(kKeys)) {
     std::uint8_t mask[8] = {};
     hn::StoreMaskBits(kKeys, hn::Ne(hn::LoadU(kKeys, keys + i), hn::LoadU(kKeys, keys + i - 1)), mask);
-    bits |= std::uint64_t{mask[0]} << i;
+    bits |= std::uint64_t{wordOf(mask[0])} << i;
   }
   for (std::size_t i = 0; i < kBatch; i += kLanes)
     bits |= std::uint64_t{bitsOf(differ(elements + i, hn::LoadU(kWords, elements + i - 1)))} << i;
