@@ -24,8 +24,10 @@ namespace {
 /// (recordings).
 constexpr std::size_t kTriedColumns = 128;
 static_assert(kTriedColumns % RingBlock::kColumns == 0, "whole blocks are read");
-/// Times the work of sorting that the trial accepts: other columns may take less. FarHistory corrects it (recordings,
-/// layouts).
+/// Times the work of sorting up to which that of range images is worthwhile in a whole rotation: where both are alike,
+/// images take less time, most of all with several threads, which exchange fewer returns (recordings, threads).
+constexpr double kMostInRotation = 1.1;
+/// The same in the trial: other columns may take less. FarHistory corrects it (recordings, layouts).
 constexpr double kMostInTrial = 2.4;
 /// The same above which the trial ends before its last column. More: clouds without range images wait for it.
 constexpr double kClearlyTooMuch = 6.0;
@@ -203,7 +205,7 @@ void ColumnClusterer::Rotation::recordFar() {
     if (far_ == Far::kLeftOut)
       far_history_.recordLeftOut(content);
     else
-      far_history_.recordTried(far_ == Far::kInImages && !is_full && work.isImageWorthwhile(), content);
+      far_history_.recordTried(far_ == Far::kInImages && !is_full && work.isImageWorthwhile(kMostInRotation), content);
   }
   far_ = Far::kNone;
 }

@@ -32,7 +32,7 @@ struct FarWork {
     return *this;
   }
   /// Whether a range image takes at most `most` times as long. False if no return is far.
-  bool isImageWorthwhile(double most = 1.0) const { return sorted > 0 && in_image <= most * sorted; }
+  bool isImageWorthwhile(double most) const { return sorted > 0 && in_image <= most * sorted; }
 };
 
 /// Consecutive columns that are read and linked together: a thread's part of a rotation, or a stream's pane. Linking
