@@ -144,8 +144,8 @@ TEST(SlabDivision, LeavesEachThreadItsOuterPlane) {
       division.slabs.push_back({{fragments.beginOf(3 * slab), fragments.ends[3 * slab + 2]}});
     division.beginLinking(fragments.items);
     std::vector<lisco::Planes> linked;
-    for (std::size_t slab = 0; slab < slabs;
-         ++slab) {  // the first thread of a pair takes all but what is left to the other
+    // The first thread of a pair takes all but what is left to the other.
+    for (std::size_t slab = 0; slab < slabs; ++slab) {
       const std::size_t outer = lisco::SlabDivision::descends(slab) ? 3 * slab + 2 : 3 * slab;
       const lisco::Planes plane = division.outerPlane(slab, fragments.items);
       EXPECT_EQ(plane.begin, fragments.beginOf(outer));

@@ -103,12 +103,6 @@ void SlabDivision::divide(const FragmentList& fragments, const std::vector<Box>&
   std::swap(items.all, items.scratch);
 }
 
-Planes SlabDivision::outerPlane(std::size_t slab, const FragmentItems& items) const {
-  const auto [begin, end] = static_cast<const Planes&>(slabs[slab]);
-  if (descends(slab)) return {items.beginOfPlane(end - 1, begin), end};
-  return {begin, items.endOfPlane(begin, end)};
-}
-
 void SlabDivision::beginLinking(const FragmentItems& items) {
   pairs_.resize((slabs.size() + 1) / 2);
   for (std::size_t slab = 0; slab < slabs.size(); slab += 2) {

@@ -17,6 +17,12 @@ namespace lisco {
 /// Consecutive planes, among the sorted fragments.
 struct Planes {
   std::size_t begin, end;
+
+  /// The first plane of them, or the last one.
+  Planes outerOne(bool last, const FragmentItems& items) const {
+    if (last) return {items.beginOfPlane(end - 1, begin), end};
+    return {begin, items.endOfPlane(begin, end)};
+  }
 };
 
 /// Consecutive planes, sorted by one thread, which begins to link them at their first one, or at their last one.
@@ -84,7 +90,9 @@ class SlabDivision {
   SlabPair& pairOf(std::size_t slab) { return pairs_[slab / 2]; }
   /// Begins the linking. The outer plane of each slab, where its thread begins, is taken.
   void beginLinking(const FragmentItems& items);
-  Planes outerPlane(std::size_t slab, const FragmentItems& items) const;
+  Planes outerPlane(std::size_t slab, const FragmentItems& items) const {
+    return slabs[slab].outerOne(descends(slab), items);
+  }
   /// The planes that a slab's thread has linked, when all are.
   Planes linkedFrom(std::size_t slab) const {
     const std::size_t meeting = pairs_[slab / 2].left().begin;

@@ -191,11 +191,8 @@ void VoxelSorter::linkPlanesOf(std::size_t slab, Planes planes, const PlaneLayou
   TwoPlanes& own = planes_[slab];
   const bool descends = SlabDivision::descends(slab);
   while (planes.begin < planes.end) {
-    Planes one = planes;
-    if (descends)
-      planes.end = one.begin = items_.beginOfPlane(planes.end - 1, planes.begin);
-    else
-      planes.begin = one.end = items_.endOfPlane(planes.begin, planes.end);
+    const Planes one = planes.outerOne(descends, items_);
+    planes = descends ? Planes{planes.begin, one.begin} : Planes{one.end, planes.end};
     VoxelPlane& plane = own.otherPlane();
     VoxelPlane& last = own.latestPlane();
     const std::size_t voxels = fillPlane(plane, one, layout, subclusters);
