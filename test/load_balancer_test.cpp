@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// How work is spread over the columns of a rotation, and over threads.
+// How work is spread over threads.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,103 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "core/block_scheduler.h"
-#include "core/disjoint_sets.h"
 #include "core/load_balancer.h"
-#include "core/neighbour.h"
-#include "core/partition.h"
 #include "core/work_shares.h"
 #include "lisco/return.h"
-#include "lisco/sensor_hints.h"
 #include "random.h"
 
 namespace lisco_test {
 namespace {
-
-struct Spent {
-  std::vector<std::size_t> per_column;
-  std::size_t most_left = 0;  ///< parts
-};
-
-/// Rotations of which every block of 64 columns brings parts of work; records the work of each column of the last one.
-Spent spend(const std::vector<std::size_t>& work_of_part, std::size_t parts_per_block, std::size_t rotations) {
-  lisco::WorkBudget budget;
-  Spent spent;
-  for (std::size_t rotation = 0; rotation < rotations; ++rotation) {
-    budget.begin();
-    spent = Spent();
-    std::size_t come = 0;
-    std::size_t done = 0;
-    while (come < work_of_part.size() || done < come) {
-      if (spent.per_column.size() % 64 == 0) {
-        come = std::min(come + parts_per_block, work_of_part.size());
-        budget.plan(come - done, 192);
-        spent.most_left = std::max(spent.most_left, come - done);
-      }
-      budget.addColumns(1);
-      std::size_t work = 0;
-      for (; done < come && budget.isBehind(); ++done) {
-        budget.spend(work_of_part[done], 1);
-        work += work_of_part[done];
-      }
-      spent.per_column.push_back(work);
-      if (spent.per_column.size() > 100000) return spent;
-    }
-  }
-  return spent;
-}
-
-TEST(BlockScheduler, BlocksBecomeSmallerTowardsTheEndExpected) {
-  const std::vector<lisco::Return> column(2, lisco::kNoReturn);
-  lisco::BlockScheduler scheduler;
-  lisco::Partition partition;
-  lisco::DisjointSets subclusters;
-  const auto blocksOf = [&](std::size_t columns, std::size_t block_columns) {
-    scheduler.begin(block_columns);
-    partition.prepare(lisco::Tolerance(0.4F), lisco::SensorHints(), 0);
-    std::vector<std::size_t> blocks;
-    for (std::size_t i = 0; i < columns; ++i) {
-      if (scheduler.isStageEmpty()) blocks.push_back(scheduler.columnsLeft());
-      scheduler.add(column.data(), column.size(), partition, subclusters);
-    }
-    scheduler.finish(partition, subclusters);
-    EXPECT_EQ(scheduler.columnsRead(), columns);
-    return blocks;
-  };
-  using Blocks = std::vector<std::size_t>;
-  EXPECT_EQ(blocksOf(300, 64), Blocks({64, 64, 64, 64, 64}));  // nothing is expected yet
-  EXPECT_EQ(blocksOf(300, 64), Blocks({64, 64, 64, 54, 27, 16, 16}));
-  EXPECT_EQ(blocksOf(430, 64), Blocks({64, 64, 64, 54, 27, 16, 16, 64, 64}));  // it went on
-  EXPECT_EQ(blocksOf(30, 8), Blocks({8, 8, 8, 8}));
-  EXPECT_EQ(blocksOf(30, 8), Blocks({8, 8, 8, 8}));
-}
-
-TEST(WorkBudget, SpreadsEvenWorkEvenly) {
-  const Spent spent = spend(std::vector<std::size_t>(200 * 50, 7), 200, 3);
-  for (std::size_t column = 640; column < 64 * 50; ++column)
-    EXPECT_NEAR(static_cast<double>(spent.per_column[column]), 7.0 * 200 / 64, 8.0) << column;
-  EXPECT_LT(spent.most_left, 800U);
-}
-
-// A tenth of the parts, all adjacent, costs ten times as much as the others.
-TEST(WorkBudget, SpreadsDenseWorkEvenly) {
-  std::vector<std::size_t> work(200 * 50, 10);
-  std::fill(work.begin() + 4000, work.begin() + 5000, 100);
-  const Spent spent = spend(work, 200, 5);
-  const std::size_t all = std::accumulate(work.begin(), work.end(), std::size_t{0});
-  EXPECT_EQ(std::accumulate(spent.per_column.begin(), spent.per_column.end(), std::size_t{0}), all);
-  const std::size_t most = *std::max_element(spent.per_column.begin(), spent.per_column.end());
-  EXPECT_LT(most, 200 * 100 / 64) << "as much as without spreading beyond the next block";
-  EXPECT_LT(spent.most_left, 200U * 25);
-}
-
-TEST(WorkBudget, DoesAllWorkAfterAnyRotation) {
-  for (const std::size_t work : {std::size_t{1}, std::size_t{1000}, std::size_t{1000000}}) {
-    const Spent spent = spend(std::vector<std::size_t>(2000, work), 50, 1);
-    EXPECT_EQ(std::accumulate(spent.per_column.begin(), spent.per_column.end(), std::size_t{0}), 2000 * work);
-    EXPECT_LT(spent.per_column.size(), 10000U) << work;
-  }
-}
 
 template <typename CellAt>
 std::vector<lisco::LoadBalancer::Part> cut(lisco::LoadBalancer& balancer, std::size_t columns, std::size_t lasers,

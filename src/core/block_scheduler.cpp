@@ -10,9 +10,11 @@ namespace {
 /// (benchmarks/suite.sh latency).
 constexpr std::size_t kSpreadOver = 128;
 /// The same shortly before the end.
-constexpr std::size_t kMinSpreadOver = 48;
+constexpr std::size_t kMinSpreadOver = 64;
 /// The smallest blocks: smaller ones leave no less for the end.
 constexpr std::size_t kMinBlock = 16;
+/// Work of putting a near return into its voxel, where reading a cell is 1.
+constexpr std::size_t kWorkOfNear = 7;
 
 }  // namespace
 
@@ -22,8 +24,7 @@ void BlockScheduler::begin(std::size_t block_columns) {
   pending_.clear();
   pending_laser_ = columns_since_block_ = 0;
   columns_expected_ = std::exchange(columns_read_, 0);
-  far_budget_.begin();
-  near_budget_.begin();
+  budget_.begin();
 }
 
 /// Half of the columns that are expected after the first `before`; `most` if none is.
@@ -37,40 +38,53 @@ std::size_t BlockScheduler::stagedColumns() const {
   return halfOfLeft(columns_read_ + pending_.columns(), std::min(kMinBlock, block_columns_), block_columns_);
 }
 
-/// Does the work that is due with some columns that were taken.
+/// Does the work that is due with some columns that were taken: reads their share of the pending block, then links
+/// until they have taken as long as they should.
 void BlockScheduler::workAfter(std::size_t columns, Partition& partition, DisjointSets& subclusters) {
   if (columnsLeft() == 0) {
     finishPending(partition, subclusters);
     std::swap(staged_, pending_);
     columns_since_block_ = 0;
+    budget_.plan(Budget::kReading, pending_.lasers(), stagedColumns());
   }
-  far_budget_.addColumns(columns);
-  if (partition.nearBricksLeft() > 0) near_budget_.addColumns(columns);
-  while (partition.farPartsLeft() > 0 && far_budget_.isBehind())
-    far_budget_.spend(partition.linkFarPart(subclusters), 1);
-  for (std::size_t left = partition.nearBricksLeft(); left > 0 && near_budget_.isBehind();) {
-    const std::size_t work = partition.linkNearPart(subclusters);
-    near_budget_.spend(work, left - partition.nearBricksLeft());
-    left = partition.nearBricksLeft();
+  budget_.addColumns(columns);
+  const std::size_t block = pending_.columns();
+  const std::size_t near_before = partition.nearCount();
+  const std::size_t lasers = readPending(columns, partition, subclusters);
+  const std::size_t near_returns = partition.nearCount() - near_before;
+  budget_.record(Budget::kReading, lasers, lasers * block + kWorkOfNear * near_returns);
+  while (budget_.isBehind()) {
+    const bool has_far = partition.farPartsLeft() > 0;
+    const std::size_t near = partition.nearBricksLeft();
+    if (!has_far && near == 0) return budget_.drop();
+    if (has_far && (near == 0 || budget_.isBehind(Budget::kFar, Budget::kNear))) {
+      const std::size_t work = partition.linkFarPart(subclusters);
+      budget_.record(Budget::kFar, 1, work);
+    } else {
+      const std::size_t work = partition.linkNearPart(subclusters);
+      budget_.record(Budget::kNear, near - partition.nearBricksLeft(), work);
+    }
   }
-  readPending(columns, partition, subclusters);
 }
 
-/// Reads the share of the pending block that falls to a number of columns.
-void BlockScheduler::readPending(std::size_t columns, Partition& partition, DisjointSets& subclusters) {
-  if (pending_.columns() == 0) return;
+/// Reads the share of the pending block that falls to a number of columns. \return number of lasers read
+std::size_t BlockScheduler::readPending(std::size_t columns, Partition& partition, DisjointSets& subclusters) {
+  if (pending_.columns() == 0) return 0;
   partition.addLasers(pending_.lasers());
   const std::size_t until_next = stagedColumns();
   columns_since_block_ = std::min(columns_since_block_ + columns, until_next);
+  const std::size_t first = pending_laser_;
   for (; pending_laser_ < pending_.lasers() * columns_since_block_ / until_next; ++pending_laser_)
     partition.readRing(pending_.ring(pending_laser_), pending_laser_, columns_read_, pending_.columns(), subclusters);
-  if (pending_laser_ < pending_.lasers()) return;
+  const std::size_t read = pending_laser_ - first;
+  if (pending_laser_ < pending_.lasers()) return read;
   pending_laser_ = 0;
   columns_read_ += static_cast<std::uint32_t>(pending_.columns());
   pending_.clear();
   partition.scheduleFar();
-  far_budget_.plan(partition.farPartsLeft(), columnsToSpreadOver());
-  near_budget_.plan(partition.nearBricksLeft(), columnsToSpreadOver());
+  budget_.plan(Budget::kFar, partition.farPartsLeft(), columnsToSpreadOver());
+  budget_.plan(Budget::kNear, partition.nearBricksLeft(), columnsToSpreadOver());
+  return read;
 }
 
 /// Towards the end of the rotation the work is spread over fewer columns, so that less is left for update ().

@@ -8,42 +8,10 @@
 #include <utility>
 
 #include "core/column_block.h"
+#include "core/column_budget.h"
 #include "core/partition.h"
 
 namespace lisco {
-
-/// The work that each column should do so that all do about the same, though parts of a scene differ several times in
-/// cost. Work comes in parts; the cost of a part is unknown until it is done and taken for the average of those before.
-class WorkBudget {
- public:
-  /// Starts a rotation. The cost of parts in those before counts less and less.
-  void begin() {
-    parts_ = 1 + parts_ / 2;
-    work_ = kFirstGuess + work_ / 2;
-    per_column_ = credit_ = 0;
-  }
-  /// Sets the number of parts left from now on, to be done in a number of columns.
-  void plan(std::size_t parts, std::size_t columns) {
-    per_column_ = static_cast<double>(parts) * (work_ / parts_) / static_cast<double>(columns);
-    credit_ = std::min(credit_, 0.0);
-  }
-  void addColumns(std::size_t columns) { credit_ += per_column_ * static_cast<double>(columns); }
-  /// Whether one more part should be done now.
-  bool isBehind() const { return credit_ > 0; }
-  /// Records work, in any unit, and the number of parts that it has completed.
-  void spend(std::size_t work, std::size_t parts) {
-    credit_ -= static_cast<double>(work);
-    work_ += static_cast<double>(work);
-    parts_ += static_cast<double>(parts);
-  }
-
- private:
-  static constexpr double kFirstGuess = 64;  ///< work of a part
-  double parts_ = 0;
-  double work_ = 0;  ///< of those parts
-  double per_column_ = 0;
-  double credit_ = 0;
-};
 
 /// Columns that come one by one, read into a partition: gathers them into blocks, reads a block while the next one is
 /// gathered, and links it in small parts while those after it come.
@@ -86,7 +54,7 @@ class BlockScheduler {
   std::size_t halfOfLeft(std::size_t before, std::size_t least, std::size_t most) const;
   std::size_t stagedColumns() const;
   void workAfter(std::size_t columns, Partition& partition, DisjointSets& subclusters);
-  void readPending(std::size_t columns, Partition& partition, DisjointSets& subclusters);
+  std::size_t readPending(std::size_t columns, Partition& partition, DisjointSets& subclusters);
   std::size_t columnsToSpreadOver() const;
 
   std::size_t block_columns_ = RingBlock::kColumns;  ///< of the largest blocks
@@ -95,8 +63,9 @@ class BlockScheduler {
   std::size_t pending_laser_ = 0;                    ///< the next to be read
   std::size_t columns_since_block_ = 0;
   std::uint32_t columns_read_ = 0;
-  std::uint32_t columns_expected_ = 0;   ///< as many as the rotation before had
-  WorkBudget far_budget_, near_budget_;  ///< of linking
+  std::uint32_t columns_expected_ = 0;  ///< as many as the rotation before had
+  using Budget = ColumnBudget<>;
+  Budget budget_;
 };
 
 }  // namespace lisco
