@@ -184,6 +184,24 @@ TEST(ColumnBudget, KnowsTheKindThatLags) {
   EXPECT_NEAR(static_cast<double>(parts[Budget::kNear]), 30, 1);
 }
 
+// Parts may be linked before their kind is planned for the first time.
+TEST(ColumnBudget, CountsPartsThatAreNotPlanned) {
+  for (const std::size_t readings : {10U, 10000U}) {  // of columns that are short, and of some that are not
+    Budget budget;
+    budget.begin();
+    budget.plan(Budget::kReading, readings, 10);
+    for (std::size_t column = 0; column < 5; ++column) {
+      budget.addColumns(1);
+      std::size_t parts = 0;
+      for (; budget.isBehind() && parts <= 2 * readings; ++parts) {
+        TestClock::pass(500);
+        budget.record(Budget::kNear, 1, 100);
+      }
+      EXPECT_NEAR(static_cast<double>(parts), static_cast<double>(readings) / 10, 1);
+    }
+  }
+}
+
 // The thread waits for its processor: the columns after it do not make up for a time that was not worked.
 TEST(ColumnBudget, GoesOnAfterAnInterruption) {
   Budget budget;

@@ -23,6 +23,7 @@ class ColumnBudget {
   void begin() {
     for (Tasks& tasks : tasks_) {
       tasks.measured.halve();
+      tasks.estimate();
       tasks.per_column = tasks.due = 0;
     }
     due_ = 0;
@@ -31,8 +32,7 @@ class ColumnBudget {
   /// Sets the number of parts of a kind left from now on, to be done in a number of columns.
   void plan(Kind kind, std::size_t parts, std::size_t columns) {
     Tasks& tasks = tasks_[kind];
-    tasks.part = tasks.measured.seconds / tasks.measured.parts;
-    tasks.unit = tasks.measured.seconds / tasks.measured.work;
+    tasks.estimate();
     tasks.per_column = static_cast<double>(parts) * tasks.part / static_cast<double>(columns);
     tasks.due = 0;
   }
@@ -92,6 +92,11 @@ class ColumnBudget {
     double unit = 0;  ///< seconds of a unit of work
     double per_column = 0;
     double due = 0;
+
+    void estimate() {
+      part = measured.seconds / measured.parts;
+      unit = measured.seconds / measured.work;
+    }
   };
   std::array<Tasks, kKinds> tasks_{};
   double due_ = 0;         ///< seconds, of all kinds
