@@ -57,7 +57,7 @@ void BlockScheduler::workAfter(std::size_t columns, Partition& partition, Disjoi
     const bool has_far = partition.farPartsLeft() > 0;
     const std::size_t near = partition.nearBricksLeft();
     if (!has_far && near == 0) return budget_.drop();
-    if (has_far && (near == 0 || budget_.isBehind(Budget::kFar, Budget::kNear))) {
+    if (has_far && (near == 0 || budget_.isBefore(Budget::kFar, Budget::kNear))) {
       const std::size_t work = partition.linkFarPart(subclusters);
       budget_.record(Budget::kFar, 1, work);
     } else {

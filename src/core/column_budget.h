@@ -50,8 +50,9 @@ class ColumnBudget {
 
   /// Whether one more part, of any kind, should be done now.
   bool isBehind() const { return due_ > 0; }
-  /// Whether a kind lags behind another one.
-  bool isBehind(Kind kind, Kind other) const { return tasks_[kind].due >= tasks_[other].due; }
+  /// Whether a kind comes before another one: until it is no longer behind, so that its data stay in the cache, or if
+  /// it is ahead by less.
+  bool isBefore(Kind kind, Kind other) const { return tasks_[kind].due > 0 || tasks_[kind].due >= tasks_[other].due; }
   /// Records the time since addColumns () or the record before as that of some work of a kind. The thread may have
   /// waited for its processor: no more than a multiple of what is usual counts.
   /// \param parts that it has completed
@@ -74,7 +75,7 @@ class ColumnBudget {
   void drop() { due_ = std::min(due_, 0.0); }
 
  private:
-  static constexpr double kShort = 1.5e-6;          ///< seconds of a column
+  static constexpr double kShort = 2.5e-6;          ///< seconds of a column
   static constexpr std::size_t kTimedOfShort = 13;  ///< the first of so many, which begin anywhere in a block
   static constexpr double kMostOfUsual = 16;        ///< the longest parts of scans take so much
 
