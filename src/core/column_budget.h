@@ -12,8 +12,8 @@ namespace lisco {
 
 /// The time that each column should take, so that all take about the same, though parts of a scene differ several times
 /// in cost. Work of several kinds comes in parts. The time of a part is unknown until it is done, and taken for the
-/// average of those before. Short columns, whose time a look at the clock would prolong, are timed now and then only;
-/// their time is estimated from work that is counted.
+/// average of those before. Short columns, which looks at the clock would prolong, are timed now and then only; their
+/// time is estimated from work that is counted.
 template <typename Clock = std::chrono::steady_clock>
 class ColumnBudget {
  public:
@@ -28,6 +28,8 @@ class ColumnBudget {
     }
     due_ = 0;
     times_ = 0;
+    const typename Clock::time_point first = Clock::now();
+    look_ = std::min(look_, std::chrono::duration<double>(Clock::now() - first).count());
   }
   /// Sets the number of parts of a kind left from now on, to be done in a number of columns.
   void plan(Kind kind, std::size_t parts, std::size_t columns) {
@@ -44,7 +46,7 @@ class ColumnBudget {
       per_column += tasks.per_column;
     }
     due_ += per_column * static_cast<double>(columns);
-    is_timed_ = per_column > kShort || times_++ % kTimedOfShort == 0;
+    is_timed_ = per_column > std::max(kShort, kLooksOfShort * look_) || times_++ % kTimedOfShort == 0;
     if (is_timed_) last_ = Clock::now();
   }
 
@@ -76,6 +78,7 @@ class ColumnBudget {
 
  private:
   static constexpr double kShort = 2.5e-6;          ///< seconds of a column
+  static constexpr double kLooksOfShort = 150;      ///< the same where looks at the clock take longer than usual
   static constexpr std::size_t kTimedOfShort = 13;  ///< the first of so many, which begin anywhere in a block
   static constexpr double kMostOfUsual = 16;        ///< the longest parts of scans take so much
 
@@ -102,6 +105,7 @@ class ColumnBudget {
   std::array<Tasks, kKinds> tasks_{};
   double due_ = 0;         ///< seconds, of all kinds
   std::size_t times_ = 0;  ///< that short columns came
+  double look_ = 1;        ///< seconds of a look at the clock, at most
   bool is_timed_ = false;
   typename Clock::time_point last_{};
 };
