@@ -40,8 +40,8 @@ TEST(BlockScheduler, BlocksBecomeSmallerTowardsTheEndExpected) {
   };
   using Blocks = std::vector<std::size_t>;
   EXPECT_EQ(blocksOf(300, 64), Blocks({64, 64, 64, 64, 64}));  // nothing is expected yet
-  EXPECT_EQ(blocksOf(300, 64), Blocks({64, 64, 64, 54, 27, 16, 16}));
-  EXPECT_EQ(blocksOf(430, 64), Blocks({64, 64, 64, 54, 27, 16, 16, 64, 64}));  // it went on
+  EXPECT_EQ(blocksOf(300, 64), Blocks({64, 64, 64, 54, 27, 24, 24}));
+  EXPECT_EQ(blocksOf(430, 64), Blocks({64, 64, 64, 54, 27, 24, 24, 64, 64}));  // it went on
   EXPECT_EQ(blocksOf(30, 8), Blocks({8, 8, 8, 8}));
   EXPECT_EQ(blocksOf(30, 8), Blocks({8, 8, 8, 8}));
 }

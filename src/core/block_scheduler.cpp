@@ -10,9 +10,9 @@ namespace {
 /// (benchmarks/suite.sh latency).
 constexpr std::size_t kSpreadOver = 128;
 /// The same shortly before the end.
-constexpr std::size_t kMinSpreadOver = 64;
-/// The smallest blocks: smaller ones leave no less for the end.
-constexpr std::size_t kMinBlock = 16;
+constexpr std::size_t kMinSpreadOver = 80;
+/// The smallest blocks. Smaller ones are read in fewer columns, which take longer, and leave little less for the end.
+constexpr std::size_t kMinBlock = 24;
 /// Work of putting a near return into its voxel, where reading a cell is 1.
 constexpr std::size_t kWorkOfNear = 7;
 
