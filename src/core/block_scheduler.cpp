@@ -49,9 +49,9 @@ void BlockScheduler::workAfter(std::size_t columns, Partition& partition, Disjoi
   }
   budget_.addColumns(columns);
   const std::size_t block = pending_.columns();
-  const std::size_t near_before = partition.nearCount();
+  const std::size_t near_before = partition.notPlacedCount();
   const std::size_t lasers = readPending(columns, partition, subclusters);
-  const std::size_t near_returns = partition.nearCount() - near_before;
+  const std::size_t near_returns = partition.notPlacedCount() - near_before;
   budget_.record(Budget::kReading, lasers, lasers * block + kWorkOfNear * near_returns);
   while (budget_.isBehind()) {
     const bool has_far = partition.farPartsLeft() > 0;

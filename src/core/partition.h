@@ -132,8 +132,8 @@ class alignas(kSeparate) Partition {
   std::size_t linkNearPart(DisjointSets& subclusters) { return VoxelLinker::linkPart(voxels_, subclusters); }
 
   const RangeImage& image() const { return image_; }
-  /// Number of returns that are near.
-  std::size_t nearCount() const { return runs.returns - image_.placed - image_.unplaced.size(); }
+  /// Number of returns that are not in the range image.
+  std::size_t notPlacedCount() const { return runs.returns - image_.placed; }
   /// False if all returns are near.
   bool hasFar() const { return image_.inUse(); }
   /// The work of far returns so far.
