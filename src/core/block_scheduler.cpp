@@ -2,6 +2,9 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "core/block_scheduler.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace lisco {
 
 namespace {

@@ -2,10 +2,8 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 #include "core/column_block.h"
 #include "core/column_budget.h"

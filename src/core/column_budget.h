@@ -28,8 +28,8 @@ class ColumnBudget {
     }
     due_ = 0;
     times_ = 0;
-    const typename Clock::time_point first = Clock::now();
-    look_ = std::min(look_, std::chrono::duration<double>(Clock::now() - first).count());
+    last_ = Clock::now();
+    look_ = std::min(look_, lap());
   }
   /// Sets the number of parts of a kind left from now on, to be done in a number of columns.
   void plan(Kind kind, std::size_t parts, std::size_t columns) {
@@ -63,9 +63,7 @@ class ColumnBudget {
     Tasks& tasks = tasks_[kind];
     double seconds = static_cast<double>(work) * tasks.unit;
     if (is_timed_) {
-      const typename Clock::time_point now = Clock::now();
-      const double lap = std::chrono::duration<double>(now - std::exchange(last_, now)).count();
-      seconds = std::min(lap, kMostOfUsual * std::max(seconds, tasks.part));
+      seconds = std::min(lap(), kMostOfUsual * std::max(seconds, tasks.part));
       tasks.measured.parts += static_cast<double>(parts);
       tasks.measured.work += static_cast<double>(work);
       tasks.measured.seconds += seconds;
@@ -102,6 +100,13 @@ class ColumnBudget {
       unit = measured.seconds / measured.work;
     }
   };
+
+  /// Seconds since last_, which becomes now.
+  double lap() {
+    const typename Clock::time_point now = Clock::now();
+    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+  }
+
   std::array<Tasks, kKinds> tasks_{};
   double due_ = 0;         ///< seconds, of all kinds
   std::size_t times_ = 0;  ///< that short columns came
