@@ -18,36 +18,35 @@ namespace lisco {
 struct FragmentList {
   struct Part {
     const NearReturns* near;
-    std::size_t first;  ///< number of its first return, a multiple of 64
+    std::size_t first;  ///< number of its first return, a multiple of kBlock
   };
-  std::vector<Part> parts;            ///< those with returns
-  std::size_t end = 0;                ///< above all numbers, a multiple of 64
-  std::vector<std::uint64_t> starts;  ///< bit i: return i begins a fragment, or is the end of a part
-  bool are_single = false;            ///< each return is a fragment, as in unordered clouds; starts are not in use
+  /// Returns of a block, which are of one part and lie side by side in memory; a multiple of 64.
+  static constexpr std::size_t kBlock = 1024;
+
+  std::vector<Part> parts;                ///< those with returns
+  std::vector<const NearReturn*> blocks;  ///< the first return of each: finds one by its number alone
+  std::size_t end = 0;                    ///< above all numbers, a multiple of 64
+  std::vector<std::uint64_t> starts;      ///< bit i: return i begins a fragment, or is the end of a part
+  bool are_single = false;                ///< each return is a fragment, as in unordered clouds; starts are not in use
 
   void begin(bool single) {
     parts.clear();
+    blocks.clear();
     end = 0;
     are_single = single;
   }
   /// \return the number of the part's first return
   std::size_t add(const NearReturns& near) {
-    const std::size_t first = end;
+    const std::size_t first = blocks.size() * kBlock;
     if (near.count == 0) return first;
     parts.push_back({&near, first});
-    end += (near.count / 64 + 1) * 64;  // and one more behind the last
+    end = first + (near.count / 64 + 1) * 64;  // and one more behind the last
+    reserveInSteps(blocks, blocks.size() + near.count / kBlock + 1);
+    for (std::size_t i = 0; i <= near.count; i += kBlock) blocks.push_back(near.returns.data() + i);
     return first;
   }
-  const Part& partOf(std::size_t number) const {
-    std::size_t part = parts.size() - 1;
-    while (number < parts[part].first) --part;
-    return parts[part];
-  }
   /// The first return of a fragment. Up to kReadBehind may be read behind its last.
-  const NearReturn* returnsOf(std::size_t number) const {
-    const Part& part = partOf(number);
-    return part.near->returns.data() + (number - part.first);
-  }
+  const NearReturn* returnsOf(std::size_t number) const { return blocks[number / kBlock] + number % kBlock; }
   /// The number of returns of the fragment that begins with a return; not of single ones.
   std::size_t sizeOf(std::size_t number) const { return endOf(number) - number; }
   /// The end of that fragment.
