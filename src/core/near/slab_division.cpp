@@ -53,18 +53,19 @@ void SlabDivision::divide(const FragmentList& fragments, const std::vector<Box>&
   const std::size_t parts = fragments.parts.size();
   assign(numbering.axis[2], boxes);
   shares_.begin(parts);
-  constexpr unsigned kGroupBits = 10;
-  constexpr std::size_t kGroups = std::size_t{1} << kGroupBits;  // of planes
+  constexpr unsigned kMaxGroupBits = 10;
   const unsigned plane_bits = numbering.bits - numbering.planeBits();
-  const unsigned shift = items.plane_shift + (plane_bits > kGroupBits ? plane_bits - kGroupBits : 0);
-  histogram_.assign(parts * kGroups, {0, 0});
+  const unsigned group_bits = std::min(plane_bits, kMaxGroupBits);
+  const unsigned shift = items.plane_shift + plane_bits - group_bits;
+  const std::size_t groups = std::size_t{1} << group_bits;  // of planes
+  histogram_.assign(parts * groups, {0, 0});
   const std::uint64_t number_mask = items.numberMask();
   inParallel(parts, [&](std::size_t part) {
     const FragmentList::Part& own = fragments.parts[part];
     const std::uint64_t* const own_items = &items.all[own.first];
     std::size_t end = own.first + own.near->count;
     for (std::size_t i = items.part_sizes[part]; i-- > 0;) {
-      PlaneGroup& planes = histogram_[part * kGroups + (own_items[i] >> shift)];
+      PlaneGroup& planes = histogram_[part * groups + (own_items[i] >> shift)];
       const std::size_t number = own_items[i] & number_mask;
       ++planes.fragments;
       planes.work += static_cast<std::uint32_t>(kWorkOfFragment + end - number);
@@ -79,11 +80,11 @@ void SlabDivision::divide(const FragmentList& fragments, const std::vector<Box>&
   std::size_t begin = 0;
   double work = 0;
   double share = all * shares_.of(thread_of_[0]);
-  for (std::size_t group = 0; group < kGroups; ++group) {
+  for (std::size_t group = 0; group < groups; ++group) {
     const std::uint32_t end = sum;
     const double before = work;
     for (std::size_t part = 0; part < parts; ++part) {
-      PlaneGroup& planes = histogram_[part * kGroups + group];
+      PlaneGroup& planes = histogram_[part * groups + group];
       work += planes.work;
       sum += std::exchange(planes.fragments, sum);
     }
@@ -98,7 +99,7 @@ void SlabDivision::divide(const FragmentList& fragments, const std::vector<Box>&
   inParallel(parts, [&](std::size_t part) {
     const std::uint64_t* const own_items = &items.all[fragments.parts[part].first];
     for (std::size_t i = 0; i < items.part_sizes[part]; ++i)
-      items.scratch[histogram_[part * kGroups + (own_items[i] >> shift)].fragments++] = own_items[i];
+      items.scratch[histogram_[part * groups + (own_items[i] >> shift)].fragments++] = own_items[i];
   });
   std::swap(items.all, items.scratch);
 }
