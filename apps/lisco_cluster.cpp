@@ -3,6 +3,7 @@
 //
 // Clusters scan files and writes the clusters as tables, clouds and pictures.
 #include <algorithm>
+#include <condition_variable>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -122,6 +123,14 @@ void printJson(const ClusteredScan& scan, const fs::path& file, const StepTimes&
 /// Part of the tolerance above which the rounding of coordinates is noted, such as that of map coordinates.
 constexpr double kMaxRounding = 0.25;
 
+/// \return empty if the tolerance is well above the rounding of coordinates
+std::string roundingNote(const ClusteredScan& scan) {
+  const auto rounding = static_cast<double>(roundingOf(*scan.cloud, scan.returns.clustered));
+  if (rounding <= kMaxRounding * scan.tolerance) return {};
+  return formatted("coordinates as large as these are rounded to multiples of %g m: subtract an offset first",
+                   rounding);
+}
+
 /// Prints the result for one scan.
 void printSummary(const ClusteredScan& scan, const StepTimes& times, const fs::path& folder) {
   const Cloud& cloud = *scan.cloud;
@@ -137,8 +146,11 @@ void printSummary(const ClusteredScan& scan, const StepTimes& times, const fs::p
   else
     std::printf("  scan      unorganized, %zu points, %zu returns\n", cloud.size(), returns);
   std::fputs(describe(scan.returns, scan.ground).c_str(), stdout);
-  std::printf("  clusters  %zu of at least %u returns within %g m of each other; %zu returns are noise\n",
-              scan.clusters.size(), scan.min_size, scan.tolerance, clustered - in_clusters);
+  const std::string sizes =
+      scan.max_size ? formatted("%u to %u", scan.min_size, *scan.max_size) : formatted("at least %u", scan.min_size);
+  std::printf("  clusters  %zu of %s returns within %g m of each other; %zu returns are noise%s\n",
+              scan.clusters.size(), sizes.c_str(), scan.tolerance, clustered - in_clusters,
+              scan.max_size ? " or in larger ones" : "");
   if (!scan.clusters.empty())  // sorted by size
     std::printf("  sizes     largest %zu, median %zu, smallest %zu\n", scan.clusters.front().indices.size(),
                 scan.clusters[scan.clusters.size() / 2].indices.size(), scan.clusters.back().indices.size());
@@ -146,11 +158,7 @@ void printSummary(const ClusteredScan& scan, const StepTimes& times, const fs::p
     std::printf(
         "  note      one cluster has more than half of these returns: is it the ground (see --ground), or is the "
         "tolerance too large?\n");
-  const auto rounding = static_cast<double>(roundingOf(cloud, scan.returns.clustered));
-  if (rounding > kMaxRounding * scan.tolerance)
-    std::printf(
-        "  note      coordinates as large as these are rounded to multiples of %g m: subtract an offset first\n",
-        rounding);
+  if (const std::string note = roundingNote(scan); !note.empty()) std::printf("  note      %s\n", note.c_str());
   std::printf("  time      read %.1f ms, ground %.2f ms, cluster %.2f ms", times.read, times.ground, times.cluster);
   if (!folder.empty()) std::printf(", write %.1f ms\n  written   %s", times.write, folder.c_str());
   std::printf("\n");
@@ -275,11 +283,25 @@ class Workers {
         const std::lock_guard<std::mutex> lock(terminal_);
         ++done_;
       } catch (const std::exception& error) {
+        awaitTurn(number);
         say(error.what());
         const std::lock_guard<std::mutex> lock(terminal_);
         all_well_ = false;
       }
+      endTurn();
     }
+  }
+
+  /// Waits until all scans before this one are reported: results come in the order of the inputs.
+  void awaitTurn(std::size_t number) {
+    std::unique_lock<std::mutex> lock(terminal_);
+    turn_ended_.wait(lock, [&] { return reported_ == number; });
+  }
+
+  void endTurn() {
+    const std::lock_guard<std::mutex> lock(terminal_);
+    ++reported_;
+    turn_ended_.notify_all();
   }
 
   void say(const std::string& line) {
@@ -300,6 +322,7 @@ class Workers {
     scan.note = input.note;
     scan.tolerance = options_.clustering.tolerance;
     scan.min_size = options_.clustering.min_size;
+    scan.max_size = options_.clustering.maxSize();
     scan.ground = options_.scan.ground.of(item.file.stem().string());
     scan.cloud = input.clustered();
     scan.fields = input.fields;
@@ -329,6 +352,8 @@ class Workers {
     if (timeline_) viewed = encodeViewScan(viewScanOf(scan));
     const auto written = Clock::now();
 
+    awaitTurn(number);
+    if (const std::string note = options_.json ? roundingNote(scan) : ""; !note.empty()) say(scan.name + ": " + note);
     const std::lock_guard<std::mutex> lock(terminal_);
     all_well_ = all_well_ && left_out.empty();
     if (labelled) bag_->write(*labelled);
@@ -349,6 +374,8 @@ class Workers {
   bool is_over_ = false;
   const ResultFolders folders_;
   std::mutex terminal_;  ///< guards the terminal and the members after it
+  std::condition_variable turn_ended_;
+  std::size_t reported_ = 0;  ///< scans
   WorkProgress progress_;
   std::optional<ResultBag> bag_;
   std::optional<ViewTimeline> timeline_;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct ClusteredScan {
   std::string name;                              ///< of the input, for titles
   double tolerance = 0;                          ///< metres
   unsigned min_size = 0;                         ///< of clusters
+  std::optional<unsigned> max_size;              ///< the same, if there is a limit
   GroundChoice ground;                           ///< as asked for
   Cloud::ConstPtr cloud;                         ///< as read
   pcl::PCLPointCloud2 fields;                    ///< all fields of the input; empty if x, y, z are all

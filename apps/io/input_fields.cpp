@@ -10,6 +10,7 @@
 #include <pcl/io/pcd_io.h>
 
 #include "io/formats.h"
+#include "io/text.h"
 
 namespace lisco_apps {
 namespace {
@@ -46,9 +47,15 @@ pcl::PCLPointCloud2 inputFieldsOf(const ClusteredScan& scan, const std::vector<N
 }
 
 void writePcd(const pcl::PCLPointCloud2& points, const ClusteredScan& scan, const fs::path& file) {
-  // PCL's writer would append bytes up to a whole page.
-  const std::string header =
-      pcl::PCDWriter().generateHeaderBinary(points, scan.cloud->sensor_origin_, scan.cloud->sensor_orientation_);
+  // PCL's writer would append bytes up to a whole page, and writes six digits of the viewpoint.
+  const Eigen::Vector4f& origin = scan.cloud->sensor_origin_;
+  const Eigen::Quaternionf& turn = scan.cloud->sensor_orientation_;
+  std::string header = pcl::PCDWriter().generateHeaderBinary(points, origin, turn);
+  const std::size_t begin = header.find("VIEWPOINT ");
+  const auto wide = [](float value) { return static_cast<double>(value); };
+  header.replace(begin, header.find('\n', begin) - begin,
+                 formatted("VIEWPOINT %.9g %.9g %.9g %.9g %.9g %.9g %.9g", wide(origin[0]), wide(origin[1]),
+                           wide(origin[2]), wide(turn.w()), wide(turn.x()), wide(turn.y()), wide(turn.z())));
   writeValues(file, header + "DATA binary\n", points.data);
 }
 

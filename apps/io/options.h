@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -59,13 +60,16 @@ bool readCommandLine(int argc, char** argv, const char* program, boost::program_
 
 /// The options --tolerance, --min-size and --max-size.
 struct ClusterOptions {
+  static constexpr unsigned kAnySize = std::numeric_limits<int>::max();
   double tolerance = 0;  ///< metres
   unsigned min_size = 10;
-  unsigned max_size = std::numeric_limits<int>::max();
+  unsigned max_size = kAnySize;
 
   void addTo(boost::program_options::options_description& shown);
   /// To be called once the command line has been read.
   void check() const;
+  /// \return nothing if there is no limit
+  std::optional<unsigned> maxSize() const { return max_size == kAnySize ? std::nullopt : std::optional(max_size); }
 };
 
 /// Values of an option: for all inputs, or for each by its name (the file name without ending).

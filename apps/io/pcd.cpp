@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <map>
 
@@ -14,7 +16,8 @@ namespace lisco_apps {
 namespace {
 
 constexpr double kMaxPointBytes = 1e6;
-constexpr double kMaxCompression = 300;  ///< points, or bytes of data, that a byte of compressed data may hold
+constexpr std::size_t kViewpointValues = 7;  ///< a position and a quaternion
+constexpr double kMaxCompression = 300;      ///< points, or bytes of data, that a byte of compressed data may hold
 
 /// The number of values in a line of ASCII data.
 std::size_t valuesIn(std::string_view line) {
@@ -29,8 +32,14 @@ std::size_t valuesIn(std::string_view line) {
   }
 }
 
+bool isFiniteFloat(const std::string& word) {
+  char* end = nullptr;
+  return std::isfinite(std::strtof(word.c_str(), &end)) && *end == '\0';
+}
+
 /// Checks a PCD file before PCL reads it: PCL 1.13's reader crashes without a header, allocates all the memory that a
-/// wrong one promises, and reads beyond lines and compressed data that are too short.
+/// wrong one promises, leaves a viewpoint that is no number to chance, and reads beyond lines and compressed data that
+/// are too short.
 void checkHeader(const fs::path& file, const fs::path& content) {
   std::ifstream stream(content, std::ios::binary);
   const auto file_size = static_cast<double>(fs::file_size(content));
@@ -60,6 +69,10 @@ void checkHeader(const fs::path& file, const fs::path& content) {
   if (counts.empty()) counts.assign(names.size(), "1");
   if (sizes.size() != names.size() || types.size() != names.size() || counts.size() != names.size())
     fail(file, "is damaged: its header does not describe each of its fields");
+  const std::vector<std::string>& viewpoint = header["VIEWPOINT"];
+  if (!viewpoint.empty() &&
+      (viewpoint.size() != kViewpointValues || !std::all_of(viewpoint.begin(), viewpoint.end(), isFiniteFloat)))
+    fail(file, "is damaged: its header has a VIEWPOINT that is not seven numbers");
   const auto number = [&](const char* key, double otherwise) {
     return header.count(key) != 0 ? headerCount(header[key], 0) : otherwise;
   };

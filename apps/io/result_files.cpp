@@ -158,17 +158,19 @@ nlohmann::ordered_json jsonOf(const ClusteredScan& scan) {
     addFeatures(one, features);
     clusters.push_back(std::move(one));
   }
-  return {{"scan", scan.name},
-          {"rows", scan.cloud->height},
-          {"columns", scan.cloud->width},
-          {"returns", scan.returns.returns},
-          {"ignored", scan.returns.ignored},
-          {"ground", scan.returns.ground.size()},
-          {"clustered", scan.returns.clustered.size()},
-          {"noise", scan.returns.clustered.size() - in_clusters},
-          {"tolerance", scan.tolerance},
-          {"min_size", scan.min_size},
-          {"clusters", std::move(clusters)}};
+  Json json{{"scan", scan.name},
+            {"rows", scan.cloud->height},
+            {"columns", scan.cloud->width},
+            {"returns", scan.returns.returns},
+            {"ignored", scan.returns.ignored},
+            {"ground", scan.returns.ground.size()},
+            {"clustered", scan.returns.clustered.size()},
+            {"noise", scan.returns.clustered.size() - in_clusters},
+            {"tolerance", scan.tolerance},
+            {"min_size", scan.min_size}};
+  if (scan.max_size) json["max_size"] = *scan.max_size;
+  json["clusters"] = std::move(clusters);
+  return json;
 }
 
 }  // namespace lisco_apps

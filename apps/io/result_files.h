@@ -40,7 +40,7 @@ ResultKinds resultKindsOf(const std::string& text);
 std::string writeResults(const ClusteredScan& scan, const fs::path& folder, const ResultKinds& kinds);
 
 /// The scan and its clusters as an object of JSON: scan, rows, columns, returns, ignored, ground, clustered, tolerance,
-/// min_size, noise, clusters (each with id, see addFeatures ()).
+/// min_size, max_size (if there is a limit), noise, clusters (each with id, see addFeatures ()).
 nlohmann::ordered_json jsonOf(const ClusteredScan& scan);
 
 }  // namespace lisco_apps

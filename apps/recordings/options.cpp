@@ -56,7 +56,7 @@ void RecordingOptions::addTo(boost::program_options::options_description& shown)
      "of a recording: begin S seconds after its first message or packet (default 0)")
     ("to", numberOption("S", "--to", span.to), "of a recording: end S seconds after its first message or packet")
     ("every", countOption("--every", every, 1),
-     "of a recording: take the first of every N messages or rotations (default 1)");
+     "take the first of every N messages, rotations or files of clouds (default 1)");
   // clang-format on
 }
 

@@ -20,8 +20,9 @@ struct RecordingOptions {
   void addTo(boost::program_options::options_description& shown);
   /// \throws std::runtime_error with one line
   void check() const;
+  bool isSpanGiven() const { return span.from > 0 || span.to < 1e300; }
   /// Whether any of them was given.
-  bool areGiven() const { return !topic.empty() || every != 1 || span.from > 0 || span.to < 1e300; }
+  bool areGiven() const { return !topic.empty() || every != 1 || isSpanGiven(); }
 };
 
 /// Adds the options that name a sensor: --sensor, --calibration, --metadata, --return and

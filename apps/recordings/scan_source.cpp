@@ -153,8 +153,8 @@ class ScanSource::Messages : public Sequence {
 /// firing. Holds one or two rotations at a time.
 class ScanSource::Turns : public Sequence {
  public:
-  Turns(fs::path file, PacketInput input, unsigned every)
-      : file_(std::move(file)), input_(std::move(input)), every_(every), cutter_(input_.decoder->rotationStart()) {}
+  Turns(fs::path file, PacketInput input, const RecordingOptions& part)
+      : file_(std::move(file)), input_(std::move(input)), part_(part), cutter_(input_.decoder->rotationStart()) {}
 
   std::optional<ScanItem> next() override {
     const Decoder::Visitor visit = [this](const Column& column) { add(column); };
@@ -172,7 +172,9 @@ class ScanSource::Turns : public Sequence {
     }
     if (ended_.empty()) {
       if (!input_.source->error().empty()) throw std::runtime_error(input_.source->error());
-      if (rotations_ == 0) fail(file_, "holds no data packet of the sensor (" + input_.decoder->name() + ")");
+      if (rotations_ == 0)
+        fail(file_, "holds no data packet of the sensor (" + input_.decoder->name() + ")" +
+                        (part_.isSpanGiven() ? " between --from and --to" : ""));
       return std::nullopt;
     }
     ScanItem item = std::move(ended_.front());
@@ -196,7 +198,7 @@ class ScanSource::Turns : public Sequence {
 
   void end() {
     Rotation ended = std::exchange(rotation_, Rotation());
-    if (ended.cells.empty() || rotations_++ % every_ != 0) return;
+    if (ended.cells.empty() || rotations_++ % part_.every != 0) return;
     ScanItem item = itemOf(file_, rotations_, 1000 * time_us_);
     item.of_packets = true;
     item.read = [rotation = std::move(ended), lasers = input_.decoder->lasers()] { return scanOf(rotation, lasers); };
@@ -205,7 +207,7 @@ class ScanSource::Turns : public Sequence {
 
   fs::path file_;
   PacketInput input_;
-  unsigned every_;
+  RecordingOptions part_;
   RotationCutter cutter_;
   bool is_over_ = false;
   std::uint64_t rotations_ = 0;                    ///< that have ended
@@ -276,7 +278,7 @@ std::unique_ptr<ScanSource::Sequence> ScanSource::open(const fs::path& file) {
   }
   PacketInput packets = openPackets(file, part, options_.decoder, options_.port, is_interrupted_);
   for (const std::string& note : packets.notes) note_(file.string() + ": " + note);
-  return std::make_unique<Turns>(file, std::move(packets), part.every);
+  return std::make_unique<Turns>(file, std::move(packets), part);
 }
 
 std::optional<ScanItem> ScanSource::next() {
@@ -290,6 +292,10 @@ std::optional<ScanItem> ScanSource::next() {
     ScanItem item;
     try {
       if (!isRecording(file) && !isCapture(file)) {
+        if (scan_files_++ % options_.recording.every != 0) {
+          ++at_;
+          continue;
+        }
         item.name = file.filename().string();
         item.file = file;
         item.read = [file, options = options_.files] { return readScan(file, options); };

@@ -82,6 +82,7 @@ class ScanSource {
   std::function<void(const std::string&)> note_ = [](const std::string&) {};
   std::vector<std::string> failures_;  ///< of expanding the inputs
   std::vector<fs::path> files_;
+  std::size_t scan_files_ = 0;  ///< passed
   std::size_t at_ = 0;
   std::unique_ptr<Sequence> open_;
 };

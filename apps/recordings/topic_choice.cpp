@@ -70,7 +70,8 @@ std::size_t chooseTopic(const Recording& recording, const fs::path& file, const 
     if (lidar != fitting.begin()) fitting.erase(lidar, fitting.end());
   }
   if (fitting.empty())
-    refuse(std::string("holds no messages of clouds or packets that are known") +
+    refuse(std::string(wants_packets ? "holds no packets that are known, as --sensor asks for"
+                                     : "holds no messages of clouds or packets that are known") +
            (recording.error().empty() ? "" : " before it breaks off"));
   if (fitting.size() > 1) refuse("has several topics that fit: choose one by --topic");
   return fitting.front();

@@ -706,6 +706,68 @@ TEST_F(LiscoCluster, GivesEqualResultsOnAnyNumberOfThreads) {
   }
 }
 
+TEST_F(LiscoCluster, ReportsScansInTheOrderOfTheInputsOnAnyNumberOfThreads) {
+  // The first takes longer than the others.
+  const std::string header = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
+  write("a.pcd",
+        header + "WIDTH 300000\nHEIGHT 1\nPOINTS 300000\nDATA binary\n" + floats(std::vector<float>(900000U, 1.5F)));
+  std::string inputs = "a.pcd";
+  for (const char* name : {"b.pcd", "broken.pcd", "c.pcd", "d.pcd", "e.pcd"}) {
+    write(name, name[1] == 'r' ? "no cloud" : twoWalls());
+    inputs += std::string(" ") + name;
+  }
+  const auto scansIn = [](const Outcome& outcome) {
+    std::string scans;
+    std::istringstream lines(outcome.out);
+    for (std::string line; std::getline(lines, line);) scans += nlohmann::json::parse(line)["scan"].get<std::string>();
+    return scans;
+  };
+  std::string bag;
+  for (const char* threads : {"1", "4"}) {
+    const Outcome outcome = run(inputs + " --tolerance 0.3 --json --bag out.mcap --threads " + threads);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_EQ(scansIn(outcome), "a.pcdb.pcdc.pcdd.pcde.pcd") << threads;
+    if (bag.empty()) bag = textOf(folder_ / "out.mcap");
+    EXPECT_EQ(textOf(folder_ / "out.mcap"), bag) << threads;
+  }
+}
+
+TEST_F(LiscoCluster, TakesTheFirstOfEveryFewFiles) {
+  for (const char* name : {"a.pcd", "b.pcd", "c.pcd", "d.pcd", "e.pcd"}) write(name, twoWalls());
+  const Outcome outcome = run(". --tolerance 0.3 --every 2");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* name : {"a", "b", "c", "d", "e"})
+    EXPECT_EQ(outcome.out.find(std::string(name) + ".pcd\n") != std::string::npos, (name[0] - 'a') % 2 == 0) << name;
+}
+
+TEST_F(LiscoCluster, SaysWhichSizesAreWanted) {
+  write("walls.pcd", twoWalls());
+  const Outcome outcome = run("walls.pcd --tolerance 0.3 --ground none --max-size 20");
+  EXPECT_NE(outcome.out.find(" of 10 to 20 returns within 0.3 m of each other; "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find(" returns are noise or in larger ones\n"), std::string::npos) << outcome.out;
+  const auto json = [this](const std::string& options) {
+    return nlohmann::json::parse(run("walls.pcd --tolerance 0.3 --json" + options).out);
+  };
+  EXPECT_EQ(json(" --max-size 20")["max_size"], 20);
+  EXPECT_FALSE(json("").contains("max_size"));
+}
+
+TEST_F(LiscoCluster, KeepsAllDigitsOfTheViewpoint) {
+  const std::string viewpoint = "VIEWPOINT 500123.469 5412345.5 0.123456791 0.707106769 0 0 -0.707106769\n";
+  write("map.pcd", boost::replace_all_copy(twoWalls(), "VIEWPOINT 0 0 0 1 0 0 0\n", viewpoint));
+  ASSERT_EQ(run("map.pcd --tolerance 0.3 -o results --write labels").status, 0);
+  const std::string labels = textOf(folder_ / "results/labels.pcd");
+  EXPECT_NE(labels.find(viewpoint), std::string::npos) << labels.substr(0, 300);
+}
+
+TEST_F(LiscoCluster, RefusesAViewpointThatIsNotSevenNumbers) {
+  for (const char* wrong : {"nan nan nan 1 0 0 0", "1 2 x 1 0 0 0", "1 2 1e99 1 0 0 0", "0 0 0", "0 0 0 1 0 0 0 0"}) {
+    write("walls.pcd",
+          boost::replace_all_copy(twoWalls(), "VIEWPOINT 0 0 0 1 0 0 0", std::string("VIEWPOINT ") + wrong));
+    expectRefusal("walls.pcd --tolerance 0.3", {"walls.pcd", "VIEWPOINT"});
+  }
+}
+
 TEST_F(LiscoCluster, ScanWithoutAnyReturnHasNoClusters) {
   write("none.pcd",
         "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 2\nVIEWPOINT 0 0 0 "
