@@ -19,9 +19,11 @@
 #include "column_streams.h"
 #include "core/parallel.h"
 #include "engine.h"
+#include "ground_scans.h"
 #include "interruptions.h"
 #include "lisco/column_clusterer.h"
 #include "lisco/endless_clusterer.h"
+#include "lisco/ground_filter.h"
 #include "lisco/window_clusterer.h"
 #include "oracle.h"
 #include "pair_scans.h"
@@ -253,6 +255,55 @@ TEST(ExceptionsCampaign, FailedAssignmentsChangeNothing) {
                          [&](std::size_t laser, std::size_t column) { return rotation.scan.at(laser, column); });
     clusterer.update();
   });
+}
+
+// --- The ground -----------------------------------------------------------------------------------------------------
+
+TEST(ExceptionsCampaign, GroundFilterSurvivesRefusedMemory) {
+  namespace ground = ground_scans;
+  const auto floor = [](double azimuth, double slope) { return ground::meetsPlane(azimuth, slope, 1.8); };
+  const ground::Scan few = ground::scanOf(8, 64, floor), many = ground::scanOf(48, 200, floor);
+  const auto filterScan = [](lisco::GroundFilter& filter, const ground::Scan& scan) {
+    std::vector<std::uint8_t> found(scan.cells.size());
+    filter.filterScan(
+        lisco::GroundParameters(), scan.columns, scan.lasers,
+        [&](std::size_t laser, std::size_t column) { return scan.cells[laser * scan.columns + column]; }, found.data());
+    return found;
+  };
+  lisco::GroundFilter fresh;
+  const std::vector<std::uint8_t> right = filterScan(fresh, many);
+  ASSERT_GT(std::count(right.begin(), right.end(), 1), 1000);
+  const std::vector<lisco::Return> column(48, lisco::Return{5, 0, -1.8F, 0});
+  const auto visit = [](std::size_t, const std::uint8_t*, std::size_t) {};
+  for (const bool is_whole : {false, true}) {
+    bool happened = true;
+    std::size_t refused = 0;
+    while (happened) {
+      SCOPED_TRACE("allocation " + std::to_string(++refused));
+      lisco::GroundFilter filter;
+      filterScan(filter, few);
+      filter.begin(lisco::GroundParameters(), 8);
+      bool thrown = false;
+      {
+        const RefusedAllocation refusal(refused);
+        try {
+          if (is_whole)
+            filterScan(filter, many);
+          else
+            filter.begin(lisco::GroundParameters(), 48);
+        } catch (const std::bad_alloc&) {
+          thrown = true;
+        }
+        happened = refusal.happened();
+      }
+      if (thrown && !is_whole) {
+        EXPECT_THROW(filter.addColumn(column.data(), 48, visit), std::logic_error);
+      }
+      EXPECT_EQ(filterScan(filter, many), right);
+      if (HasFailure()) return;
+    }
+    EXPECT_GT(refused, 20U);
+  }
 }
 
 // --- Sliding windows ------------------------------------------------------------------------------------------------

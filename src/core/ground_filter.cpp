@@ -86,6 +86,7 @@ void check(const GroundParameters& parameters) {
 
 void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t lasers) {
   check(parameters);
+  begun_ = false;  // until all memory is there
   parameters_ = parameters;
   const float max_slope = maxSlope(parameters);
   lasers_ = lasers;
@@ -155,6 +156,7 @@ void GroundFilter::State::addAll(std::size_t columns, const CellSource& cells, s
   constexpr std::size_t kRead = 128;
   static_assert(kRead % Block::kColumns == 0, "blocks are read as a whole");
   std::array<std::uint32_t, kRead> source_indices;
+  begun_ = false;
   received_.resize(lasers_, kRead);
   std::fill_n(ground, columns * lasers_, std::uint8_t{0});
   for (std::size_t first = 0; first < columns; first += kRead) {
@@ -169,7 +171,6 @@ void GroundFilter::State::addAll(std::size_t columns, const CellSource& cells, s
       decide(std::min(Block::kColumns, count - column), ground + first + column, columns);
     }
   }
-  begun_ = false;
 }
 
 /// Measures a block of the columns received, and follows the ground along its first rows.

@@ -37,15 +37,14 @@ void setStart(const Plane& plane, float slope, GroundReached& start) {
 }  // namespace
 
 void Follower::begin(std::size_t lasers, float max_slope) {
-  if (sectors_.size() < lasers) {
-    starts_.resize(lasers);
-    followed_.resize(2 * lasers);
-    passed_.resize(lasers);
-    sectors_.resize(lasers);
-    with_ground_.resize(lasers);
-    scattered_.resize(lasers);
-    found_.resize(lasers + 1);
-  }
+  const auto grow = [](auto& elements, std::size_t size) { elements.resize(std::max(elements.size(), size)); };
+  grow(starts_, lasers);
+  grow(followed_, 2 * lasers);
+  grow(passed_, lasers);
+  grow(sectors_, lasers);
+  grow(with_ground_, lasers);
+  grow(scattered_, lasers);
+  grow(found_, lasers + 1);
   reports_.begin(lasers);
   max_slope_ = max_slope;
 }
@@ -100,7 +99,7 @@ void Follower::prepare(const RowOrder& order, const Plane& plane, GroundMap& map
   std::int32_t prepared = -1;
   for (std::size_t i = 0; i < size; ++i) {
     if (rows[i].down == RowOrder::kNone) {
-      starts_[i] = {{}, starts_.size() + i, 0};
+      starts_[i] = {{}, followed_.size() / 2 + i, 0};
       starts_[i].limit.fill(plane.height + kStartLimit);
       setStart(plane, plane.slopeTowards(order.directionOf(rows[i].row)), followed_[starts_[i].followed]);
     }

@@ -43,7 +43,7 @@ class Follower {
   // By position in the order.
   std::vector<std::uint32_t> sectors_;   // of the map
   std::vector<Passed> starts_;           // of rows with none below: what is known before
-  std::vector<GroundReached> followed_;  // element i: of row i; element lasers + i: before row i, if it has none below
+  std::vector<GroundReached> followed_;  // element i: of row i; size () / 2 + i: before row i, if none is below
   std::vector<Passed> passed_;
   std::vector<Found> found_;  // element i + 1: of row i; element 0: none
   std::vector<std::int32_t> with_ground_, scattered_;
