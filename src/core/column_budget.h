@@ -27,7 +27,7 @@ class ColumnBudget {
       tasks.per_column = tasks.due = 0;
     }
     due_ = 0;
-    times_ = 0;
+    short_count_ = 0;
     last_ = Clock::now();
     look_ = std::min(look_, lap());
   }
@@ -46,7 +46,7 @@ class ColumnBudget {
       per_column += tasks.per_column;
     }
     due_ += per_column * static_cast<double>(columns);
-    is_timed_ = per_column > std::max(kShort, kLooksOfShort * look_) || times_++ % kTimedOfShort == 0;
+    is_timed_ = per_column > std::max(kShort, kLooksOfShort * look_) || short_count_++ % kTimedOfShort == 0;
     if (is_timed_) last_ = Clock::now();
   }
 
@@ -75,10 +75,10 @@ class ColumnBudget {
   void drop() { due_ = std::min(due_, 0.0); }
 
  private:
-  static constexpr double kShort = 2.5e-6;          ///< seconds of a column
-  static constexpr double kLooksOfShort = 150;      ///< the same where looks at the clock take longer than usual
-  static constexpr std::size_t kTimedOfShort = 13;  ///< the first of so many, which begin anywhere in a block
-  static constexpr double kMostOfUsual = 16;        ///< the longest parts of scans take so much
+  static constexpr double kShort = 2.5e-6;          ///< seconds of a column up to which it is short
+  static constexpr double kLooksOfShort = 150;      ///< the same in looks at the clock, where these take long
+  static constexpr std::size_t kTimedOfShort = 13;  ///< one in so many is timed: at no fixed place of a block
+  static constexpr double kMostOfUsual = 16;        ///< what a record counts at most: as much as scans' longest parts
 
   struct Measured {
     double parts = 0;
@@ -108,9 +108,9 @@ class ColumnBudget {
   }
 
   std::array<Tasks, kKinds> tasks_{};
-  double due_ = 0;         ///< seconds, of all kinds
-  std::size_t times_ = 0;  ///< that short columns came
-  double look_ = 1;        ///< seconds of a look at the clock, at most
+  double due_ = 0;               ///< seconds, of all kinds
+  std::size_t short_count_ = 0;  ///< calls of addColumns () for short ones
+  double look_ = 1;              ///< seconds of a look at the clock, at most
   bool is_timed_ = false;
   typename Clock::time_point last_{};
 };

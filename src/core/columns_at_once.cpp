@@ -31,8 +31,8 @@ constexpr double kMostInRotation = 1.1;
 constexpr double kMostInTrial = 2.4;
 /// The same above which the trial ends before its last column. More: clouds without range images wait for it.
 constexpr double kClearlyTooMuch = 6.0;
-/// SensorHints::drift from which on returns leave their expected bins too often: of clouds that are motion-compensated.
-/// The first columns do not show it, as the motion grows from there. At rest 0.05; in motion 1 to 20 (recordings).
+/// SensorHints::drift above which returns leave their expected bins too often, as in motion-compensated clouds. The
+/// first columns do not show it, as the motion grows from there. At rest 0.05; in motion 1 to 20 (recordings).
 constexpr float kMaxDrift = 1.25F;
 /// What the drift may exceed that by for a slope of 1 of the sensor's horizon: azimuths about another axis grow
 /// unevenly, but no more so later in the turn. At a slope of 0.27 the drift is 1.4 to 2.6.
@@ -59,7 +59,8 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
   if (may_have_far && !far_history_.begin({columns, lasers, sensor.steps_per_turn, parameters_.tolerance})) {
     far_ = Far::kLeftOut;
   } else if (may_have_far) {
-    if (std::exchange(is_sorter_grown_, false)) sorter_ = VoxelSorter();
+    if (std::exchange(is_sorter_grown_, false))
+      sorter_ = VoxelSorter();  // gives back what images need: readUnordered ()
     if (readFarAndNear(lasers, cells)) return;
   }
   if (UnorderedReturns::isUnordered(columns, lasers, cells, tolerance_))
@@ -68,7 +69,7 @@ void ColumnClusterer::Rotation::receiveAtOnce(std::size_t columns, std::size_t l
     readNear(lasers, cells);
 }
 
-/// Calls read (i) for each part by a thread of its own, and records its time, which sets its later shares.
+/// Calls read (i) for each part by a thread of its own. The times of several set their later shares.
 template <typename Read>
 void ColumnClusterer::Rotation::readInParallel(Read&& read) {
   inParallel(partition_count_, [&](std::size_t i) {
@@ -139,7 +140,7 @@ void ColumnClusterer::Rotation::readNear(std::size_t lasers, const CellSource& c
 }
 
 /// The same without runs. Where range images are left out, the partitions' memory is given back: an image, runs and
-/// sorted returns together take more than 64 bytes per cell. So is the sorter's when images are tried again.
+/// sorted returns together take more than 64 bytes per cell.
 void ColumnClusterer::Rotation::readUnordered(std::size_t lasers, const CellSource& cells) {
   partitions_.front().takeBackImageMemory();
   partitions_.front().leaveLargerMemory(unordered_.memory());  // which the trial uses

@@ -10,8 +10,8 @@
 
 namespace lisco {
 
-/// The shares of threads in work that comes again with each rotation: equal at first, then such that all take as long.
-/// For equal counted work, threads take up to a third longer or shorter: caches and branches differ.
+/// The shares of threads in work that comes again with each rotation: equal at first, then such that all take equally
+/// long. For equal counted work, threads take up to a third longer or shorter: caches and branches differ.
 class WorkShares {
  public:
   /// Begins a rotation. Shares are kept from one to the next if there are as many threads.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/far/constants.h"
 #include "core/far/range_image.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -89,11 +88,12 @@ class Placement {
     }
   }
 
-  /// The bit of the first of some returns whose azimuth is not that of its expected bin; 0 if there is none.
+  /// The bit of the first of some returns that does not belong into its expected bin: that is outside the image, or not
+  /// the one of its azimuth; 0 if there is none.
   ColumnBits firstOffBin(ColumnBits left) const {
-    // Bins in the margins hold no returns, but have a cosine and a sine.
-    constexpr auto kInMargin = static_cast<std::int64_t>(RangeImage::kMargin) - 1;
-    if (first_bin_ < -kInMargin || first_bin_ > bins() - 1 + kInMargin) return left & -left;
+    // Bins in the margins hold no returns, but have a cosine and a sine, which a block may need.
+    constexpr auto kMostOutside = static_cast<std::int64_t>(RangeImage::kMargin) - 1;
+    if (first_bin_ < -kMostOutside || first_bin_ > bins() - 1 + kMostOutside) return left & -left;
     const ColumnBits outside = left & ~insideOf();
     const ColumnBits off = firstOffAzimuth(outside != 0 ? left & before(outside & -outside) : left);
     return off != 0 ? off : outside & -outside;
@@ -167,11 +167,11 @@ class Placement {
     return stored;
   }
 
-  /// Notes the returns placed in bins that are linked already.
+  /// Notes the returns placed in bins before RangeImage::scheduled, which linking may have passed.
   void noteLate(ColumnBits placed) {
-    const std::int64_t in_linked = static_cast<std::int64_t>(image_.scheduled) - first_bin_;
-    if (in_linked <= 0) return;
-    forEachBit(placed & ~bitsFrom(static_cast<std::size_t>(in_linked)), [&](std::size_t i) {
+    const std::int64_t first_open = static_cast<std::int64_t>(image_.scheduled) - first_bin_;
+    if (first_open <= 0) return;
+    forEachBit(placed & ~bitsFrom(static_cast<std::size_t>(first_open)), [&](std::size_t i) {
       image_.late.push_back({block_.x[RingBlock::kMargin + i], block_.y[RingBlock::kMargin + i],
                              block_.z[RingBlock::kMargin + i], info_.run[i]});
     });

@@ -79,12 +79,12 @@ struct RangeImage {
     return cells.exchangedBytes() > array.size() * sizeof(Element);
   }
 
-  /// Makes room for more columns than expected before, once returns are placed.
+  /// Makes room for more columns than expected before. Returns that are placed stay where they are.
   void expectColumns(std::size_t columns);
 
-  /// Whether rotations before have left memory: any, or enough for the rows of some lasers, and for as many rows as
-  /// there are, in a number of columns.
+  /// Whether a rotation before has left memory.
   bool hasMemory() const { return cells.bytes() > 0; }
+  /// Whether that is enough for the rows of some lasers, and for all rows that there are, in a number of columns.
   bool hasMemoryFor(std::size_t lasers, std::size_t columns, const SensorHints& hints) const;
   /// Gives back the memory of columns that are not expected. All values are lost; prepare () comes next.
   void shrinkMemory() { cells.shrinkTo(stride); }
@@ -133,7 +133,7 @@ struct RangeImage {
   /// Sets bin 0 a margin before the azimuth of a block's first far return.
   void start(const RingBlock& block, const RingBlockInfo& info, std::uint32_t column);
 
-  /// Whether another layer would hold enough returns whose bins are taken to be worth its memory.
+  /// Whether so many returns are unplaced that another layer is worth its memory.
   bool isLayerWorthwhile() const;
   /// Sets the number of bins for some columns, and their directions.
   void setBins(std::size_t columns);
@@ -172,12 +172,12 @@ struct RangeImage {
   FarRange range;
   float deviation = 0;       ///< bins between that of a return and that of its azimuth, at most
   float deviation_sine = 0;  ///< sine of as many bins
-  float reach = 0;
-  float slope_reach = 0;   ///< the same where heights are measured from the tilted horizon
-  std::size_t steps = 0;   ///< bins of a turn
-  std::size_t bins = 0;    ///< of a row: some more than columns, or than a turn
-  std::size_t stride = 0;  ///< bins of a row in use, margins included
-  float direction = 1;     ///< +1: azimuth grows with time
+  float reach = 0;           ///< paddedReach () of the tolerance, metres
+  float slope_reach = 0;     ///< the same where heights are measured from the tilted horizon
+  std::size_t steps = 0;     ///< bins of a turn
+  std::size_t bins = 0;      ///< of a row: some more than columns, or than a turn
+  std::size_t stride = 0;    ///< bins of a row in use, margins included
+  float direction = 1;       ///< +1: azimuth grows with time
   float radians_per_bin = 0;
   double start_azimuth = 0;  ///< of bin 0
   float start_cosine = 1;

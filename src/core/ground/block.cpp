@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "core/bits.h"
 #include "core/ground/targets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -60,9 +59,7 @@ void measureRows(Block& block, const Columns& columns, std::size_t first, const 
       const auto squared = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
       const auto rho = hn::Sqrt(hn::IfThenElseZero(is_return, squared));
       hn::StoreU(rho, kLanes, block_rho + to);
-      std::uint8_t bits[8] = {};
-      hn::StoreMaskBits(kLanes, hn::Gt(rho, least), bits);
-      returns |= wordOf(bits[0]) << k;
+      returns |= unsigned{bitsOf(hn::Gt(rho, least), k)};
       const auto horizon = hn::Add(hn::Mul(set(tilt[0]), x), hn::Mul(set(tilt[1]), y));
       const auto height = hn::IfThenElseZero(is_return, hn::Sub(z, horizon));
       hn::StoreU(height, kLanes, block_height + to);

@@ -2,9 +2,6 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "core/ground/follow_rows.h"
 
-#include <algorithm>
-
-#include "core/bits.h"
 #include "core/ground/targets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -57,6 +54,7 @@ constexpr float kReflectedFrom = 1.0F;                     // below the highest 
 constexpr float kAdvance = 0.02F;                          // least way of the ground reached
 constexpr float kBaseline = 1.5F, kBaselineGrowth = 0.1F;  // way over which the slope of the ground is measured
 constexpr float kMinBaseline = 0.3F;                       // a shorter way keeps the slope from before
+constexpr float kMinWay = 0.5F;                            // a shorter way counts as this one where slopes are compared
 
 /// The ground that the map has where a return is.
 struct Mapped {
@@ -127,6 +125,11 @@ HWY_INLINE RowPart partOf(const FollowedRow& row, std::size_t k, Floats steepest
   return part;
 }
 
+/// The slope from the ground reached to the return.
+HWY_INLINE Floats slopeUpTo(const RowPart& part) {
+  return hn::Div(part.from_ground, hn::Max(part.way, set(kMinWay)));
+}
+
 /// The most height of ground above the map's. \param smooth whether the surface is smooth, or may be
 HWY_INLINE Floats mostAboveMap(const Mapped& map, Floats rho, Mask smooth, float unevenness) {
   const auto far = set(kAboveMap + unevenness * kUnevenAboveMap);
@@ -195,21 +198,10 @@ HWY_INLINE void advance(const FollowedRow& row, std::size_t k, Mask reached, Flo
   store(next_height, now.next_height);
 }
 
-HWY_INLINE std::uint8_t bitsOf(Mask mask, std::size_t k) {
-  std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(kLanes, mask, bits);
-  return static_cast<std::uint8_t>(wordOf(bits[0]) << k);
-}
-
-HWY_INLINE Mask lanesOf(std::uint8_t bits, std::size_t k) {
-  const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits >> k)};
-  return hn::LoadMaskBits(kLanes, bytes);
-}
-
 /// What is found of a part of a row, all of whose returns are objects.
 HWY_INLINE Found passObjects(const FollowedRow& row, std::size_t k, const RowPart& part) {
   row.passed->obstacles = static_cast<std::uint8_t>(row.passed->obstacles | bitsOf(part.valid, k));
-  lowerLimit(row, k, part, hn::Lt(part.rho, hn::Zero(kLanes)));
+  lowerLimit(row, k, part, hn::Lt(part.rho, hn::Zero(kLanes)));  // none is found
   const auto higher = hn::And(part.valid, hn::Gt(part.above, set(kHigher)));
   return {0, 0, 0, 0, bitsOf(higher, k)};
 }
@@ -244,7 +236,7 @@ HWY_INLINE Mask foundByColumn(const RowPart& part, const Mapped& map, const Abov
   const Mask first = part.first;
   Mask smooth = hn::AndNot(above.surface, hn::And(hn::And(flat, above.seen), goesOn(above, part.slope)));
   if (unevenness > 0.0F) {
-    // Above a crest far away is nothing.
+    // Far away, a return on a crest has none above it.
     const Mask far = hn::AndNot(first, hn::Ge(part.rho, set(kSmoothRange)));
     const Mask highest = hn::AndNot(hn::Or(above.seen, above.nearer), hn::AndNot(above.surface, flat));
     smooth = hn::Or(smooth, hn::And(far, highest));
@@ -261,9 +253,9 @@ HWY_INLINE Mask foundByColumn(const RowPart& part, const Mapped& map, const Abov
   const auto flat_free = hn::AndNot(obstacle, flat);
   continued = hn::Or(continued, hn::And(hn::And(flat_free, goesOn(above, part.slope)), hn::Lt(off, level)));
   // Where the ground changes its slope: beyond, it has that slope.
-  const auto here = hn::Div(part.from_ground, hn::Max(part.way, set(0.5F)));
+  const auto here = slopeUpTo(part);
   const auto possible = hn::AndNot(first, hn::Lt(hn::Abs(here), steepest));
-  const auto bend = hn::Add(set(kBend), hn::Div(set(kBendGrowth), hn::Max(above.step, set(0.5F))));
+  const auto bend = hn::Add(set(kBend), hn::Div(set(kBendGrowth), hn::Max(above.step, set(kMinWay))));
   continued = hn::Or(continued, hn::And(hn::And(hn::And(flat_free, above.seen), possible),
                                         hn::Lt(hn::Abs(hn::Sub(above.slope, here)), bend)));
   // Downwards, where no object can be.
@@ -286,7 +278,7 @@ HWY_INLINE Mask foundOnUneven(const RowPart& part, const Mapped& map, const Abov
       hn::And(hn::Lt(map.above, hn::Zero(kLanes)), hn::Gt(map.above, set(-unevenness * kUnevenBelowMap)));
   const auto below_map = hn::And(hn::And(below, hn::Lt(map.slack, set(kKnown))), hn::AndNot(above.wall, level));
 
-  const auto here = hn::Div(part.from_ground, hn::Max(part.way, set(0.5F)));
+  const auto here = slopeUpTo(part);
   const auto bend = hn::Abs(hn::Sub(above.slope, here));
   const auto most = set(unevenness * kSurface);
   const auto goes_on = hn::And(hn::Lt(hn::Abs(above.slope), most), hn::Lt(bend, most));

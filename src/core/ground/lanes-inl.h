@@ -9,10 +9,12 @@
 #define LISCO_GROUND_LANES_INL_H
 #endif
 
+#include <cstddef>
 #include <cstdint>
 
 #include <hwy/highway.h>
 
+#include "core/bits.h"
 #include "core/ground/block.h"
 #include "core/ground/distance_bins.h"
 
@@ -33,6 +35,19 @@ constexpr LaneWords kLaneWords{};
 
 HWY_INLINE Floats set(float value) {
   return hn::Set(kLanes, value);
+}
+
+/// The lanes of a mask as bits of the columns of a block, from column k on.
+HWY_INLINE std::uint8_t bitsOf(Mask mask, std::size_t k) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(kLanes, mask, bits);
+  return static_cast<std::uint8_t>(wordOf(bits[0]) << k);
+}
+
+/// The inverse.
+HWY_INLINE Mask lanesOf(std::uint8_t bits, std::size_t k) {
+  const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits >> k)};
+  return hn::LoadMaskBits(kLanes, bytes);
 }
 
 /// distanceBin of each lane

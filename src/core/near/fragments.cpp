@@ -85,7 +85,7 @@ void keysOf(const VoxelNumbering& numbering, const float (&coordinates)[3][kBatc
   }
 }
 
-/// Bit i: item i differs from the one before.
+/// Bit i: return i is in another voxel or of another run than the one before. Both arrays have one before the first.
 HWY_INLINE std::uint64_t changes(const std::uint64_t* keys, const std::uint32_t* elements) {
   using Keys = hn::CappedTag<std::uint64_t, 8>;
   constexpr Keys kKeys{};

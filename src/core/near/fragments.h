@@ -69,8 +69,8 @@ struct FragmentItems {
   std::vector<std::size_t> part_sizes;  ///< in fragments; those of a part begin at its first return's number
 
   std::uint64_t planeOf(std::uint64_t item) const { return item >> plane_shift; }
-  /// The planes of bricks among the sorted fragments [begin, end), which are whole planes: where the one that holds
-  /// fragment i begins, and where it ends.
+  /// Where the plane of bricks that holds sorted fragment i begins, and where it ends. The search stays behind `begin`
+  /// and before `end`, which are between planes.
   std::size_t beginOfPlane(std::size_t i, std::size_t begin) const;
   std::size_t endOfPlane(std::size_t i, std::size_t end) const;
   std::uint64_t numberMask() const { return (std::uint64_t{1} << number_bits) - 1; }

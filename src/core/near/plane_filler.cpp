@@ -27,7 +27,7 @@ class PlaneFiller {
         items_(items),
         count_(count),
         number_bits_(layout.number_bits),
-        number_mask_((std::uint64_t{1} << layout.number_bits) - 1),
+        number_mask_(layout.numberMask()),
         key_mask_((std::uint64_t{1} << layout.brick_bits) - 1),
         return_of_(return_of) {
     plane.map.clear(count, layout.brick_bits);

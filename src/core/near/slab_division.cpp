@@ -28,11 +28,11 @@ bool SlabPair::take(bool last, const FragmentItems& items, Planes& taken) {
 }
 
 /// Assigns each slab to the thread that has read most of it, about: both are in order along an axis, the major one.
-void SlabDivision::assign(std::size_t axis, const std::vector<Box>& parts) {
-  thread_of_.resize(parts.size());
-  slab_of_.resize(parts.size());
+void SlabDivision::assign(std::size_t axis, const std::vector<Box>& boxes) {
+  thread_of_.resize(boxes.size());
+  slab_of_.resize(boxes.size());
   std::iota(thread_of_.begin(), thread_of_.end(), std::size_t{0});
-  const auto centreOf = [&](std::size_t part) { return parts[part].lo[axis] + parts[part].hi[axis]; };
+  const auto centreOf = [&](std::size_t part) { return boxes[part].lo[axis] + boxes[part].hi[axis]; };
   std::sort(thread_of_.begin(), thread_of_.end(),
             [&](std::size_t a, std::size_t b) { return centreOf(a) < centreOf(b); });
   for (std::size_t slab = 0; slab < thread_of_.size(); ++slab) slab_of_[thread_of_[slab]] = slab;

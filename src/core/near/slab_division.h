@@ -49,8 +49,8 @@ class alignas(kSeparate) SlabPair {
     return {word & kMask, word >> kBits};
   }
 
-  /// Each thread calls this once it finds no plane left. \return true for the later one, which knows all that the
-  /// other has done
+  /// Each thread calls this once it finds no plane left. \return true for the second one, which sees all that the
+  /// first has written
   bool end() { return __atomic_fetch_add(&ended_, 1U, __ATOMIC_ACQ_REL) == 1; }
 
  private:
@@ -105,7 +105,7 @@ class SlabDivision {
     std::uint32_t work;       ///< of linking them, about in returns
   };
 
-  void assign(std::size_t axis, const std::vector<Box>& parts);
+  void assign(std::size_t axis, const std::vector<Box>& boxes);
 
   std::vector<PlaneGroup> histogram_;   ///< of groups of planes, of each part
   std::vector<SlabPair> pairs_;         ///< the last one may be of one slab

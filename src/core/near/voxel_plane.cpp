@@ -249,7 +249,7 @@ class PlaneLinker {
     std::size_t item = plane.place[voxel] & ~VoxelPlane::kInItems;
     const std::size_t begin = plane.points_in_use;
     const std::size_t end = begin + plane.return_count[voxel];
-    const std::uint64_t number_mask = (std::uint64_t{1} << layout_.number_bits) - 1;
+    const std::uint64_t number_mask = layout_.numberMask();
     plane.reservePoints(end);
     for (std::size_t to = begin; to < end; ++item) {
       const auto number = static_cast<std::size_t>(plane.items[item] & number_mask);

@@ -142,6 +142,7 @@ struct PlaneLayout {
   const std::uint64_t (*around)[kNearBricks];  ///< Neighbourhood::of, of the voxels of a brick
 
   std::uint64_t nextRow() const { return std::uint64_t{1} << minor_bits; }  ///< in a brick's key
+  std::uint64_t numberMask() const { return (std::uint64_t{1} << number_bits) - 1; }
 };
 
 /// Fills a plane with sorted fragments of runs, and joins those of each voxel.

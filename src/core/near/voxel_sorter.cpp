@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <utility>
 
 #include "core/bits.h"
 #include "core/near/constants.h"
@@ -179,7 +178,7 @@ void VoxelSorter::fillPlaneBefore(std::size_t slab, const PlaneLayout& layout, D
   const Planes before = division_.outerPlane(slab - 1, items_);
   const std::size_t voxels = fillPlane(own.latestPlane(), before, layout, subclusters);
   own.number = items_.planeOf(items_.all[before.begin]);
-  // There, it is the first to be linked.
+  // That slab's thread links this plane first: its voxels are the last elements of the slab.
   if (fragments_.are_single)
     std::iota(own.latestPlane().root.data(), own.latestPlane().root.data() + voxels,
               static_cast<std::uint32_t>(before.end - voxels));
