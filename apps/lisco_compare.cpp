@@ -101,7 +101,8 @@ bool parse(int argc, char** argv, Options& options) {
     ("check-only", po::bool_switch(&check_only), "compare the clusters only, without times")
     ("no-details", po::bool_switch(&no_details), "say how much differs, but do not look for the pairs that decide")
     ("baselines", po::value<std::string>(&baselines)->value_name("A,B,..."),
-     "the methods to compare (default: all but pcl-default, flann and nanoflann)")
+     "the methods to compare (default: all but pcl-default, flann and nanoflann, the last of which needs a build with "
+     "libnanoflann-dev)")
     ("must-agree", po::value<std::string>(&must_agree)->value_name("A,B,..."),
      "those of them that must find PCL's clusters (default lisco)")
     ("ignore-label", textOption("N", [&options](const std::string& text) {

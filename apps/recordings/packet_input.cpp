@@ -196,11 +196,12 @@ PacketInput openPackets(const fs::path& input, const RecordingOptions& options, 
       }
     }
   }
-  const auto open = [&]() -> std::unique_ptr<PacketSource> {
+  const auto openSpan = [&](const TimeSpan& span) -> std::unique_ptr<PacketSource> {
     if (is_recording)
-      return std::make_unique<MessagePackets>(std::make_unique<TopicReader>(openRecording(input), topic, options.span));
-    return std::make_unique<SpanPackets>(std::make_unique<CaptureFile>(input, port), options.span);
+      return std::make_unique<MessagePackets>(std::make_unique<TopicReader>(openRecording(input), topic, span));
+    return std::make_unique<SpanPackets>(std::make_unique<CaptureFile>(input, port), span);
   };
+  const auto open = [&] { return openSpan(options.span); };
   if (!is_recording) packets.source = open();  // says why it is no capture, before anything is asked for
 
   const bool is_pipe = isPipe(input);
@@ -222,7 +223,7 @@ PacketInput openPackets(const fs::path& input, const RecordingOptions& options, 
          "needs --calibration FILE, that of the very hdl64e which sent the packets: db.xml, or YAML as ROS has it");
   packets.decoder = makeDecoder(decoder);
   if (!is_pipe) {
-    const std::unique_ptr<PacketSource> first = open();
+    const std::unique_ptr<PacketSource> first = openSpan(TimeSpan());  // columns are the same whatever part is read
     FirstPackets source(*first, is_interrupted);
     packets.decoder->prepare(source);
   }

@@ -188,11 +188,16 @@ void Report::printStatistics(const PacketSource& source, const Decoder& decoder,
   };
   const Decoder::Counts& counts = decoder.counts();
   const double per_second = decoder.turnUs() > 0 ? 1e6 / decoder.turnUs() : 0;
-  std::string table = formatted("sensor      %s, %zu lasers, %.0f columns a turn, %.2f turns a second\n",
-                                decoder.name().c_str(), decoder.lasers(), decoder.columnsPerTurn(), per_second);
-  table += formatted("packets     %llu data, %llu position, %llu foreign, %llu lost, %llu late\n", number(counts.data),
-                     number(counts.position), number(counts.foreign + source.foreign()), number(counts.missing),
-                     number(counts.late));
+  std::string table;
+  if (decoder.lasers() > 0) {
+    table = formatted("sensor      %s, %zu lasers, %.0f columns a turn, %.2f turns a second\n", decoder.name().c_str(),
+                      decoder.lasers(), decoder.columnsPerTurn(), per_second);
+    table += formatted("packets     %llu data, %llu position, %llu foreign, %llu lost, %llu late\n",
+                       number(counts.data), number(counts.position), number(counts.foreign + source.foreign()),
+                       number(counts.missing), number(counts.late));
+  } else {
+    table = formatted("clouds      %llu\n", number(counts.data));
+  }
   if (counts.dual > 0) table += formatted("            %llu with two returns per laser\n", number(counts.dual));
   if (counts.says_other_model > 0)
     table += formatted("            %llu name another model of sensor\n", number(counts.says_other_model));

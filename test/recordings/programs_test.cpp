@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "../programs/program_test.h"
 #include "bags.h"
 #include "io/little_endian.h"
@@ -110,6 +112,7 @@ TEST_F(Programs, StreamTheCloudsOfAFolder) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(countOf("60 columns, 240 returns, 2 clusters, largest 120", outcome.out), 3U) << outcome.out;
   EXPECT_EQ(countOf("rotation ", runLine(stream + " --every 2").out), 2U);
+  EXPECT_EQ(countOf("clouds      3\nrotations   3\n", runLine(stream + " --stats").out), 1U);
   EXPECT_EQ(countOf("rotation ", runLine(std::string(LISCO_STREAM) + " clouds/b.pcd -t 0.5 --ground none").out), 1U);
 
   std::ofstream(folder_ / "clouds/b.pcd") << "no cloud";
@@ -234,6 +237,20 @@ TEST_F(Programs, TakeEveryNthRotationOfPackets) {
   ASSERT_EQ(some.size(), (all.size() + 4) / 5);
   for (std::size_t i = 0; i < some.size(); ++i) EXPECT_EQ(some[i], all[5 * i]);
   EXPECT_EQ(runLine(stream + " --every 5 --mode endless").status, 2);
+}
+
+TEST_F(Programs, DecodeARotationAlikeInAnyPartOfACapture) {
+  const fs::path capture = data() / "captures/vlp16_close.pcap";
+  if (!fs::exists(capture)) GTEST_SKIP() << "no " << capture;
+  std::string whole;
+  for (const char* to : {"0.2", "0.6", "9"}) {
+    const Outcome outcome = run(capture.string() + " --sensor vlp16 --tolerance 0.4 --json --to " + std::string(to));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    auto first = nlohmann::json::parse(outcome.out.substr(0, outcome.out.find('\n')));
+    first.erase("time_ms");
+    if (whole.empty()) whole = first.dump();
+    EXPECT_EQ(first.dump(), whole) << to;
+  }
 }
 
 TEST_F(Programs, FindTheSensorByItsPackets) {
