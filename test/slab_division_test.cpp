@@ -154,7 +154,7 @@ TEST(SlabDivision, LeavesEachThreadItsOuterPlane) {
       while (division.pairOf(slab).take(lisco::SlabDivision::descends(slab), fragments.items, taken)) {
       }
     }
-    for (std::size_t slab = 0; slab < slabs; ++slab) linked.push_back(division.linkedFrom(slab));
+    for (std::size_t slab = 0; slab < slabs; ++slab) linked.push_back(division.linkedBy(slab));
     expectAll(linked, {0, fragments.count()});
     if (slabs > 1) {
       EXPECT_EQ(linked[1].begin, fragments.beginOf(5));

@@ -87,8 +87,8 @@ std::string Report::countTurn(const char* name, const Turn& turn) {
 }
 
 void Report::found(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) {
-  const char* const name = turn.is_window ? "window" : "rotation";
-  const std::string heading = countTurn(name, turn);
+  if (turn.is_window) span_ = "window";
+  const std::string heading = countTurn(span_, turn);
   for (const FoundCluster& cluster : clusters) count(cluster);
   if (clouds_ != nullptr) clouds_->write(turn);
   if (on_found_) on_found_(turn, clusters);
@@ -96,7 +96,7 @@ void Report::found(const Turn& turn, const std::vector<FoundCluster>& clusters, 
     print(heading + formatted(", %zu clusters", clusters.size()) + describeLargest(largest_of_turn_) +
           formatted(", after %.2f ms", millisecondsOf(latency)) + lostIn(turn));
   } else {
-    Json json{{name, turn.number},
+    Json json{{span_, turn.number},
               {"time", secondsOf(turn.time_us)},
               {"azimuth", azimuthAt(turn.azimuth / 360)},
               {"columns", turn.columns()},
@@ -160,8 +160,8 @@ void Report::showStatus(const Decoder& decoder, const Stream& stream, const Pack
         formatted("no data yet; %llu position packets, %llu foreign", number(counts.position), number(counts.foreign));
   else
     shown_ =
-        formatted("%llu rotations, %llu columns, packets: %llu lost, %llu late; %llu clusters, ms: p50 %.2f, p99 %.2f",
-                  number(totals_.turns), number(counts.columns), number(counts.missing), number(counts.late),
+        formatted("%llu %ss, %llu columns, packets: %llu lost, %llu late; %llu clusters, ms: p50 %.2f, p99 %.2f",
+                  number(totals_.turns), span_, number(counts.columns), number(counts.missing), number(counts.late),
                   number(totals_.clusters), latency.percentileMs(0.5), latency.percentileMs(0.99));
   if (file != nullptr) {
     const double share = file->share();
@@ -203,8 +203,8 @@ void Report::printStatistics(const PacketSource& source, const Decoder& decoder,
     table += formatted("            %llu name another model of sensor\n", number(counts.says_other_model));
   if (counts.clock_jumps > 0)
     table += formatted("            the sensor's clock was set %llu times\n", number(counts.clock_jumps));
-  table += formatted("rotations   %llu\ncolumns     %llu\nreturns     %llu", number(totals_.turns),
-                     number(totals_.columns), number(totals_.returns));
+  table += formatted("%-11s %llu\ncolumns     %llu\nreturns     %llu", (std::string(span_) + "s").c_str(),
+                     number(totals_.turns), number(totals_.columns), number(totals_.returns));
   if (totals_.ground > 0)
     table += formatted(" and %llu of the ground, left out; --ground none keeps them", number(totals_.ground));
   table += formatted("\nclusters    %llu, of %llu returns\n", number(totals_.clusters), number(totals_.in_clusters));
@@ -213,7 +213,7 @@ void Report::printStatistics(const PacketSource& source, const Decoder& decoder,
     table += formatted("            %llu cut after a turn, %llu continued; %llu outliers\n", number(totals_.cut),
                        number(totals_.continued), number(*outliers));
   table += "latency in ms\n" + rowOf("column", stream.columnLatency()) +
-           rowOf(outliers ? "delivery" : "rotation", stream.clusterLatency());
+           rowOf(outliers ? "delivery" : span_, stream.clusterLatency());
   std::fputs(table.c_str(), format_ == Format::kJson ? stderr : stdout);
   unflushed_ = true;
   flush();

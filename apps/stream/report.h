@@ -72,6 +72,7 @@ class Report : public Listener {
   const Clock::time_point start_ = Clock::now();
   bool unflushed_ = false;
   Totals totals_;
+  const char* span_ = "rotation";       ///< what is counted as a turn: a rotation or a window
   std::uint64_t clusters_of_turn_ = 0;  ///< delivered since the turn began
   lisco::ClusterFeatures largest_of_turn_;
 };

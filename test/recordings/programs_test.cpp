@@ -148,6 +148,18 @@ TEST_F(Programs, StreamFloatsAsTold) {
             "lisco_stream: a.bin: is no cloud of 8 floats a point: its size, 25200 bytes, is no multiple of 32\n");
 }
 
+TEST_F(Programs, WarnOfReturnsOffTheirColumns) {
+  std::ostringstream pcd;
+  pcd << "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 60\nHEIGHT 40\nPOINTS 2400\nDATA "
+         "ascii\n";
+  for (int row = 0; row < 40; ++row)  // a wall in front of a camera
+    for (int column = 0; column < 60; ++column) pcd << 0.02 * (column - 30.5) << ' ' << 0.02 * (row - 20.5) << " 1\n";
+  std::ofstream(folder_ / "camera.pcd") << pcd.str();
+  const std::string stream = std::string(LISCO_STREAM) + " camera.pcd -t 0.1 --ground none --mode ";
+  EXPECT_EQ(countOf("(outliers)", runLine(stream + "endless").err), 1U);
+  EXPECT_EQ(countOf("(outliers)", runLine(stream + "rotation").err), 0U);
+}
+
 TEST_F(Programs, SayWhichCloudsAStreamLeavesOut) {
   TestRecording recording = walls(3);
   recording.messages[3].data.resize(300);

@@ -17,10 +17,13 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// Bins of a row for some columns, margins included; a few more than a turn has at most.
+constexpr std::size_t kSpare = 4 * RangeImage::kMargin;  ///< bins that may hold returns, beyond a turn or the columns
+constexpr std::size_t kEmpty = 2 * RangeImage::kMargin;  ///< bins at the ends of a row that hold none
+
+/// RangeImage::stride for some columns.
 std::size_t strideFor(std::size_t columns, std::size_t steps) {
   constexpr std::size_t kSector = RangeImage::kSector;
-  return (std::min(columns, steps) + kSector - 1) / kSector * kSector + 6 * RangeImage::kMargin;
+  return (std::min(columns, steps) + kSector - 1) / kSector * kSector + kSpare + kEmpty;
 }
 
 constexpr RangeImage::Row kNewRow{false, kInfinity, -kInfinity, RangeImage::kNoBin, 0};
@@ -71,7 +74,7 @@ void RangeImage::prepare(const Tolerance& new_tolerance, const SensorHints& hint
 
 void RangeImage::setBins(std::size_t columns) {
   stride = strideFor(columns, steps);
-  bins = stride - 2 * kMargin;
+  bins = stride - kEmpty;
   const std::size_t directions = stride + 2 * kMargin;
   const double step = 2 * kPi / static_cast<double>(steps);
   cosine.reserve(directions);

@@ -27,11 +27,13 @@ namespace lisco {
 /// or beyond the bins of the image, is *unplaced*: its neighbours are searched one by one, and it must be kept in the
 /// voxels as well. Rows are reached by the elevations measured on their laser.
 ///
-/// Bins are counted from the first return's, less kMargin, in the sense of rotation. There are some more than a turn
-/// has; what comes behind the last one goes into the bins a turn before.
+/// Bins are counted from the first return's, less kMargin, in the sense of rotation. A row has as many as a turn, or as
+/// the columns if these are fewer, and four times kMargin, as staggered lasers see azimuths before the first return's
+/// and behind the last column's; what comes behind the last bin goes into the bins a turn before. At either end there
+/// are kMargin more that hold no returns, which masks and vectors may read.
 struct RangeImage {
   static constexpr std::size_t kSector = 16;  ///< bins of a sector, the unit of linking
-  static constexpr std::size_t kMargin = 64;  ///< bins before the first return's, for staggered lasers
+  static constexpr std::size_t kMargin = 64;  ///< bins, at least those of a ring block
   static constexpr std::size_t kMaxLayers = 4;
   static constexpr std::size_t kNoRow = ~std::size_t{0};
   static constexpr std::int64_t kNoBin = std::numeric_limits<std::int64_t>::min();
@@ -175,8 +177,8 @@ struct RangeImage {
   float reach = 0;           ///< paddedReach () of the tolerance, metres
   float slope_reach = 0;     ///< the same where heights are measured from the tilted horizon
   std::size_t steps = 0;     ///< bins of a turn
-  std::size_t bins = 0;      ///< of a row: some more than columns, or than a turn
-  std::size_t stride = 0;    ///< bins of a row in use, margins included
+  std::size_t bins = 0;      ///< of a row, that may hold returns
+  std::size_t stride = 0;    ///< bins of a row in use, with those at its ends that hold none
   float direction = 1;       ///< +1: azimuth grows with time
   float radians_per_bin = 0;
   double start_azimuth = 0;  ///< of bin 0

@@ -90,7 +90,7 @@ HWY_INLINE std::uint64_t changes(const std::uint64_t* keys, const std::uint32_t*
   using Keys = hn::CappedTag<std::uint64_t, 8>;
   constexpr Keys kKeys{};
   std::uint64_t bits = 0;
-  for (std::size_t i = 0; i < kBatch; i += hn::Lanes(kKeys)) {
+  for (std::size_t i = 0; i < kBatch; i += hn::MaxLanes(kKeys)) {
     std::uint8_t mask[8] = {};
     hn::StoreMaskBits(kKeys, hn::Ne(hn::LoadU(kKeys, keys + i), hn::LoadU(kKeys, keys + i - 1)), mask);
     bits |= std::uint64_t{wordOf(mask[0])} << i;

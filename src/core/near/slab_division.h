@@ -93,8 +93,8 @@ class SlabDivision {
   Planes outerPlane(std::size_t slab, const FragmentItems& items) const {
     return slabs[slab].outerOne(descends(slab), items);
   }
-  /// The planes that a slab's thread has linked, when all are.
-  Planes linkedFrom(std::size_t slab) const {
+  /// The planes that the thread of a slab has linked, once all are linked.
+  Planes linkedBy(std::size_t slab) const {
     const std::size_t meeting = pairs_[slab / 2].left().begin;
     return descends(slab) ? Planes{meeting, slabs[slab].end} : Planes{slabs[slab].begin, meeting};
   }

@@ -127,7 +127,7 @@ void VoxelSorter::numberReturns(std::size_t slab) {
   const std::uint64_t* const items = items_.all.data();
   const std::uint8_t* const begins_voxel = begins_voxel_.data();
   std::size_t voxel = firstVoxel(slab);
-  const auto [begin, end] = division_.linkedFrom(slab);
+  const auto [begin, end] = division_.linkedBy(slab);
   for (std::size_t i = begin; i < end; ++i) {
     all[items[i] & number_mask].of_return = all[voxel].of_voxel;
     voxel += begins_voxel[i + 1];
