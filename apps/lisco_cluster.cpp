@@ -65,7 +65,7 @@ bool parse(int argc, char** argv, Options& options) {
       "    or more), the paper authors' .csv; or a folder of scans\n"
       "  - a recording, each of whose clouds (sensor_msgs/PointCloud2) or rotations (packets, with --sensor) is a "
       "scan:\n"
-      "    .db3 and .mcap of ROS 2, or the folder of such a bag; .bag of ROS 1; .pcap and .pcapng\n"
+      "    .db3 and .mcap of ROS 2, or the folder of such a bag; .bag of ROS 1; .pcap, .pcapng, .cap\n"
       "An unorganized cloud with a field `ring`, or sorted laser by laser, is arranged in rows first, in which\n"
       "the ground is found; the clusters do not depend on it. Ctrl-C ends the program after the scans it has begun.\n\n"
       "Options");

@@ -268,10 +268,12 @@ int compare(const Options& options) {
     progress.clear();
     std::fprintf(stderr, "lisco_compare: %s\n", note.c_str());
   });
+  bool is_over = false;
   while (!Interruption::happened()) {
     const double share = source.share();
     const std::optional<ScanItem> item = source.next();
-    if (!item) break;
+    is_over = !item;
+    if (is_over) break;
     const double weight = item->folder.empty() ? 1 / static_cast<double>(files.size()) : 0;
     const std::string name = names[item->input] + (item->folder.empty() ? "" : "_" + item->folder);
     try {
@@ -281,7 +283,7 @@ int compare(const Options& options) {
       report(error.what());
     }
   }
-  if (Interruption::happened()) report(formatted("interrupted after %zu scans", results.size()));
+  if (Interruption::happened() && !is_over) report(formatted("interrupted after %zu scans", results.size()));
   progress.clear();
   if (results.empty()) return 2;
   std::fputs(summaryOf(results, settings).c_str(), stdout);

@@ -105,8 +105,8 @@ bool parse(int argc, char** argv, Options& options) {
       "            last_azimuth and turns (of its columns, and from the first to the last), size, centroid,\n"
       "            box, oriented_box, nearest_range, density, cut, continued, and latency_ms (from the first\n"
       "            column that cannot reach it to its delivery; null if the end of the packets delivered it).\n\n"
-      "Exit code 0; 2 on wrong usage, if no packet is one of the sensor's, or if the recording breaks off (after\n"
-      "the packets before it have been clustered).\n\n"
+      "Exit code 0; 2 on wrong usage, if no packet is one of the sensor's, if messages or files cannot be read or\n"
+      "are left out, or if the recording breaks off (after the packets before it have been clustered).\n\n"
       "Options");
   std::vector<std::string> inputs;
   std::string port;
@@ -245,6 +245,12 @@ Input inputOf(std::unique_ptr<PacketSource> source, std::unique_ptr<CloudColumns
   return {std::move(source), std::move(columns), nullptr, clouds};
 }
 
+/// Warns of options that do not act on clouds.
+void warnOfIdle(const Options& options, InputKind kind, Report& report) {
+  const std::string idle = withoutEffect(kind, options.recording, options.decoder, options.port.has_value());
+  if (!idle.empty()) report.warn(options.capture.string() + ": " + idle);
+}
+
 /// The clouds of a recording, if its topic holds clouds.
 std::optional<Input> openClouds(const Options& options, Report& report) {
   if (!isRecording(options.capture)) return std::nullopt;
@@ -254,6 +260,7 @@ std::optional<Input> openClouds(const Options& options, Report& report) {
   const Topic topic = recording->topics()[index];
   if (kindOf(topic) != TopicKind::kClouds) return std::nullopt;
   report.warn(options.capture.string() + ": topic " + topic.name);
+  warnOfIdle(options, InputKind::kRecordedClouds, report);
   auto reader = std::make_unique<TopicReader>(std::move(recording), index, part.span, part.every);
   return inputOf(std::make_unique<RawMessages>(std::move(reader)), std::make_unique<CloudColumns>(topic));
 }
@@ -265,6 +272,7 @@ std::optional<Input> openCloudFiles(const Options& options, Report& report) {
   if (!fs::is_directory(options.capture, unknown) && !isCloudFile(options.capture)) return std::nullopt;
   ScanSource scans({options.capture.string()}, {});
   if (scans.files().empty()) throw std::runtime_error(scans.takeFailures().front());
+  warnOfIdle(options, InputKind::kCloudFiles, report);
   auto clouds = std::make_unique<CloudFiles>(scans.files(), options.recording.every, options.files,
                                              [&report](const std::string& note) { report.warn(note); });
   auto columns = std::make_unique<CloudColumns>([from = clouds.get()](const Packet&) { return from->take(); });
@@ -337,10 +345,12 @@ void takePackets(const Input& input, Decoder& decoder, OtherSensors& others, Str
 }
 
 /// A rotation or window as a recording has it: a row for each laser.
-LabelledScan labelledScanOf(const Turn& turn, const std::vector<FoundCluster>& clusters, bool has_ground) {
+/// \param frame of the coordinates; empty: the sensor's
+LabelledScan labelledScanOf(const Turn& turn, const std::vector<FoundCluster>& clusters, const std::string& frame,
+                            bool has_ground) {
   LabelledScan scan;
   scan.time_ns = 1000 * turn.time_us;
-  scan.frame = "lidar";
+  scan.frame = frame.empty() ? "lidar" : frame;
   scan.rows = turn.lasers;
   scan.columns = turn.columns();
   for (std::size_t row = 0; row < scan.rows; ++row)
@@ -381,15 +391,11 @@ int run(const Options& options) {
   const Input input = open(options, report);
   Decoder& decoder = *input.decoder;
   const bool has_ground = options.stream.ground.method != GroundChoice::Method::kNone;
-  if (!options.output.empty()) {
-    clouds.emplace(options.output, has_ground);
-    report.writeTo(*clouds);
-  }
   std::optional<ResultBag> bag;
   if (!options.bag.empty()) {
     bag.emplace(options.bag, "lisco_stream");
-    report.callWith([&bag, has_ground](const Turn& turn, const std::vector<FoundCluster>& clusters) {
-      bag->write(labelledScanOf(turn, clusters, has_ground));
+    report.callWith([&bag, &input, has_ground](const Turn& turn, const std::vector<FoundCluster>& clusters) {
+      bag->write(labelledScanOf(turn, clusters, input.clouds != nullptr ? input.clouds->frame() : "", has_ground));
     });
   }
   std::unique_ptr<LiveView> live;
@@ -397,6 +403,10 @@ int run(const Options& options) {
     live = std::make_unique<LiveView>(*options.http, report, options.stream, input.name + ", " + decoder.name(),
                                       options.window);
     report.warn("view at " + live->url());
+  }
+  if (!options.output.empty()) {  // last, as it replaces earlier clouds
+    clouds.emplace(options.output, has_ground);
+    report.writeTo(*clouds);
   }
   const std::unique_ptr<Stream> stream =
       makeStream(options, decoder, live ? live->listener() : static_cast<Listener&>(report));
@@ -419,12 +429,13 @@ int run(const Options& options) {
   for (const std::string& line : left_out) report.warn(options.capture.string() + ": " + line);
   const bool was_cut_short = Interruption::happened() && input.queue == nullptr;
   if (input.clouds != nullptr && decoder.counts().data == 0 && left_out.empty() && error.empty() && !was_cut_short)
-    fail(options.capture, options.recording.areGiven() ? "holds no cloud between --from and --to" : "holds no cloud");
+    fail(options.capture,
+         options.recording.isSpanGiven() ? "holds no cloud between --from and --to" : "holds no cloud");
   if (input.clouds != nullptr) return error.empty() && left_out.empty() ? 0 : 2;
   if (decoder.counts().data == 0 && !was_cut_short)
     throw std::runtime_error((options.capture.empty() ? "" : options.capture.string() + ": ") +
                              others.nothingCame(*input.source, decoder) +
-                             (options.port && decoder.counts().foreign == 0
+                             (options.port && !isRecording(options.capture) && decoder.counts().foreign == 0
                                   ? "; only packets to port " + std::to_string(*options.port) + " count"
                                   : ""));
   return error.empty() ? 0 : 2;

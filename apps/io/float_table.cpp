@@ -18,11 +18,11 @@ constexpr std::size_t kFewPoints = 16;  ///< too few to compare numbers of field
 // Points that are looked at: runs of consecutive ones, spread over the file.
 constexpr std::size_t kRuns = 16, kRunPoints = 1024;
 constexpr float kMaxCoordinate = 1e7F, kMinCoordinate = 1e-5F;  ///< of a cloud, metres; smaller ones are zero
-constexpr double kMinPlausible = 0.95;                          ///< share of points
+constexpr double kMinPlausible = 0.95;                          ///< share of the points of a cloud
 constexpr double kMinScore = 0.3;   ///< of 2: wrong numbers of fields have about 0.1, right ones 0.5 and more
 constexpr double kTieScore = 0.15;  ///< a multiple of the right number comes this near
 
-/// Another share of plausible points is none of a cloud.
+/// Whether numbers are those of a point: coordinates in metres, and other values that sensors give.
 bool isPlausible(const float* point, std::size_t fields) {
   if (std::isnan(point[0]) && std::isnan(point[1]) && std::isnan(point[2])) return true;  // no return
   for (std::size_t i = 0; i < fields; ++i) {

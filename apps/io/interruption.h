@@ -10,15 +10,21 @@ namespace lisco_apps {
 class Interruption {
  public:
   static void listen() {
-    struct sigaction action {};
-    action.sa_handler = [](int) { happened_ = 1; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
-    sigaction(SIGINT, &action, nullptr);
-    sigaction(SIGTERM, &action, nullptr);
+    handleBy([](int) {
+      happened_ = 1;
+      handleBy(SIG_DFL);
+    });
   }
   static bool happened() { return happened_ != 0; }
 
  private:
+  static void handleBy(void (*handler)(int)) {
+    struct sigaction action {};
+    action.sa_handler = handler;
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+  }
+
   static inline volatile sig_atomic_t happened_ = 0;
 };
 

@@ -48,10 +48,9 @@ Cloud::Ptr readFile(const fs::path& file, const ReadOptions& options, ReadExtras
   if (!fs::is_regular_file(file, error)) fail(file, "is no file");
   if (!std::ifstream(file)) fail(file, "cannot be read");
   const std::string ending = endingOf(file);
-  if (ending == ".pcap" || ending == ".pcapng") fail(file, "is a capture of packets: give it to lisco_stream");
   const Format* const format = formatOf(ending);
   if (format == nullptr)
-    fail(file, "has an unknown ending (known: pcd, ply, bin, npy, csv; recordings: pcap, pcapng, db3, mcap, bag)");
+    fail(file, "has an unknown ending (known: pcd, ply, bin, npy, csv; recordings: pcap, pcapng, cap, db3, mcap, bag)");
   if (fs::file_size(file, error) == 0) fail(file, "is empty");
   try {
     return format->read(file, options, extras);

@@ -274,7 +274,7 @@ class HttpServer::State {
       Error error;
       acceptor_.close(error);
       site_.is_ending = true;
-      const Frame last = site_.viewers.empty() ? nullptr : next_frame_();
+      const Frame last = site_.viewers.empty() ? nullptr : nextFrame();
       if (last) site_.last = last;
       const auto viewers = site_.viewers;
       for (const auto& viewer : viewers) {
@@ -297,7 +297,7 @@ class HttpServer::State {
       try {
         context_.run();
         return;
-      } catch (const std::exception&) {  // of a frame, without memory: it is left out
+      } catch (const std::exception&) {  // of a connection, without memory: it is given up
       }
     }
   }
@@ -310,9 +310,9 @@ class HttpServer::State {
         retry_.async_wait([this](Error) { accept(); });
         return;
       }
+      accept();
       socket.set_option(tcp::no_delay(true), error);
       if (site_.connections < kMaxConnections) std::make_shared<Connection>(std::move(socket), site_)->start();
-      accept();
     });
   }
 
@@ -331,12 +331,21 @@ class HttpServer::State {
     if (!is_ticking_) return;
     ticker_.expires_after(kTick);
     ticker_.async_wait([this](Error) {
-      if (Frame frame = site_.is_ending ? nullptr : next_frame_()) {
-        site_.last = std::move(frame);
-        for (const auto& viewer : site_.viewers) viewer->offer(site_.last);
-      }
+      const Frame frame = site_.is_ending ? nullptr : nextFrame();
       tick();
+      if (!frame) return;
+      site_.last = frame;
+      for (const auto& viewer : site_.viewers) viewer->offer(frame);
     });
+  }
+
+  /// \return nullptr if there is none, or no memory for it
+  Frame nextFrame() {
+    try {
+      return next_frame_();
+    } catch (const std::exception&) {
+      return nullptr;
+    }
   }
 
   Site site_;  ///< outlives the connections, which the context holds

@@ -28,8 +28,8 @@ class LiveView {
   static constexpr unsigned kMaxRate = 30;
 
   /// \param title of the page
-  /// \throws std::runtime_error with one line if the server cannot listen
   /// \param window columns of a sliding window; 0: there is none
+  /// \throws std::runtime_error with one line if the server cannot listen
   LiveView(const HttpAddress& address, Report& report, const StreamOptions& options, const std::string& title,
            std::size_t window);
 

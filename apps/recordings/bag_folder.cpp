@@ -47,8 +47,11 @@ std::vector<fs::path> splitsIn(const fs::path& folder) {
   std::vector<fs::path> files;
   try {
     if (fs::exists(folder / "metadata.yaml"))
-      for (const std::string& name : listedFiles(folder / "metadata.yaml"))
+      for (const std::string& name : listedFiles(folder / "metadata.yaml")) {
         files.push_back(folder / fs::path(name).filename());  // older bags name their folder as well
+        if (fs::is_directory(files.back()))                   // such as `folder` itself, if the name is empty
+          fail(folder / "metadata.yaml", "names a folder instead of a file: '" + name + "'");
+      }
     if (!files.empty()) return files;
     for (const auto& entry : fs::directory_iterator(folder)) {
       const std::string ending = boost::to_lower_copy(entry.path().extension().string());

@@ -37,7 +37,8 @@ void CloudColumns::estimateSensor(const Cloud& cloud) {
     return lisco::Return{point.x, point.y, point.z, 0};
   };
   sensor_ = lisco::estimateSensor(cloud.width, cloud.height, declared, lisco::CellSource(cell_at), sensor_);
-  place_ = sensor_.steps_per_turn != 0 ? SensorPlace{sensor_.origin, sensor_.tilt} : SensorPlace{declared, {}};
+  place_ = sensor_.steps_per_turn != 0 ? SensorPlace{sensor_.origin, sensor_.tilt, declared}
+                                       : SensorPlace{declared, {}, declared};
 }
 
 Decoder::Kind CloudColumns::decode(const Packet& packet, const Visitor& visit) {
@@ -60,6 +61,7 @@ Decoder::Kind CloudColumns::decode(const Packet& packet, const Visitor& visit) {
     return Kind::kForeign;
   }
   ++counts_.data;
+  frame_ = scan.cloud->header.frame_id;
   estimateSensor(cloud);
   const bool has_other_rows = !cells_.empty() && cells_.size() != cloud.height;
   cells_.resize(cloud.height);

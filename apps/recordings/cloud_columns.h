@@ -44,6 +44,8 @@ class CloudColumns : public Decoder {
   SensorPlace sensorPlace() const override { return place_; }
   bool turnsClockwise() const override { return sensor_.clockwise || sensor_.steps_per_turn == 0; }
 
+  /// Name of the latest cloud's frame; "" if it has none.
+  const std::string& frame() const { return frame_; }
   /// The clouds that were left out since they are malformed, or since they have no rows: a line each; empty if none.
   std::vector<std::string> leftOut() const;
 
@@ -54,7 +56,8 @@ class CloudColumns : public Decoder {
   std::vector<Cell> cells_;
   lisco::SensorHints sensor_;  ///< estimate of the last cloud
   SensorPlace place_;          ///< by the same, or as the cloud declares it if no rotating sensor is recognized
-  double azimuth_ = 0;         ///< of the last column
+  std::string frame_;
+  double azimuth_ = 0;  ///< of the last column
   std::uint64_t malformed_ = 0, without_rows_ = 0;
   std::string first_malformed_;  ///< when, and why
 };

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <map>
 
+#include "io/time_limits.h"
 #include "recordings/bytes.h"
 #include "recordings/chunked_recording.h"
 #include "recordings/compression.h"
@@ -105,7 +106,7 @@ class Mcap : public ChunkedRecording {
       const auto found = channels_.find(channel);
       if (found == channels_.end()) throw Broken("a message of an unknown channel");
       if (!isSelected(found->second)) return false;
-      message = {found->second, static_cast<std::int64_t>(time), content.data(), content.left()};
+      message = {found->second, limitedTime(static_cast<std::int64_t>(time)), content.data(), content.left()};
       return true;
     }
     return false;
@@ -166,7 +167,7 @@ class Mcap : public ChunkedRecording {
 
   void readStatistics(ByteCursor content) {
     content.bytes(8 + 2 + 4 + 4 + 4 + 4);  // counts of messages, schemas, channels, attachments, metadata, chunks
-    start_ns_ = static_cast<std::int64_t>(content.number<std::uint64_t>());
+    start_ns_ = limitedTime(static_cast<std::int64_t>(content.number<std::uint64_t>()));
     content.bytes(8);
     ByteCursor counts = content.part(content.number<std::uint32_t>());
     while (counts.left() > 0) {

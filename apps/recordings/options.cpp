@@ -2,7 +2,9 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "recordings/options.h"
 
+#include <limits>
 #include <stdexcept>
+#include <vector>
 
 #include <boost/algorithm/string/join.hpp>
 
@@ -24,7 +26,41 @@ Turning turningOf(const std::string& text) {
   throw std::runtime_error("--turning must be driver or manual, not '" + text + "'");
 }
 
+const char* nameOf(InputKind kind) {
+  switch (kind) {
+    case InputKind::kCloudFiles:
+      return "files of clouds";
+    case InputKind::kRecordedClouds:
+      return "clouds";
+    case InputKind::kRecordedPackets:
+      return "recordings";
+    case InputKind::kCapture:
+      return "captures";
+  }
+  return "";
+}
+
 }  // namespace
+
+std::string withoutEffect(InputKind kind, const RecordingOptions& recording, const DecoderOptions& decoder,
+                          bool has_port) {
+  const bool is_recording = kind == InputKind::kRecordedClouds || kind == InputKind::kRecordedPackets;
+  const bool has_packets = kind == InputKind::kRecordedPackets || kind == InputKind::kCapture;
+  std::vector<std::string> names;
+  const auto add = [&names](bool is_idle, const char* name) {
+    if (is_idle) names.emplace_back(name);
+  };
+  add(!recording.topic.empty() && !is_recording, "--topic");
+  add(recording.span.from > 0 && kind == InputKind::kCloudFiles, "--from");
+  add(recording.span.to < std::numeric_limits<double>::infinity() && kind == InputKind::kCloudFiles, "--to");
+  add(has_port && kind != InputKind::kCapture, "--port");
+  add(!decoder.sensor.empty() && !has_packets, "--sensor");
+  add(!decoder.calibration.empty() && !has_packets, "--calibration");
+  add(!decoder.metadata.empty() && !has_packets, "--metadata");
+  add(decoder.returns != DecoderOptions().returns && !has_packets, "--return");
+  add(decoder.turning != DecoderOptions().turning && !has_packets, "--turning");
+  return names.empty() ? "" : boost::algorithm::join(names, ", ") + ": without effect on " + nameOf(kind);
+}
 
 void addSensorOptions(boost::program_options::options_description& shown, DecoderOptions& decoder) {
   const std::string sensors = "of packets: the sensor: " + boost::algorithm::join(decodableSensors(), ", ");

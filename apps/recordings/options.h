@@ -25,6 +25,12 @@ struct RecordingOptions {
   bool areGiven() const { return !topic.empty() || every != 1 || isSpanGiven(); }
 };
 
+enum class InputKind { kCloudFiles, kRecordedClouds, kRecordedPackets, kCapture };
+
+/// A line about the options that were given and do not act on such an input; "" if all do.
+std::string withoutEffect(InputKind kind, const RecordingOptions& recording, const DecoderOptions& decoder,
+                          bool has_port);
+
 /// Adds the options that name a sensor: --sensor, --calibration, --metadata, --return and
 /// --turning.
 void addSensorOptions(boost::program_options::options_description& shown, DecoderOptions& decoder);

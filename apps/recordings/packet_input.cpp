@@ -53,7 +53,7 @@ class FirstPackets : public PacketSource {
       : source_(source), is_interrupted_(is_interrupted) {}
 
   Arrival next(Packet& packet) override {
-    constexpr std::uint64_t kPackets = 100000;  // a minute or more
+    constexpr std::uint64_t kPackets = 100000;  // 8 s of a VLS-128 with two returns, two minutes of a VLP-16
     if (packets_ == kPackets || is_interrupted_()) return Arrival::kEnd;
     ++packets_;
     return source_.next(packet);
@@ -109,11 +109,13 @@ bool isPipe(const fs::path& input) {
 /// Opens the packets from their beginning; empty if they can be read only once.
 using OpenPackets = std::function<std::unique_ptr<PacketSource>()>;
 
-/// Finds the metadata of an Ouster sensor beside the input: by its name or, if the sensor is known to be one, by the
-/// packets that it describes.
+/// Finds the metadata of an Ouster sensor beside the input: by its name, or by the packets that it describes. If the
+/// sensor is not named, and the packets can be read again, it must describe them.
 void findMetadata(const fs::path& input, DecoderOptions& decoder, std::vector<std::string>& notes,
                   const OpenPackets& open) {
   MetadataBeside beside = metadataBeside(input);
+  const bool may_be_of_another = decoder.sensor.empty() && open;
+  if (!beside.named.empty() && may_be_of_another && !describes(beside.named, *open())) beside.named.clear();
   if (beside.named.empty()) {
     std::vector<fs::path> fitting;
     for (const fs::path& file : beside.all)
@@ -178,14 +180,15 @@ PacketInput openPackets(const fs::path& input, const RecordingOptions& options, 
                         std::optional<std::uint16_t> port, const std::function<bool()>& is_interrupted) {
   PacketInput packets;
   const bool is_recording = isRecording(input);
+  const InputKind kind = is_recording ? InputKind::kRecordedPackets : InputKind::kCapture;
+  if (const std::string idle = withoutEffect(kind, options, decoder, port.has_value()); !idle.empty())
+    packets.notes.push_back(idle);
   std::size_t topic = 0;
   std::string maker;
   if (is_recording) {
     const std::unique_ptr<Recording> recording = openRecording(input);
     topic = chooseTopic(*recording, input, options.topic, true);
     const Topic& chosen = recording->topics()[topic];
-    if (kindOf(chosen) != TopicKind::kPackets)
-      fail(input, "topic " + chosen.name + " holds clouds, which need no --sensor");
     maker = makerOfPackets(chosen.type);
     const bool is_ouster = decoder.sensor == kOuster || (decoder.sensor.empty() && boost::contains(maker, "Ouster"));
     if (is_ouster && decoder.metadata.empty()) {
@@ -211,7 +214,7 @@ PacketInput openPackets(const fs::path& input, const RecordingOptions& options, 
   if (decoder.metadata.empty() && decoder.metadata_json.empty() && (decoder.sensor == kOuster || may_be_ouster))
     findMetadata(input, decoder, packets.notes, open_again);
   if (decoder.sensor.empty())
-    findSensor(input, decoder, packets.notes, open_again, options.areGiven() || port.has_value());
+    findSensor(input, decoder, packets.notes, open_again, options.isSpanGiven() || port.has_value());
   if (decoder.sensor == kOuster && decoder.metadata.empty() && decoder.metadata_json.empty()) {
     const std::string beside = fileNamesOf(metadataBeside(input).all);
     fail(input, "needs --metadata FILE, the JSON file of the Ouster sensor" +

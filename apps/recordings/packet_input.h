@@ -15,7 +15,7 @@
 
 namespace lisco_apps {
 
-/// Whether an input is a capture of packets (pcap, pcapng), by its ending.
+/// Whether an input is a capture of packets (pcap, pcapng, cap), by its ending.
 bool isCapture(const fs::path& input);
 
 /// "A, B": files without their folders.

@@ -6,12 +6,18 @@
 #include <array>
 #include <string_view>
 
+#include "io/text.h"
 #include "recordings/message_fields.h"
 
 namespace lisco_apps {
 namespace {
 
 using Packets = std::vector<Packet>;
+
+/// For %llu.
+unsigned long long number(std::uint64_t count) {
+  return count;
+}
 
 /// A packet with the time at which the driver received it, or else the message's.
 Packet packetOf(const std::uint8_t* data, std::size_t size, std::int64_t stamp_ns, const Message& message) {
@@ -51,10 +57,10 @@ void readNebulaPackets(MessageFields& fields, const Message& message, Packets& p
   }
 }
 
-/// An array of bytes.
+/// An array of bytes. Older drivers append one to a packet; packets of all profiles have an even number.
 void readOusterPacket(MessageFields& fields, const Message& message, Packets& packets) {
   const MessageFields::Span data = fields.array();
-  packets.push_back(packetOf(data.data, data.size, 0, message));
+  packets.push_back(packetOf(data.data, data.size / 2 * 2, 0, message));
 }
 
 struct PacketType {
@@ -96,20 +102,27 @@ std::string textIn(const Message& message, const Topic& topic) {
   return MessageFields(message, topic.serialization).text();
 }
 
+std::string MessagePackets::malformedOnes() const {
+  if (malformed_ == 0) return "";
+  return formatted("%llu message%s of %s malformed, the first is number ", number(malformed_),
+                   malformed_ == 1 ? "" : "s", reader_->topic().name.c_str()) +
+         first_malformed_;
+}
+
 PacketSource::Arrival MessagePackets::next(Packet& packet) {
   while (next_ == waiting_.size()) {
     next_ = 0;
     waiting_.clear();
     Message message;
     if (!reader_->next(message)) {
-      error_ = reader_->error();
+      error_ = reader_->error().empty() ? malformedOnes() : reader_->error();
       return Arrival::kEnd;
     }
     try {
       packetsIn(message, reader_->topic(), waiting_);
-    } catch (const Broken&) {
+    } catch (const Broken& why) {
       ++foreign_;
-      waiting_.clear();
+      if (++malformed_ == 1) first_malformed_ = formatted("%llu: ", number(reader_->number())) + why.what();
     }
   }
   packet = waiting_[next_++];

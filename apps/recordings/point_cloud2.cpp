@@ -127,6 +127,8 @@ Scan scanOf(const pcl::PCLPointCloud2& message) {
     is_same = is_same && static_cast<std::size_t>(point_of_cell[cell]) == cell;
   }
   scan.fields = withoutPadding(message);
+  if (scan.cloud->empty())  // of any number of empty rows
+    scan.cloud->width = scan.cloud->height = scan.fields.width = scan.fields.height = 0;
   if (is_same || arranged->height < 2) return scan;
   scan.note = formatted("arranged by ring in %u rows x %u columns", arranged->height, arranged->width);
   scan.arranged = std::move(arranged);

@@ -114,14 +114,15 @@ class ScanSource::Messages : public Sequence {
   Messages(fs::path file, std::unique_ptr<TopicReader> reader) : file_(std::move(file)), reader_(std::move(reader)) {}
 
   std::optional<ScanItem> next() override {
-    const Topic& topic = reader_->topic();
     Message message;
     if (!reader_->next(message)) {
       if (!reader_->error().empty()) throw std::runtime_error(reader_->error());
-      if (!has_begun_) fail(file_, "topic " + topic.name + " has no message, or none between --from and --to");
+      if (!has_begun_)
+        fail(file_, "topic " + reader_->topic().name + " has no message, or none between --from and --to");
       return std::nullopt;
     }
     has_begun_ = true;
+    const Topic& topic = reader_->topic();  // valid until the next message, which may add topics
     ScanItem item = itemOf(file_, reader_->number(), message.time_ns);
     const std::string malformed =
         file_.string() +
@@ -272,6 +273,7 @@ std::unique_ptr<ScanSource::Sequence> ScanSource::open(const fs::path& file) {
     const std::size_t topic = chooseTopic(*recording, file, part.topic, !options_.decoder.sensor.empty());
     if (kindOf(recording->topics()[topic]) == TopicKind::kClouds) {
       note_(file.string() + ": topic " + recording->topics()[topic].name);
+      noteIdle(InputKind::kRecordedClouds, file.string() + ": ");
       return std::make_unique<Messages>(
           file, std::make_unique<TopicReader>(std::move(recording), topic, part.span, part.every));
     }
@@ -279,6 +281,11 @@ std::unique_ptr<ScanSource::Sequence> ScanSource::open(const fs::path& file) {
   PacketInput packets = openPackets(file, part, options_.decoder, options_.port, is_interrupted_);
   for (const std::string& note : packets.notes) note_(file.string() + ": " + note);
   return std::make_unique<Turns>(file, std::move(packets), part);
+}
+
+void ScanSource::noteIdle(InputKind kind, const std::string& heading) const {
+  const std::string idle = withoutEffect(kind, options_.recording, options_.decoder, options_.port.has_value());
+  if (!idle.empty()) note_(heading + idle);
 }
 
 std::optional<ScanItem> ScanSource::next() {
@@ -292,6 +299,7 @@ std::optional<ScanItem> ScanSource::next() {
     ScanItem item;
     try {
       if (!isRecording(file) && !isCapture(file)) {
+        if (scan_files_ == 0 && !hasRecording()) noteIdle(InputKind::kCloudFiles, "");
         if (scan_files_++ % options_.recording.every != 0) {
           ++at_;
           continue;

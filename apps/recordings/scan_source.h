@@ -76,6 +76,8 @@ class ScanSource {
   class Sequence;
 
   std::unique_ptr<Sequence> open(const fs::path& file);
+  /// Notes the options that do not act on a kind of input.
+  void noteIdle(InputKind kind, const std::string& heading) const;
 
   InputOptions options_;
   std::function<bool()> is_interrupted_;

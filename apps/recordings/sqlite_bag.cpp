@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "io/time_limits.h"
 #include "recordings/bytes.h"
 #include "recordings/compression.h"
 #include "recordings/recording.h"
@@ -149,7 +150,7 @@ class SqliteBag : public Recording {
         continue;
       ++rows_;
       if (!isSelected(found->second)) continue;
-      message = {found->second, time.number, data.data, data.size};
+      message = {found->second, limitedTime(time.number), data.data, data.size};
       try {
         decompressIfNeeded(message);
       } catch (const Broken&) {
@@ -244,7 +245,7 @@ class SqliteBag : public Recording {
       const auto topic = topic_of_id_.find(counts.number(0));
       if (topic == topic_of_id_.end()) continue;
       topics_[topic->second].messages += static_cast<std::uint64_t>(counts.number(1));
-      start_ns_ = is_first ? counts.number(2) : std::min(start_ns_, counts.number(2));
+      start_ns_ = limitedTime(is_first ? counts.number(2) : std::min(start_ns_, counts.number(2)));
       is_first = false;
     }
   }

@@ -28,6 +28,7 @@ class TopicReader {
     recording_->select({topic_});
   }
 
+  /// Valid until next (), which may find further topics.
   const Topic& topic() const { return recording_->topics()[topic_]; }
   const std::string& error() const { return recording_->error(); }
   double share() const { return recording_->share(); }

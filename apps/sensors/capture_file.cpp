@@ -14,12 +14,13 @@
 #include <boost/endian/conversion.hpp>
 
 #include "io/text.h"
+#include "io/time_limits.h"
 
 namespace lisco_apps {
 namespace {
 
 /// The rest of a frame, in network byte order.
-struct Bytes {
+struct FrameRest {
   const std::uint8_t* data;
   std::size_t size;
 
@@ -38,7 +39,7 @@ constexpr unsigned kIpv4 = 0x0800, kIpv6 = 0x86DD, kUdp = 17;
 constexpr std::array<unsigned, 3> kVlanTags{0x8100, 0x88A8, 0x9100};
 
 /// Skips a link header and VLAN tags after it. \return false if their EtherType is not IP
-bool skipLink(Bytes& frame, std::size_t type_at, std::size_t header) {
+bool skipLink(FrameRest& frame, std::size_t type_at, std::size_t header) {
   if (frame.size < header) return false;
   unsigned type = frame.u16(type_at);
   frame.skip(header);
@@ -56,7 +57,7 @@ void setKey(Fragment& fragment, const std::uint8_t* addresses, std::size_t size,
   std::copy_n(identification, identification_size, fragment.key.begin() + 32);
 }
 
-bool skipIpv4(Bytes& packet, std::optional<Fragment>& part) {
+bool skipIpv4(FrameRest& packet, std::optional<Fragment>& part) {
   if (packet.size < 20) return false;
   const std::size_t header = 4UL * (packet.u8(0) & 0xFU);
   const unsigned position = packet.u16(6);  // flags and offset
@@ -74,7 +75,7 @@ bool skipIpv4(Bytes& packet, std::optional<Fragment>& part) {
   return packet.skip(header);
 }
 
-bool skipIpv6(Bytes& packet, std::optional<Fragment>& part) {
+bool skipIpv6(FrameRest& packet, std::optional<Fragment>& part) {
   if (packet.size < 40) return false;
   const std::size_t length = packet.u16(4);
   const std::uint8_t* const addresses = packet.data + 8;
@@ -105,7 +106,7 @@ bool isKnown(int link_type) {
          link_type == DLT_IPV4 || link_type == DLT_IPV6 || link_type == DLT_NULL || link_type == DLT_LOOP;
 }
 
-bool skipToIp(Bytes& frame, int link_type) {
+bool skipToIp(FrameRest& frame, int link_type) {
   if (link_type == DLT_EN10MB) return skipLink(frame, 12, 14);
   if (link_type == DLT_LINUX_SLL) return skipLink(frame, 14, 16);
   if (link_type == DLT_LINUX_SLL2) return skipLink(frame, 0, 20);
@@ -114,14 +115,14 @@ bool skipToIp(Bytes& frame, int link_type) {
 }
 
 /// Reduces a frame to the content of its IP packet, of which it may be a part. \return false if it holds no UDP
-bool skipToUdp(Bytes& frame, int link_type, std::optional<Fragment>& part) {
+bool skipToUdp(FrameRest& frame, int link_type, std::optional<Fragment>& part) {
   if (!skipToIp(frame, link_type) || frame.size == 0) return false;
   const unsigned version = frame.u8(0) >> 4U;
   return version == 4 ? skipIpv4(frame, part) : version == 6 && skipIpv6(frame, part);
 }
 
 /// \return false if it is no whole UDP packet to this port
-bool skipToPayload(Bytes& frame, std::optional<std::uint16_t> port) {
+bool skipToPayload(FrameRest& frame, std::optional<std::uint16_t> port) {
   if (frame.size < 8 || (port && frame.u16(2) != *port)) return false;
   const std::size_t length = frame.u16(4);
   if (length > frame.size) return false;
@@ -166,9 +167,15 @@ double CaptureFile::share() const {
 PacketSource::Arrival CaptureFile::next(Packet& packet) {
   pcap_pkthdr* header = nullptr;
   const u_char* data = nullptr;
-  while (error_.empty() && pcap_next_ex(capture_.get(), &header, &data) == 1) {
-    const std::int64_t time_us = std::int64_t{1000000} * header->ts.tv_sec + header->ts.tv_usec;
-    Bytes payload{data, header->caplen};
+  const auto read = [&] {
+    errno = 0;
+    return pcap_next_ex(capture_.get(), &header, &data) == 1;
+  };
+  while (error_.empty() && read()) {
+    constexpr std::int64_t kMaxSeconds = kMaxTimeNs / 1000000000;
+    const std::int64_t time_us =
+        1000000 * std::clamp<std::int64_t>(header->ts.tv_sec, -kMaxSeconds, kMaxSeconds) + header->ts.tv_usec;
+    FrameRest payload{data, header->caplen};
     std::optional<Fragment> part;
     const bool is_udp = skipToUdp(payload, link_type_, part);
     if (is_udp && part) {
@@ -189,7 +196,8 @@ PacketSource::Arrival CaptureFile::next(Packet& packet) {
   }
   fragments_.clear();
   foreign_ = foreign_frames_ + fragments_.lost();
-  if (const char* const why = pcap_geterr(capture_.get()); error_.empty() && *why != '\0')
+  // A signal that ends the program may interrupt the reading of a pipe.
+  if (const char* const why = pcap_geterr(capture_.get()); error_.empty() && *why != '\0' && errno != EINTR)
     error_ = file_.string() + ": breaks off: " + why;
   return Arrival::kEnd;
 }

@@ -40,8 +40,9 @@ struct Column {
 struct SensorPlace {
   std::array<float, 3> origin{};  ///< metres
   std::array<float, 2> tilt{};    ///< by which its horizon rises along x and y, metres per metre
+  std::array<float, 3> stated{};  ///< origin that the input states, from which ranges count
 
-  /// Whether two places differ by no more than estimates from one cloud to the next do.
+  /// Whether two places differ by no more than estimates from one cloud to the next do, whatever the input states.
   bool isAbout(const SensorPlace& other) const;
 };
 

@@ -13,7 +13,7 @@ namespace lisco_apps {
 
 /// A part of an IP packet's content.
 struct Fragment {
-  std::array<std::uint8_t, 40> key{};  ///< of its packet: addresses, identification, protocol
+  std::array<std::uint8_t, 40> key{};  ///< of its packet: addresses and identification
   std::size_t offset = 0;              ///< bytes, a multiple of 8
   bool is_last = false;
   std::string_view content;

@@ -9,7 +9,7 @@ void GroundStage::decideByPlace(PreparedColumn& column) const {
   column.uses.resize(column.cells.size());
   for (std::size_t i = 0; i < column.cells.size(); ++i) {
     const Cell& cell = column.cells[i];
-    if (!lisco::isReturn(cell.x, cell.y, cell.z) || !region_.contains(cell.x, cell.y, cell.z))
+    if (!lisco::isReturn(cell.x, cell.y, cell.z) || !region_.contains(cell.x, cell.y, cell.z, sensor_.stated))
       column.uses[i] = CellUse::kNothing;
     else
       column.uses[i] = cell.z < ground_.height ? CellUse::kGround : CellUse::kClustered;

@@ -59,7 +59,10 @@ class GroundStage {
   /// \param take as in add ()
   template <typename Take>
   void setSensor(const SensorPlace& sensor, Take&& take) {
-    if (sensor.isAbout(sensor_)) return;
+    if (sensor.isAbout(sensor_)) {
+      sensor_.stated = sensor.stated;
+      return;
+    }
     finish(take);
     sensor_ = sensor;
     lasers_ = 0;

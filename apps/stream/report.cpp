@@ -15,6 +15,8 @@
 namespace lisco_apps {
 namespace {
 
+constexpr const char* kWindow = "window";
+
 /// For %llu.
 unsigned long long number(std::uint64_t count) {
   return count;
@@ -87,7 +89,7 @@ std::string Report::countTurn(const char* name, const Turn& turn) {
 }
 
 void Report::found(const Turn& turn, const std::vector<FoundCluster>& clusters, Clock::duration latency) {
-  if (turn.is_window) span_ = "window";
+  if (turn.is_window) span_ = kWindow;
   const std::string heading = countTurn(span_, turn);
   for (const FoundCluster& cluster : clusters) count(cluster);
   if (clouds_ != nullptr) clouds_->write(turn);
@@ -207,6 +209,7 @@ void Report::printStatistics(const PacketSource& source, const Decoder& decoder,
                      number(totals_.turns), number(totals_.columns), number(totals_.returns));
   if (totals_.ground > 0)
     table += formatted(" and %llu of the ground, left out; --ground none keeps them", number(totals_.ground));
+  if (span_ == kWindow) table += "; columns of several windows count as often";
   table += formatted("\nclusters    %llu, of %llu returns\n", number(totals_.clusters), number(totals_.in_clusters));
   const std::optional<std::uint64_t> outliers = stream.outliers();
   if (outliers)

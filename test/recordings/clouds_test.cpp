@@ -343,6 +343,9 @@ TEST(CloudMessages, OfManyEmptyRowsTakeNoTime) {
     cloud.row_step = 0;
     EXPECT_THROW(lisco_apps::scanOf(read(messageOf(cloud))), lisco_apps::Broken) << width;
   }
+  cloud.data.clear();
+  cloud.width = 0;
+  EXPECT_EQ(lisco_apps::scanOf(read(messageOf(cloud))).cloud->height, 0U) << "a row takes memory";
 }
 
 TEST(CloudMessages, WithoutCoordinatesAreRefusedWithTheReason) {

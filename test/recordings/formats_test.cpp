@@ -220,6 +220,12 @@ TEST_F(Formats, JoinTheSplitsOfAFolder) {
   reader = openRecording(file("named"));
   EXPECT_EQ(messagesOf(*reader).size(), 20U);
   EXPECT_NE(reader->error().find("first.db3: does not exist"), std::string::npos) << reader->error();
+
+  // Names of folders, such as the bag's own, are refused.
+  for (const char* const name : {"", ".", "sub/", ".."}) {
+    std::ofstream(file("named/metadata.yaml")) << "  relative_file_paths:\n    - \"" << name << "\"\n";
+    EXPECT_NE(refusalOf([&] { openRecording(file("named")); }).find("names a folder"), std::string::npos) << name;
+  }
 }
 
 }  // namespace

@@ -26,7 +26,8 @@ std::string contentOf(const Packet& packet) {
   return {reinterpret_cast<const char*>(packet.data), packet.size};
 }
 
-TEST(PacketMessages, OfTwoNebulaPackets) {
+/// A nebula_msgs/NebulaPackets.
+std::string twoNebulaPackets() {
   CdrText message;
   message.header(1'000'000'000, "lidar");
   message.number(std::uint32_t{2});
@@ -35,9 +36,13 @@ TEST(PacketMessages, OfTwoNebulaPackets) {
     message.number(static_cast<std::uint32_t>(std::string(data).size()));
     message.bytes() += data;
   }
+  return message.done();
+}
+
+TEST(PacketMessages, OfTwoNebulaPackets) {
   const Topic topic{"/p", "nebula_msgs/NebulaPackets", Serialization::kCdr, 1};
   std::vector<Packet> packets;
-  lisco_apps::packetsIn(messageOf(message.done()), topic, packets);
+  lisco_apps::packetsIn(messageOf(twoNebulaPackets()), topic, packets);
   ASSERT_EQ(packets.size(), 2U);
   EXPECT_EQ(contentOf(packets[0]), "odd");
   EXPECT_EQ(contentOf(packets[1]), "four");
@@ -85,6 +90,37 @@ TEST(PacketMessages, ThatEndTooEarlyAreRefused) {
   std::vector<Packet> packets;
   EXPECT_THROW(lisco_apps::packetsIn(messageOf(message.done()), topic, packets), lisco_apps::Broken);
   EXPECT_THROW(lisco_apps::packetsIn(messageOf(""), topic, packets), lisco_apps::Broken);
+}
+
+TEST(PacketMessages, OfOlderOusterDriversHaveAByteMore) {
+  const Topic topic{"/p", "ouster_ros/PacketMsg", Serialization::kRos1, 1};
+  std::vector<Packet> packets;
+  for (const std::size_t bytes : {12608U, 12609U}) {
+    std::string message;
+    lisco_apps::putNumber(message, static_cast<std::uint32_t>(bytes));
+    message += std::string(bytes, 'o');
+    lisco_apps::packetsIn(messageOf(message), topic, packets);
+    ASSERT_EQ(packets.size(), 1U);
+    EXPECT_EQ(packets[0].size, 12608U);
+  }
+}
+
+class RecordedMessages : public FolderTest {};
+
+TEST_F(RecordedMessages, GiveTheirPacketsUpToAFaultAndSaySo) {
+  TestRecording recording{{{"/p", "nebula_msgs/msg/NebulaPackets"}}, {}};
+  for (std::int64_t i = 0; i < 3; ++i)
+    recording.messages.push_back({0, 1'600'000'000'000'000'000 + i, twoNebulaPackets()});
+  recording.messages[1].data.pop_back();
+  writeMcap(recording, file("a.mcap"));
+  lisco_apps::MessagePackets source(
+      std::make_unique<lisco_apps::TopicReader>(lisco_apps::openRecording(file("a.mcap")), 0));
+  Packet packet;
+  std::vector<std::string> contents;
+  while (source.next(packet) == lisco_apps::PacketSource::Arrival::kPacket) contents.push_back(contentOf(packet));
+  EXPECT_EQ(contents, (std::vector<std::string>{"odd", "four", "odd", "odd", "four"}));
+  EXPECT_EQ(source.foreign(), 1U);
+  EXPECT_EQ(source.error(), "1 message of /p malformed, the first is number 2: a message that ends too early");
 }
 
 struct Bag {

@@ -160,6 +160,37 @@ TEST_F(Programs, WarnOfReturnsOffTheirColumns) {
   EXPECT_EQ(countOf("(outliers)", runLine(stream + "rotation").err), 0U);
 }
 
+TEST_F(Programs, CountRangesOfStreamsFromWhereTheInputStatesItsSensor) {
+  std::ostringstream pcd;
+  pcd << "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 300\nHEIGHT 4\n"
+         "VIEWPOINT 1000 2000 100 1 0 0 0\nPOINTS 1200\nDATA ascii\n";
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 300; ++column) {
+      const double azimuth = -0.02 * column;
+      pcd << 1000 + 5 * std::cos(azimuth) << ' ' << 2000 + 5 * std::sin(azimuth) << ' ' << 100.2 - 0.1 * row << '\n';
+    }
+  std::ofstream(folder_ / "map.pcd") << pcd.str();
+  const std::string stream = std::string(LISCO_STREAM) + " map.pcd -t 0.5 --ground none";
+  EXPECT_EQ(countOf("1200 returns, 1 clusters", runLine(stream + " --min-range 4 --max-range 6").out), 1U);
+  EXPECT_EQ(countOf(" 0 returns, 0 clusters", runLine(stream + " --min-range 6").out), 1U);
+}
+
+TEST_F(Programs, SayWhichOptionsDoNotAct) {
+  writeMcap(walls(1), "a.mcap");
+  std::ofstream(folder_ / "a.bin", std::ios::binary) << std::string(1600, '\0');
+  for (const std::string& program : {program_, std::string(LISCO_STREAM)}) {
+    EXPECT_EQ(countOf("a.mcap: --port, --sensor, --return: without effect on clouds",
+                      runLine(program + " a.mcap --topic /points -t 0.5 --port 2368 --sensor vlp16 --return last").err),
+              1U)
+        << program;
+    EXPECT_EQ(countOf("--topic, --from, --to: without effect on files of clouds",
+                      runLine(program + " a.bin -t 0.5 --topic /p --from 1 --to 2 --bin-fields 4").err),
+              1U)
+        << program;
+    EXPECT_EQ(countOf("without effect", runLine(program + " a.mcap -t 0.5 --from 0 --to 9 --topic /points").err), 0U);
+  }
+}
+
 TEST_F(Programs, SayWhichCloudsAStreamLeavesOut) {
   TestRecording recording = walls(3);
   recording.messages[3].data.resize(300);
@@ -293,10 +324,50 @@ TEST_F(Programs, FindTheSensorByItsPackets) {
   EXPECT_EQ(countOf("metadata beside it: OS-1-64_sensor_config_reduced.json", ouster.err), 1U) << ouster.err;
 }
 
+TEST_F(Programs, TakeMetadataBesideOnlyIfItDescribesThePackets) {
+  const fs::path capture = data() / "captures/vlp16_close.pcap",
+                 metadata = data() / "ouster/OS-1-64_sensor_config_reduced.json";
+  if (!fs::exists(capture) || !fs::exists(metadata)) GTEST_SKIP() << "no " << capture << " or " << metadata;
+  fs::create_symlink(fs::absolute(capture), folder_ / "drive_velodyne.pcap");
+  fs::create_symlink(fs::absolute(metadata), folder_ / "drive.json");
+  const Outcome outcome = runLine(std::string(LISCO_STREAM) + " drive_velodyne.pcap -t 0.5 --ground none");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(countOf("sensor vlp16, by its packets", outcome.err), 1U) << outcome.err;
+}
+
+TEST_F(Programs, EndAPipeOnASignalWithoutAnError) {
+  const fs::path capture = data() / "captures/vlp16_street.pcap";
+  if (!fs::exists(capture)) GTEST_SKIP() << "no " << capture;
+  const Outcome outcome =
+      runLine("sh -c '(head -c 300000 " + capture.string() + "; sleep 4) | " + LISCO_STREAM +
+              " /dev/stdin --sensor vlp16 -t 0.5 --ground none & p=$!; sleep 2; kill -INT $p; wait $p'");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_GT(countOf("rotation 1: ", outcome.out), 0U) << outcome.out;
+  EXPECT_EQ(countOf("breaks off", outcome.err), 0U) << outcome.err;
+}
+
+TEST_F(Programs, KeepEarlierCloudsIfAStreamCannotBegin) {
+  writeMcap(walls(3), "a.mcap");
+  writeMcap(walls(1), "precious.mcap");
+  const std::string stream = std::string(LISCO_STREAM) + " a.mcap -t 0.5 --ground none -o out";
+  ASSERT_EQ(runLine(stream).status, 0);
+  ASSERT_TRUE(fs::exists(folder_ / "out/rotation_000003.pcd"));
+  EXPECT_EQ(runLine(stream + " --bag precious.mcap").status, 2);
+  EXPECT_TRUE(fs::exists(folder_ / "out/rotation_000003.pcd"));
+}
+
 TEST_F(Programs, WriteRotationsAsARecording) {
-  writeMcap(walls(5), "a.mcap");
+  TestRecording recording = walls(5);
+  for (std::size_t i = 1; i < recording.messages.size(); i += 2) {
+    std::string& cloud = recording.messages[i].data;
+    cloud.replace(cloud.find("lidar"), 5, "robot");
+  }
+  writeMcap(recording, "a.mcap");
   const std::string stream = std::string(LISCO_STREAM) + " a.mcap -t 0.5 --bag out.mcap";
   ASSERT_EQ(runLine(stream).status, 0);
+  for (const lisco_test::ReadMessage& message :
+       lisco_test::messagesOf(*lisco_apps::openRecording(folder_ / "out.mcap")))
+    EXPECT_GT(countOf("robot", message.data), 0U) << "the frame, in clouds and in markers";
   const Outcome again = run("out.mcap -t 0.5");
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(countOf("4 rows x 60 columns, 240 returns", again.out), 5U) << again.out;
