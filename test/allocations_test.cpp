@@ -71,6 +71,25 @@ TEST(Allocations, GroundFilterAllocatesNothingAfterBegin) {
   EXPECT_EQ(decided, 3 * kSteps);
 }
 
+TEST(Allocations, GroundFilterAllocatesNothingAfterItIsCopied) {
+  const auto columns = oneTurn();
+  const auto ignore = [](std::size_t, const std::uint8_t*, std::size_t) {};
+  lisco::GroundFilter filter;
+  filter.begin({}, kLasers);
+  filter.begin({}, kLasers / 2);
+  for (int i = 0; i < 16; ++i) filter.addColumn(columns[0].data(), 2, ignore);  // of two lasers
+  lisco::GroundFilter assigned;
+  assigned = filter;
+  lisco::GroundFilter copy(filter);
+  const std::size_t before = allocationCount();
+  for (lisco::GroundFilter* const one : {&copy, &assigned}) {
+    for (const auto& column : columns) one->addColumn(column.data(), kLasers / 2, ignore);
+    one->begin({}, kLasers);
+    for (const auto& column : columns) one->addColumn(column.data(), kLasers, ignore);
+  }
+  EXPECT_EQ(allocationCount(), before);
+}
+
 TEST(Allocations, AreCounted) {
   EXPECT_EQ(allocationsOf(2, [] { ::operator delete(::operator new(1)); }), 1U);
 }

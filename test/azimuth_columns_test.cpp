@@ -77,6 +77,18 @@ TEST(AzimuthColumns, HaveEachReturnOnceAndNothingElse) {
   }
 }
 
+TEST(AzimuthColumns, HaveABoundedNumberOfRows) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> along(0.0F, 100.0F);
+  std::vector<Point> points;
+  for (int i = 0; i < 20000; ++i)  // as seen from the origin of a map, all of one azimuth
+    points.push_back({500000.0F + along(random), 4000000.0F + along(random), along(random)});
+  const AzimuthColumns columns = sorted(points);
+  EXPECT_EQ(columns.rows(), 1024U);
+  EXPECT_LT(columns.columns(), 30U);
+  EXPECT_EQ(countCells(columns, points.size()), std::vector<int>(points.size(), 1));
+}
+
 TEST(AzimuthColumns, HaveOneAzimuthAndRisingRows) {
   const Point origin{12.0F, -7.0F, 2.0F};
   const std::vector<Point> points = turn(900, 32, origin);

@@ -374,6 +374,11 @@ TEST(GroundFilter, RejectsBadCallsAndParameters) {
   const auto cell_at = [](std::size_t, std::size_t) { return lisco::kNoReturn; };
   std::uint8_t ground = 7;
   EXPECT_THROW(filter.filterScan(parameters, 1, 1, cell_at, &ground), std::invalid_argument);
+  for (const float coordinate : {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
+    lisco::GroundParameters nowhere;
+    nowhere.sensor.origin[1] = coordinate;
+    EXPECT_THROW(filter.begin(nowhere, 4), std::invalid_argument) << coordinate;
+  }
   for (const float slope : {10.1F, -1e30F, std::numeric_limits<float>::quiet_NaN()})
     for (const std::size_t axis : {0, 1}) {
       lisco::GroundParameters sloping, tilted;
@@ -383,6 +388,23 @@ TEST(GroundFilter, RejectsBadCallsAndParameters) {
         EXPECT_THROW(estimateGroundPlane(1, 1, steep, lisco::CellSource(cell_at)), std::invalid_argument) << slope;
       }
     }
+}
+
+TEST(GroundFilter, NeedsABeginAfterAScan) {
+  const auto ignore = [](std::size_t, const std::uint8_t*, std::size_t) {};
+  const Scan with_ground = planeWithWall(32, 1000, 20.0);
+  Scan without = with_ground;
+  for (lisco::Return& cell : without.cells) cell = lisco::kNoReturn;
+  lisco::GroundFilter filter;
+  std::vector<std::uint8_t> ground(with_ground.cells.size());
+  for (const Scan& scan : {with_ground, without}) {
+    filter.begin({}, 32);
+    filter.filterScan(
+        {}, 1000, 32, [&](std::size_t laser, std::size_t column) { return scan.cells[laser * 1000 + column]; },
+        ground.data());
+    EXPECT_THROW(filter.addColumn(scan.cells.data(), 4, ignore), std::logic_error);
+    filter.finish(ignore);
+  }
 }
 
 TEST(LabelGround, SortsUnorganizedPoints) {
@@ -457,6 +479,9 @@ TEST(LabelGround, RejectsBadArguments) {
   EXPECT_THROW(lisco::labelGround(nullptr, 1, 12, parameters, &ground), std::invalid_argument);
   EXPECT_THROW(lisco::labelGround(point, 1, 12, parameters, nullptr), std::invalid_argument);
   EXPECT_NO_THROW(lisco::labelGround(nullptr, 0, 12, parameters, nullptr));
+  parameters.origin[2] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THROW(lisco::labelGround(point, 1, 12, parameters, &ground), std::invalid_argument);
+  parameters.origin[2] = 0.0F;
   parameters.lasers = 0;
   EXPECT_THROW(lisco::labelGround(point, 1, 12, parameters, &ground), std::invalid_argument);
 }

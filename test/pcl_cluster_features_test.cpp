@@ -113,6 +113,55 @@ TEST(PclClusterFeatures, LeavesOutPointsThatAreNotFinite) {
   EXPECT_TRUE(std::isfinite(features.box.length));
 }
 
+TEST(PclClusterFeatures, AreThoseOfTheLatestInput) {
+  const Cloud::Ptr cloud = twoWalls();
+  const auto some = std::make_shared<pcl::Indices>(pcl::Indices{0, 1, 2});
+  const auto chosen = std::make_shared<pcl::PointIndices>();
+  chosen->indices = *some;
+  pcl::LiscoClusterFeatures<pcl::PointXYZI> estimation;
+  lisco::ClusterFeatures features;
+  const auto compute = [&] {
+    estimation.setInputCloud(cloud);
+    estimation.compute();
+    return estimation.getFeatures(features);
+  };
+  ASSERT_TRUE(compute());
+  estimation.setInputCloud(twoWalls());
+  EXPECT_FALSE(estimation.getFeatures(features));
+  ASSERT_TRUE(compute());
+  estimation.setIndices(some);
+  EXPECT_FALSE(estimation.getFeatures(features));
+  estimation.compute();
+  ASSERT_TRUE(estimation.getFeatures(features));
+  EXPECT_EQ(features.size, 3U);
+  estimation.setIndices(pcl::IndicesConstPtr(some));
+  EXPECT_FALSE(estimation.getFeatures(features));
+  estimation.compute();
+  estimation.setIndices(pcl::PointIndicesConstPtr(chosen));
+  EXPECT_FALSE(estimation.getFeatures(features));
+  // Through the base class as well.
+  estimation.compute();
+  static_cast<pcl::PCLBase<pcl::PointXYZI>&>(estimation).setInputCloud(twoWalls());
+  EXPECT_FALSE(estimation.getFeatures(features));
+}
+
+TEST(PclClusterFeatures, NeedAFiniteSensorOrigin) {
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  auto cloud = twoWalls();
+  cloud->sensor_origin_[2] = std::numeric_limits<float>::quiet_NaN();
+  pcl::LiscoClusterFeatures<pcl::PointXYZI> estimation;
+  estimation.setInputCloud(cloud);
+  estimation.compute();
+  lisco::ClusterFeatures features;
+  EXPECT_FALSE(estimation.getFeatures(features));
+  std::vector<pcl::PointIndices> clusters(1);
+  clusters[0].indices = {0, 1};
+  std::vector<lisco::ClusterFeatures> all(3);
+  estimation.compute(clusters, all);
+  EXPECT_TRUE(all.empty());
+  pcl::console::setVerbosityLevel(pcl::console::L_INFO);
+}
+
 TEST(PclClusterFeatures, ReportsIndicesBeyondTheCloud) {
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
   const Cloud::Ptr cloud = twoWalls();

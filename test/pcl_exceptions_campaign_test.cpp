@@ -4,11 +4,14 @@
 // and a new rotation or stream is the oracle's. A program for itself: refused_allocations.cpp replaces operator new.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
+#include <new>
 #include <string>
 #include <utility>
 
 #include <pcl/console/print.h>
+#include <pcl/filters/lisco_ground_filter.h>
 
 #include "column_streams.h"
 #include "engine.h"
@@ -146,6 +149,68 @@ TEST_F(PclExceptionsCampaign, CloudsSurviveRefusedMemory) {
     if (HasFailure()) return;
   }
   EXPECT_GT(refused, timesEffort(6 * 20));
+}
+
+// --- The ground of a whole cloud ---------------------------------------------------------------------------------
+
+/// A sensor 1.8 m above a plane, within a wall.
+Cloud::Ptr streetScan(bool is_organized) {
+  constexpr std::uint32_t kLasers = 16, kColumns = 200;
+  auto cloud = std::make_shared<Cloud>(kColumns, kLasers);
+  for (std::uint32_t laser = 0; laser < kLasers; ++laser)
+    for (std::uint32_t column = 0; column < kColumns; ++column) {
+      const double azimuth = -2.0 * M_PI * column / kColumns, slope = 0.1 - 0.03 * laser;
+      const double rho = std::min(20.0, slope < 0.0 ? -1.8 / slope : 20.0);
+      cloud->at(column, laser) = PointXYZ(static_cast<float>(rho * std::cos(azimuth)),
+                                          static_cast<float>(rho * std::sin(azimuth)), static_cast<float>(rho * slope));
+    }
+  if (is_organized) return cloud;
+  cloud->width *= cloud->height;
+  cloud->height = 1;
+  return cloud;
+}
+
+class GroundSession {
+ public:
+  GroundSession(const Cloud::Ptr& cloud, const pcl::Indices& right) : right_(right) { filter_->setInputCloud(cloud); }
+
+  void call(std::size_t) {
+    objects_.assign(1, 7);
+    filter_->filter(objects_);
+  }
+  void checkInterrupted(std::size_t) {}
+  std::string redo() {
+    call(0);
+    return objects_ == right_ ? "" : std::to_string(objects_.size()) + " points remain";
+  }
+
+ private:
+  const pcl::Indices& right_;
+  std::unique_ptr<pcl::LiscoGroundFilter<PointXYZ>> filter_ = std::make_unique<pcl::LiscoGroundFilter<PointXYZ>>();
+  pcl::Indices objects_;
+};
+
+TEST_F(PclExceptionsCampaign, GroundFiltersSurviveRefusedMemory) {
+  for (const bool is_organized : {true, false}) {
+    const Cloud::Ptr cloud = streetScan(is_organized);
+    pcl::Indices right;
+    pcl::LiscoGroundFilter<PointXYZ> filter;
+    filter.setInputCloud(cloud);
+    filter.filter(right);
+    EXPECT_GT(right.size(), cloud->size() / 8);
+    EXPECT_LT(right.size(), cloud->size() / 2);
+    EXPECT_GT(refuseEachAllocation([&] { return GroundSession(cloud, right); }, 0), 20U);
+  }
+}
+
+TEST_F(PclExceptionsCampaign, GroundFiltersReportThatThereIsNoMemory) {
+  const Cloud::Ptr cloud = streetScan(true);
+  pcl::LiscoGroundFilter<PointXYZ> filter;
+  filter.setInputCloud(cloud);
+  pcl::Indices objects;
+  objects.reserve(cloud->size());
+  const RefusedAllocation refusal(20);
+  EXPECT_THROW(filter.filter(objects), std::bad_alloc);
 }
 
 // --- Streams --------------------------------------------------------------------------------------------------------

@@ -206,6 +206,63 @@ TEST(PclGroundFilter, RejectsBadParameters) {
   filter.setSensorHeight(1.8F);
   filter.filter(objects);
   EXPECT_FALSE(objects.empty());
+  auto nowhere = scan();
+  nowhere->sensor_origin_[1] = std::numeric_limits<float>::quiet_NaN();
+  filter.setInputCloud(nowhere);
+  filter.filter(objects);
+  EXPECT_TRUE(objects.empty());
+}
+
+TEST(PclGroundFilter, ReportsIndicesBeyondTheCloud) {
+  const auto cloud = scan();
+  pcl::LiscoGroundFilter<pcl::PointXYZI> filter(true);
+  filter.setInputCloud(cloud);
+  for (const pcl::index_t index : {-1, static_cast<pcl::index_t>(cloud->size())}) {
+    const pcl::Indices some{3, index, 5};
+    filter.setIndices(std::make_shared<pcl::Indices>(some));
+    pcl::Indices objects{1, 2, 3};
+    filter.setKeepOrganized(false);
+    filter.filter(objects);
+    EXPECT_TRUE(objects.empty());
+    EXPECT_TRUE(filter.getRemovedIndices()->empty());
+    Cloud output;
+    filter.setKeepOrganized(true);
+    filter.filter(output);
+    ASSERT_EQ(output.size(), cloud->size());
+    for (std::size_t i = 0; i < output.size(); ++i) EXPECT_EQ(output[i].intensity, (*cloud)[i].intensity);
+  }
+}
+
+TEST(PclGroundFilter, GivesRepeatedIndicesAsOften) {
+  const auto cloud = scan();
+  pcl::LiscoGroundFilter<pcl::PointXYZI> filter;
+  filter.setInputCloud(cloud);
+  pcl::Indices once, twice;
+  filter.filter(once);
+  pcl::Indices repeated(2 * cloud->size());
+  for (std::size_t i = 0; i < repeated.size(); ++i) repeated[i] = static_cast<pcl::index_t>(i / 2);
+  filter.setIndices(std::make_shared<pcl::Indices>(repeated));
+  filter.filter(twice);
+  ASSERT_EQ(twice.size(), 2 * once.size());
+  for (std::size_t i = 0; i < twice.size(); ++i) EXPECT_EQ(twice[i], once[i / 2]);
+}
+
+TEST(PclGroundFilter, FiltersCloudsOfOtherShapesInTurn) {
+  pcl::LiscoGroundFilter<pcl::PointXYZI> filter;
+  auto unorganized = scan(16, 900);
+  unorganized->width = static_cast<std::uint32_t>(unorganized->size());
+  unorganized->height = 1;
+  const std::vector<Cloud::Ptr> clouds{scan(64, 1000), unorganized, std::make_shared<Cloud>(), scan(16, 300), scan(32)};
+  for (int round = 0; round < 2; ++round)
+    for (const Cloud::Ptr& cloud : clouds) {
+      pcl::LiscoGroundFilter<pcl::PointXYZI> fresh;
+      pcl::Indices objects, expected;
+      fresh.setInputCloud(cloud);
+      fresh.filter(expected);
+      filter.setInputCloud(cloud);
+      filter.filter(objects);
+      EXPECT_EQ(objects, expected) << cloud->size();
+    }
 }
 
 TEST(PclGroundFilter, AcceptsCloudsWithoutReturns) {

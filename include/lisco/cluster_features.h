@@ -50,7 +50,7 @@ struct ClusterFeatures {
 /// \param points the first point: x, y and z as floats, metres; finite
 /// \param count number of points
 /// \param stride bytes from one point to the next, at least 12; points need not be aligned
-/// \param origin position of the sensor, metres
+/// \param origin position of the sensor, metres, finite
 /// \throws std::invalid_argument if the stride is below 12, or `points` is null while count is not 0
 LISCO_EXPORT ClusterFeatures clusterFeatures(const void* points, std::size_t count, std::size_t stride,
                                              const std::array<float, 3>& origin = {});

@@ -18,13 +18,15 @@ namespace lisco {
 
 /// Parameters of the ground filter. The z axis points up, to within about 10 degrees.
 struct GroundParameters {
-  /// Height of the sensor above the ground beneath it, metres; NaN: estimated from the returns.
+  /// Height of the sensor above the ground beneath it, metres, any finite value; NaN: estimated from the returns.
   float sensor_height = std::numeric_limits<float>::quiet_NaN();
   /// Slope of the ground around the sensor along x and y, metres per metre: where the estimate begins.
   std::array<float, 2> slope{0.0F, 0.0F};
-  /// Steepest slope of ground, degrees against the x-y plane of the cloud, 1 to 60.
+  /// Steepest slope of ground, degrees against the sensor's horizon, which is the x-y plane unless it is tilted; 1 to
+  /// 60. Ground of more than 31 degrees is found only where gentler ground leads to it.
   float max_slope = 17.0F;
-  /// Its origin and tilt decide where the ground is searched for; see estimateSensor.
+  /// Its origin and tilt decide where the ground is searched for; see estimateSensor. If steps_per_turn is not 0, or
+  /// the origin is not (0, 0, 0), the ground is more than 0.2 m below the origin.
   SensorHints sensor;
 };
 
@@ -53,8 +55,8 @@ class LISCO_EXPORT GroundFilter {
 
   /// Starts anew and forgets all columns.
   /// \param lasers largest number of cells of a column
-  /// \throws std::invalid_argument if the sensor height is infinite, max_slope is not within 1 to 60, or the slope or
-  ///         the sensor's tilt is not within -10 to 10
+  /// \throws std::invalid_argument if the sensor height is infinite, max_slope is not within 1 to 60, the sensor's
+  ///         origin is not finite, or the slope or the sensor's tilt is not within -10 to 10
   void begin(const GroundParameters& parameters, std::size_t lasers);
 
   /// Adds a column, and visits those whose decisions are final, in their order.
@@ -62,7 +64,8 @@ class LISCO_EXPORT GroundFilter {
   ///        from the sensor are not ground
   /// \param lasers number of cells, may differ from column to column
   /// \param visit callable as void (std::size_t column, const std::uint8_t* ground, std::size_t lasers): the column
-  ///        counted from begin (), 1 for each cell on the ground, 0 for the others, and the number of cells as given
+  ///        counted from begin (), 1 for each cell on the ground, 0 for the others, and the number of cells as given.
+  ///        If it throws, the column counts as visited, and the filter goes on
   /// \throws std::logic_error before begin (); std::invalid_argument if there are more cells than lasers in begin ()
   template <typename Visit>
   void addColumn(const Return* cells, std::size_t lasers, Visit&& visit) {
@@ -88,7 +91,7 @@ class LISCO_EXPORT GroundFilter {
   }
 
   /// Estimates the plane of the ground around the sensor from columns spread over the scan, then filters as filter ()
-  /// does. Without a clear plane, nothing is ground.
+  /// does. Without a clear plane, nothing is ground. To add columns afterwards, begin () again.
   /// \param parameters as estimateGroundPlane takes them: the sensor's, and its height if it is known
   /// \return the parameters with the estimates; the height is NaN where nothing is ground
   template <typename Cells>
@@ -114,7 +117,7 @@ class LISCO_EXPORT GroundFilter {
 /// Estimates the sensor and its height above the ground from a sample of an organized cloud's cells, or of a rotation
 /// before. The height stays NaN where no ground is clearly seen.
 /// \param declared_origin position that the cloud states for its sensor, metres
-/// \param cells row by row from top to bottom; see estimateSensor
+/// \param cells lasers in any order, columns in that of the rotation
 LISCO_EXPORT GroundParameters estimateGround(std::size_t columns, std::size_t lasers,
                                              const std::array<float, 3>& declared_origin, const CellSource& cells);
 

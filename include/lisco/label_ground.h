@@ -14,11 +14,12 @@ namespace lisco {
 
 /// How points are labelled as ground.
 struct LabelGroundParameters {
-  /// Of the sensor above the ground beneath it, metres; NaN: estimated.
+  /// Of the sensor above the ground beneath it, metres, any finite value; NaN: estimated. If it is given, points of
+  /// unorganized clouds are seen from `origin`, never from above it.
   float sensor_height = std::numeric_limits<float>::quiet_NaN();
-  float max_slope = 17.0F;        ///< steepest ground, degrees, 1 to 60
+  float max_slope = 17.0F;        ///< steepest ground, see GroundParameters
   std::size_t lasers = 1;         ///< rows of an organized cloud, stored row by row; 1: unorganized
-  std::array<float, 3> origin{};  ///< position of the sensor, metres, if not (0, 0, 0)
+  std::array<float, 3> origin{};  ///< position of the sensor, metres, finite
 };
 
 /// Labels the points of a scan that lie on the ground, by GroundFilter. The columns of a rotating sensor's organized
@@ -29,8 +30,8 @@ struct LabelGroundParameters {
 /// \param count number of points, below 2^31
 /// \param stride bytes from one point to the next, at least 12; points need not be aligned
 /// \param ground receives `count` bytes: 1 on the ground, else 0
-/// \throws std::invalid_argument if the stride is below 12, count is 2^31 or more, lasers do not divide count, a
-///         pointer is null while count is not 0, or GroundFilter::begin rejects a parameter
+/// \throws std::invalid_argument if the stride is below 12, count is 2^31 or more, lasers do not divide count, the
+///         origin is not finite, a pointer is null while count is not 0, or GroundFilter::begin rejects a parameter
 LISCO_EXPORT void labelGround(const void* points, std::size_t count, std::size_t stride,
                               const LabelGroundParameters& parameters, std::uint8_t* ground);
 

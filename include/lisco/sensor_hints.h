@@ -11,7 +11,8 @@
 
 namespace lisco {
 
-/// What may be known of the sensor before a rotation. Decides the speed, never the result.
+/// What may be known of the sensor before a rotation. Decides how fast clusterers are, never their result; GroundFilter
+/// searches for the ground by it.
 struct SensorHints {
   std::array<float, 3> origin{0.0F, 0.0F, 0.0F};  ///< position of the sensor, metres
   std::array<float, 2> tilt{0.0F, 0.0F};          ///< by which the sensor's horizon rises along x and y (slopes)

@@ -32,12 +32,32 @@ float maxSlope(const GroundParameters& parameters) {
   return static_cast<float>(std::tan(static_cast<double>(parameters.max_slope) * kPi / 180.0));
 }
 
+void check(const GroundParameters& parameters) {
+  if (std::isinf(parameters.sensor_height))
+    throw std::invalid_argument("lisco::GroundFilter: the sensor height is infinite");
+  if (!(parameters.max_slope >= 1.0F && parameters.max_slope <= 60.0F))
+    throw std::invalid_argument("lisco::GroundFilter: max_slope is not within 1 to 60 degrees");
+  const std::array<float, 3>& origin = parameters.sensor.origin;
+  if (!std::all_of(origin.begin(), origin.end(), [](float coordinate) { return std::isfinite(coordinate); }))
+    throw std::invalid_argument("lisco::GroundFilter: the sensor's origin must be finite");
+  constexpr float kMaxSlope = 10.0F;
+  for (const float slope :
+       {parameters.slope[0], parameters.slope[1], parameters.sensor.tilt[0], parameters.sensor.tilt[1]})
+    if (!(std::fabs(slope) <= kMaxSlope))
+      throw std::invalid_argument("lisco::GroundFilter: the slope or the sensor's tilt is not within -10 to 10");
+}
+
 }  // namespace
 
 /// The columns of a block, and the ground found in the blocks before.
 class GroundFilter::State {
  public:
+  /// A copy with room for as many lasers.
+  static std::unique_ptr<State> copyOf(const State& other);
+
   void begin(const GroundParameters& parameters, std::size_t lasers);
+  /// add () needs another begin ().
+  void end() { begun_ = false; }
   void add(const Return* cells, std::size_t lasers, const Visitor& visit);
   void finish(const Visitor& visit);
   void addAll(std::size_t columns, const CellSource& cells, std::uint8_t* ground);
@@ -72,16 +92,10 @@ class GroundFilter::State {
   PlaneEstimator plane_estimator_;
 };
 
-void check(const GroundParameters& parameters) {
-  if (std::isinf(parameters.sensor_height))
-    throw std::invalid_argument("lisco::GroundFilter: the sensor height is infinite");
-  if (!(parameters.max_slope >= 1.0F && parameters.max_slope <= 60.0F))
-    throw std::invalid_argument("lisco::GroundFilter: max_slope is not within 1 to 60 degrees");
-  constexpr float kMaxSlope = 10.0F;
-  for (const float slope :
-       {parameters.slope[0], parameters.slope[1], parameters.sensor.tilt[0], parameters.sensor.tilt[1]})
-    if (!(std::fabs(slope) <= kMaxSlope))
-      throw std::invalid_argument("lisco::GroundFilter: the slope or the sensor's tilt is not within -10 to 10");
+std::unique_ptr<GroundFilter::State> GroundFilter::State::copyOf(const State& other) {
+  auto copy = std::make_unique<State>(other);
+  copy->order_.reserve();
+  return copy;
 }
 
 void GroundFilter::State::begin(const GroundParameters& parameters, std::size_t lasers) {
@@ -248,9 +262,9 @@ GroundFilter::GroundFilter() : state_(std::make_unique<State>()) {
   chooseSimdLevel();
 }
 GroundFilter::~GroundFilter() = default;
-GroundFilter::GroundFilter(const GroundFilter& other) : state_(std::make_unique<State>(*other.state_)) {}
+GroundFilter::GroundFilter(const GroundFilter& other) : state_(State::copyOf(*other.state_)) {}
 GroundFilter& GroundFilter::operator=(const GroundFilter& other) {
-  if (this != &other) state_ = std::make_unique<State>(*other.state_);
+  if (this != &other) state_ = State::copyOf(*other.state_);
   return *this;
 }
 
@@ -274,7 +288,7 @@ void GroundFilter::filterAll(const GroundParameters& parameters, std::size_t col
 
 GroundParameters GroundFilter::estimateAndFilter(const GroundParameters& parameters, std::size_t columns,
                                                  std::size_t lasers, const CellSource& cells, std::uint8_t* ground) {
-  state_->begin(parameters, 0);  // rejects bad parameters
+  state_->end();
   const GroundParameters estimated = estimateGroundPlane(columns, lasers, parameters, cells);
   // A scan that shows no ground as a whole has none, though some of its columns may seem to.
   if (std::isnan(estimated.sensor_height))

@@ -33,7 +33,7 @@ namespace pcl {
  * then getAABB (), getOBB () and getMassCenter (). Unlike there, the oriented box is upright (it turns about the z axis
  * only) and fits the visible sides of the cluster instead of its main axes, which a half-seen car does not follow.
  * Degenerate clusters and precision: lisco::clusterFeatures. Points with a NaN or infinite coordinate are left out.
- * The nearest range is counted from the cloud's sensor_origin_.
+ * The nearest range is counted from the cloud's sensor_origin_, which must be finite.
  * \ingroup features
  */
 template <typename PointT>
@@ -41,15 +41,32 @@ class LiscoClusterFeatures : public PCLBase<PointT> {
   using BasePCLBase = PCLBase<PointT>;
 
  public:
+  /** \brief Set the input, as in PCLBase. The getters return false until the next compute (). */
+  void setInputCloud(const typename BasePCLBase::PointCloudConstPtr& cloud) override {
+    is_valid_ = false;
+    BasePCLBase::setInputCloud(cloud);
+  }
+  /** \brief Set the points that compute () takes for one cluster, as in PCLBase; the getters as above. */
+  void setIndices(const IndicesPtr& indices) override { select(indices); }
+  /** \copydoc setIndices(const IndicesPtr&) */
+  void setIndices(const IndicesConstPtr& indices) override { select(indices); }
+  /** \copydoc setIndices(const IndicesPtr&) */
+  void setIndices(const typename BasePCLBase::PointIndicesConstPtr& indices) override { select(indices); }
+  /** \copydoc setIndices(const IndicesPtr&) */
+  void setIndices(std::size_t row_start, std::size_t col_start, std::size_t nb_rows, std::size_t nb_cols) override {
+    select(row_start, col_start, nb_rows, nb_cols);
+  }
+
   /** \brief Features of each cluster.
    * \param[in] clusters indices of points of the input cloud; setIndices () has no effect
-   * \param[out] features as many as clusters, in their order. Cleared, with a PCL_ERROR, if there is no input or an
-   * index is not within it
+   * \param[out] features as many as clusters, in their order. Cleared, with a PCL_ERROR, if there is no input, its
+   * sensor_origin_ is not finite, or an index is not within it
    */
   void compute(const std::vector<PointIndices>& clusters, std::vector<lisco::ClusterFeatures>& features);
 
   /** \brief Computes the features of the input (setInputCloud (), setIndices ()) as one cluster.
-   * Without input, or with an index beyond it: a PCL_ERROR, and the getters return false.
+   * Without input, with an index beyond it, or if its sensor_origin_ is not finite: a PCL_ERROR, and the getters return
+   * false.
    */
   void compute();
 
@@ -79,7 +96,12 @@ class LiscoClusterFeatures : public PCLBase<PointT> {
   using BasePCLBase::input_;
 
  private:
-  /** \return false, with a PCL_ERROR, if an index is not within the input */
+  template <typename... Selected>
+  void select(const Selected&... selected) {
+    is_valid_ = false;
+    BasePCLBase::setIndices(selected...);
+  }
+  /** \return false, with a PCL_ERROR, if an index is not within the input, or its sensor_origin_ is not finite */
   bool computeOf(const Indices& indices, lisco::ClusterFeatures& features);
 
   std::vector<std::array<float, 3>> points_;  ///< of the cluster at hand

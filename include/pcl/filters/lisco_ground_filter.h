@@ -28,15 +28,19 @@ namespace pcl {
  * filter.filter (*ground);                          // the ground
  * \endcode
  *
- * As in pcl::PassThrough, points that are no measurements (a NaN or infinite coordinate, or exactly (0, 0, 0)) are
- * always removed. setIndices (), getRemovedIndices (), setKeepOrganized () and setUserFilterValue () act as in all
- * filters; only the indexed points are read. Indices stay in the order given.
+ * Points that are no measurements are always removed: those with a NaN or infinite coordinate, as by
+ * pcl::PassThrough, and those at exactly (0, 0, 0). setIndices (), getRemovedIndices (), setKeepOrganized () and
+ * setUserFilterValue () act as in all filters; only the indexed points are read. Indices stay in the order given.
  *
  * The cloud's z axis points up, to within about 10 degrees. Organized scans (height = lasers, width = steps of the
  * rotation) are filtered column by column, as lisco::GroundFilter does it; the sensor's position and tilt are
  * estimated. Unorganized clouds, in any order, are sorted by azimuth about sensor_origin_ first, or about a point above
  * it, where the ground is at its height, as in a vehicle's frame. If the height is not set, and the cloud as a whole
- * shows no ground clearly, none is removed. \ingroup filters
+ * shows no ground clearly, none is removed. A height that is set counts from sensor_origin_.
+ *
+ * An infinite height, a slope out of range, a sensor_origin_ that is not finite, or an index that is not within the
+ * cloud: a PCL_ERROR, and no indices. With setKeepOrganized (true), the output then is the whole input, as of
+ * pcl::PassThrough. \ingroup filters
  */
 template <typename PointT>
 class LiscoGroundFilter : public FilterIndices<PointT> {
@@ -53,21 +57,21 @@ class LiscoGroundFilter : public FilterIndices<PointT> {
   }
 
   /** \brief Set the height of the sensor above the ground beneath it.
-   * \param[in] height metres; NaN (the default): estimated from the cloud
+   * \param[in] height metres, any finite value; NaN (the default): estimated from the cloud
    */
   inline void setSensorHeight(float height) { sensor_height_ = height; }
   /** \brief Get the height of the sensor in metres, as it was set. */
   inline float getSensorHeight() const { return (sensor_height_); }
 
   /** \brief Set the steepest ground.
-   * \param[in] degrees against the x-y plane of the cloud, 1 to 60 (default 17)
+   * \param[in] degrees against the sensor's horizon, 1 to 60 (default 17); see lisco::GroundParameters
    */
   inline void setMaxSlope(float degrees) { max_slope_ = degrees; }
   /** \brief Get the steepest ground in degrees. */
   inline float getMaxSlope() const { return (max_slope_); }
 
  protected:
-  /** \brief Filter, by indices. With an infinite sensor height or a slope out of range: a PCL_ERROR, and no indices.
+  /** \brief Filter, by indices.
    * \param[out] indices the points that remain, in the order of the input's indices
    */
   void applyFilter(Indices& indices) override;

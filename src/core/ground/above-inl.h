@@ -126,7 +126,7 @@ HWY_INLINE Above lookUp(const FollowedRow& row, std::size_t k, Floats rho, Float
   return above;
 }
 
-/// The values of the columns before: the one after, for the first column of the block.
+/// The values of the columns before. For the first column of the block, which has none, that of the second one.
 HWY_INLINE Floats leftOf(const float* row, std::size_t k, Floats values) {
   if (k != 0) return hn::LoadU(kLanes, row + k - 1);
   if (hn::MaxLanes(kLanes) == 1) return hn::LoadU(kLanes, row + 1);
@@ -134,7 +134,7 @@ HWY_INLINE Floats leftOf(const float* row, std::size_t k, Floats values) {
   return hn::TableLookupLanes(values, hn::IndicesFromVec(kLanes, hn::Abs(left)));
 }
 
-/// The values of the columns after: the one before, for the last column of the block.
+/// The values of the columns after. For the last column of the block, which has none, that of the one before.
 HWY_INLINE Floats rightOf(const float* row, std::size_t k, Floats values) {
   constexpr auto kStep = hn::MaxLanes(kLanes);
   if (k + kStep != Block::kColumns) return hn::LoadU(kLanes, row + k + 1);

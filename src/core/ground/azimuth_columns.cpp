@@ -14,7 +14,7 @@ namespace {
 constexpr unsigned kBinBits = 11, kSlopeBits = 21, kPointBits = 32;  // of an item, from the highest one on
 constexpr std::size_t kAzimuthBins = std::size_t{1} << kBinBits;     // of a turn, before they are widened
 constexpr std::size_t kWidestBins = 64;                              // of a turn
-constexpr std::size_t kMinRows = 16;
+constexpr std::size_t kMinRows = 16, kMaxRows = 1024;
 constexpr float kMinLength = 1e-30F;  // metres; in place of 0
 
 std::uint32_t slopeOf(std::uint64_t item) {
@@ -41,8 +41,9 @@ void AzimuthColumns::sort(const StridedPoints& points, std::size_t count, const 
   const unsigned widened = widen();
   std::size_t taken = 0;  // bins
   for (const std::uint32_t size : sizes_) taken += size > 0 ? 1 : 0;
-  // Columns are about as long as bins are on average, so that few cells stay empty.
-  rows_ = std::max(kMinRows, 5 * items_.size() / (4 * std::max<std::size_t>(taken, 1)) + 1);
+  // Columns are about as long as bins are on average, so that few cells stay empty. If all returns are in a few bins,
+  // as those of a map far from the origin, a bin has many columns.
+  rows_ = std::clamp(5 * items_.size() / (4 * std::max<std::size_t>(taken, 1)) + 1, kMinRows, kMaxRows);
   scratch_.resize(std::max(scratch_.size(), items_.size()));
   radixSort(items_.data(), scratch_.data(), items_.size(), kPointBits, kSlopeBits);
   lowest_.resize(rows_);

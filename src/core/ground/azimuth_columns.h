@@ -20,6 +20,7 @@ class AzimuthColumns {
   /// \param origin position of the sensor, metres
   void sort(const StridedPoints& points, std::size_t count, const std::array<float, 3>& origin);
 
+  /// 16 to 1024.
   std::size_t rows() const { return rows_; }
   std::size_t columns() const { return rows_ == 0 ? 0 : cells_.size() / rows_; }
 

@@ -24,7 +24,7 @@ void measureRows(Block& block, const Columns& columns, std::size_t first, const 
   const auto most = hn::BitCast(kLaneInts, set(kMaxCoordinate));
   const std::size_t rows = block.size / Block::kColumns;
   const auto least = set(Block::kMinRho);
-  // Looked up once: the bytes of `returns` may be stored to any pointer.
+  // Copies: the compiler must assume that storing the bytes of `returns` changes any other array.
   const std::array<float, 3> origin = sensor.origin;
   const std::array<float, 2> tilt = sensor.tilt;
   const float* const x_from = columns.x.data() + first;

@@ -16,7 +16,7 @@
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
-// The compiler makes the vectors, for each SIMD level.
+// Loops that the compiler vectorizes, for each SIMD level.
 
 HWY_BEFORE_NAMESPACE();
 namespace lisco::ground {

@@ -381,7 +381,7 @@ HWY_INLINE Found followRow(const FollowedRow& row, Floats steepest) {
 
 void followRows(const FollowSetting& setting, std::size_t first, std::size_t end, const FollowResult& result) {
   const auto steepest = set(setting.max_slope);
-  // Looked up once: the bytes that are stored may be those of any pointer.
+  // Copies: the compiler must assume that storing bytes changes any other array.
   const float* const rho = setting.block->rho.data();
   const float* const height = setting.block->height.data();
   const std::uint8_t* const returns = setting.block->returns.data();

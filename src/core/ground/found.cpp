@@ -24,7 +24,7 @@ HWY_INLINE std::uint32_t together(std::uint8_t row, std::uint8_t down, std::uint
   return std::uint32_t{row} | std::uint32_t{down} << 8 | std::uint32_t{up} << 16;
 }
 
-/// Not countBits: most SIMD levels have the instruction.
+/// Number of bits. Unlike countBits, of which there is one for all levels, this uses the level's instruction.
 HWY_INLINE float partOf(std::uint32_t bits) {
   return static_cast<float>(__builtin_popcount(bits));
 }

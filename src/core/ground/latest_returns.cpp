@@ -17,7 +17,7 @@ namespace lisco::ground {
 namespace HWY_NAMESPACE {
 
 /// Radians, 0 to 2 pi, within 0.004.
-HWY_INLINE Floats azimuthOf(Floats x, Floats y) {
+HWY_INLINE Floats roughAzimuthOf(Floats x, Floats y) {
   constexpr float kOctant = static_cast<float>(kPi / 4.0);
   const auto zero = hn::Zero(kLanes);
   const auto east = hn::Abs(x), north = hn::Abs(y);
@@ -43,7 +43,7 @@ void updateLatest(const Block& block, std::size_t lasers, std::uint32_t number, 
       const auto rho = hn::LoadU(kLanes, &block.last_rho[i]);
       const auto x = hn::LoadU(kLanes, &block.last_x[i]), y = hn::LoadU(kLanes, &block.last_y[i]);
       const auto has = hn::Gt(rho, set(Block::kMinRho));
-      const auto azimuth = azimuthOf(x, y);
+      const auto azimuth = roughAzimuthOf(x, y);
       const auto azimuth_before = hn::LoadU(kLanes, &latest.azimuth[i]);
       const auto seen = hn::LoadU(kLaneWords, &latest.block[i]);
       const auto is_first = hn::RebindMask(kLanes, hn::Eq(seen, hn::Zero(kLaneWords)));

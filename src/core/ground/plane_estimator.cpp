@@ -23,8 +23,8 @@ constexpr float kMinWeight = 6.0F;      // of the lines that show a plane
 constexpr float kMinRefining = 1.5F;    // of the lines that refine it: few are near where a stream begins
 constexpr float kOnPlane = 0.2F;        // metres; lines that begin this near to a plane begin on it
 constexpr float kClearlyMore = 1.5F;    // times the weight of lines that begin on another plane
-// Updates per one that shows ground, at most: 1 to 2 on streets, 9 and more where objects alone are around. Where a
-// plane may be a table's, most updates show it, or it is none.
+// Updates per one that shows ground, at most: 1 to 2 on streets, 9 and more where objects alone are around. A plane as
+// near to the sensor as a table is taken for the ground only if more of the updates show it.
 constexpr std::uint32_t kUpdatesPerGround = 8, kUpdatesPerLowGround = 3;
 
 }  // namespace

@@ -103,13 +103,17 @@ void RowOrder::begin(std::size_t lasers) {
   lasers_ = lasers;
   latest_.begin(lasers);
   rows_.clear();
-  rows_.reserve(lasers);
   order_.clear();
-  order_.reserve(lasers);
   azimuths_.resize(std::max(azimuths_.size(), lasers + 2 * kPadding));
   slopes_.resize(std::max(slopes_.size(), lasers));
+  reserve();
   block_ = sort_at_ = 0;
   turn_ = 0.0F;
+}
+
+void RowOrder::reserve() {
+  rows_.reserve(slopes_.size());
+  order_.reserve(slopes_.size());
 }
 
 void RowOrder::update(const Block& block) {

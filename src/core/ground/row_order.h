@@ -28,6 +28,8 @@ class RowOrder {
   };
 
   void begin(std::size_t lasers);
+  /// Makes room for all lasers; a copy has it only for those with returns.
+  void reserve();
   /// Learns from a block's returns.
   void update(const Block& block);
   /// The rows that have had returns, from the lowest one up.

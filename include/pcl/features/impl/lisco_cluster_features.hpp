@@ -12,6 +12,11 @@
 
 template <typename PointT>
 bool pcl::LiscoClusterFeatures<PointT>::computeOf(const Indices& indices, lisco::ClusterFeatures& features) {
+  const Eigen::Vector4f& sensor = input_->sensor_origin_;
+  if (!sensor.template head<3>().allFinite()) {
+    PCL_ERROR("[pcl::LiscoClusterFeatures::compute] The sensor_origin_ of the cloud is not finite!\n");
+    return (false);
+  }
   points_.clear();
   for (const auto index : indices) {
     if (index < 0 || static_cast<std::size_t>(index) >= input_->size()) {
@@ -23,7 +28,6 @@ bool pcl::LiscoClusterFeatures<PointT>::computeOf(const Indices& indices, lisco:
     if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z))
       points_.push_back({point.x, point.y, point.z});
   }
-  const Eigen::Vector4f& sensor = input_->sensor_origin_;
   features =
       lisco::clusterFeatures(points_.data(), points_.size(), sizeof(points_[0]), {sensor[0], sensor[1], sensor[2]});
   return (true);

@@ -8,7 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <exception>
+#include <stdexcept>
 #include <vector>
 
 #include <pcl/console/print.h>
@@ -50,7 +50,7 @@ void pcl::LiscoGroundFilter<PointT>::applyFilter(Indices& indices) {
   parameters.origin = {cloud.sensor_origin_[0], cloud.sensor_origin_[1], cloud.sensor_origin_[2]};
   try {
     labeller_.label(xyz, cloud.size(), stride, parameters, ground_.data());
-  } catch (const std::exception& error) {
+  } catch (const std::invalid_argument& error) {
     PCL_ERROR("[pcl::%s::applyFilter] %s\n", this->getClassName().c_str(), error.what());
     indices.clear();
     return;
