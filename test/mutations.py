@@ -20,6 +20,7 @@ WORK = ROOT / "build" / "mutations"
 RUNS = [
     ("lisco_core_tests", "-*Seeds*:Larger*:*Threads*"),
     ("lisco_core_tests", "*RandomScans*/0:WindowClusterer*:Endless*:Stream*"),
+    ("lisco_allocation_tests", "*"),
     ("lisco_core_tests", "*"),
     ("lisco_exception_tests", "*"),
 ]
