@@ -11,6 +11,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -76,7 +77,7 @@ bool parse(int argc, char** argv, Options& options) {
   bool clouds = false;
   // clang-format off
   shown.add_options()
-    ("threads", countOption("--threads", options.threads, 0),
+    ("threads", countOption("--threads", options.threads, 0, 1024),
      "cluster N files at the same time (default 1; 0: one per processor)")
     ("output,o", pathOption("DIR", "--output", options.output),
      "folder for the results; with several inputs, a folder in it for each; of a recording, a folder in it for each "
@@ -151,9 +152,12 @@ void printSummary(const ClusteredScan& scan, const StepTimes& times, const fs::p
   std::printf("  clusters  %zu of %s returns within %g m of each other; %zu returns are noise%s\n",
               scan.clusters.size(), sizes.c_str(), scan.tolerance, clustered - in_clusters,
               scan.max_size ? " or in larger ones" : "");
-  if (!scan.clusters.empty())  // sorted by size
-    std::printf("  sizes     largest %zu, median %zu, smallest %zu\n", scan.clusters.front().indices.size(),
-                scan.clusters[scan.clusters.size() / 2].indices.size(), scan.clusters.back().indices.size());
+  if (!scan.clusters.empty()) {  // sorted by size
+    const auto sizeOf = [&](std::size_t i) { return static_cast<double>(scan.clusters[i].indices.size()); };
+    const std::size_t last = scan.clusters.size() - 1;
+    std::printf("  sizes     largest %.0f, median %g, smallest %.0f\n", sizeOf(0),
+                (sizeOf(last / 2) + sizeOf((last + 1) / 2)) / 2, sizeOf(last));
+  }
   if (!scan.clusters.empty() && 2 * scan.clusters.front().indices.size() > clustered)
     std::printf(
         "  note      one cluster has more than half of these returns: is it the ground (see --ground), or is the "
@@ -240,7 +244,10 @@ class Workers {
   /// \return whether all scans succeeded
   bool run() {
     std::vector<std::thread> others;
-    for (std::size_t i = 1; i < options_.threads; ++i) others.emplace_back([this] { work(); });
+    try {
+      while (others.size() + 1 < options_.threads) others.emplace_back([this] { work(); });
+    } catch (const std::system_error&) {  // no more threads than these
+    }
     work();
     for (std::thread& other : others) other.join();
     progress_.clear();

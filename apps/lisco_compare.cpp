@@ -253,7 +253,7 @@ int compare(const Options& options) {
   if (!options.view.empty()) checkMayWrite(options.view, kViewSignature);
   if (!options.plot.empty()) {
     checkGnuplot();
-    checkMayWriteInto(options.plot, chartsOf(names, settings));
+    checkMayWriteInto(options.plot, "lisco_compare", chartsOf(names, settings));
   }
 
   for (const std::string& line : options.scan.unknownNames(files))
@@ -296,7 +296,7 @@ int compare(const Options& options) {
   names.clear();
   for (const InputResult& result : results) names.push_back(result.name);
   if (!options.plot.empty())
-    writeOwnFolder(options.plot, chartsOf(names, settings),
+    writeOwnFolder(options.plot, "lisco_compare", chartsOf(names, settings),
                    [&](const fs::path& aside) { drawCharts(results, settings, aside); });
   if (!agree) return 1;
   return failures.empty() ? 0 : 2;

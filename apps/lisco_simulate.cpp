@@ -4,9 +4,11 @@
 // Writes a simulated scan of one of the scenes of the paper's evaluation, or of a worst case, or the scans of a drive
 // through a street on uneven ground.
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -17,6 +19,7 @@
 #include <boost/algorithm/string/join.hpp>
 #include <boost/program_options.hpp>
 
+#include "io/interruption.h"
 #include "io/options.h"
 #include "io/output_file.h"
 #include "io/text.h"
@@ -223,7 +226,9 @@ bool parse(int argc, char** argv, Options& options) {
     throw std::runtime_error(std::string(options.pcap ? "--pcap" : "--rotations") +
                              " needs a folder as --output, not '" + options.output.string() + "'");
   options.disturbance.seed = options.seed;
-  if (options.disturbance.range_noise < 0) throw std::runtime_error("--noise must not be negative");
+  constexpr double kMaxNoise = 10;  // metres
+  if (options.disturbance.range_noise < 0 || options.disturbance.range_noise > kMaxNoise)
+    throw std::runtime_error(formatted("--noise must be 0 to %g", kMaxNoise));
   if (options.disturbance.drop_outs < 0 || options.disturbance.drop_outs >= 1)
     throw std::runtime_error("--drop-outs must be at least 0 and less than 1");
   options.motion.turn_rate = options.turn_rate * kDegree;
@@ -248,14 +253,21 @@ Sensor sensorFor(const Options& options) {
   return sensor;
 }
 
+/// The shortest text of a number that gives it again.
+std::string shortest(double number) {
+  char text[32];
+  const auto [end, error] = std::to_chars(std::begin(text), std::end(text), number);
+  return {text, end};
+}
+
 std::string argumentsOfDrive(const Options& options) {
   std::ostringstream arguments;
   arguments << "--terrain " << options.terrain;
-  if (terrainHasSlope(options.terrain)) arguments << " --slope " << options.slope;
-  arguments << " --height " << options.height << " --speed " << options.motion.speed << " --yaw-rate "
-            << options.turn_rate << " --roll " << options.roll << " --roll-period " << options.motion.roll_seconds
-            << " --pitch " << options.pitch << " --pitch-period " << options.motion.pitch_seconds << " --rotations "
-            << options.rotations;
+  if (terrainHasSlope(options.terrain)) arguments << " --slope " << shortest(options.slope);
+  arguments << " --height " << shortest(options.height) << " --speed " << shortest(options.motion.speed)
+            << " --yaw-rate " << shortest(options.turn_rate) << " --roll " << shortest(options.roll)
+            << " --roll-period " << shortest(options.motion.roll_seconds) << " --pitch " << shortest(options.pitch)
+            << " --pitch-period " << shortest(options.motion.pitch_seconds) << " --rotations " << options.rotations;
   if (options.pcap) arguments << " --pcap";
   return arguments.str();
 }
@@ -269,11 +281,11 @@ std::string argumentsOf(const Options& options, const Sensor& sensor) {
     arguments << "--case " << options.worst_case;
   else
     arguments << argumentsOfDrive(options);
-  if (!options.worst_case.empty() && caseHasGap(options.worst_case)) arguments << " --gap " << options.gap;
+  if (!options.worst_case.empty() && caseHasGap(options.worst_case)) arguments << " --gap " << shortest(options.gap);
   arguments << " --seed " << options.seed << " --sensor " << options.sensor;
   if (!options.pcap) arguments << " --lasers " << sensor.lasers();
-  arguments << " --steps " << sensor.steps << " --noise " << options.disturbance.range_noise << " --drop-outs "
-            << options.disturbance.drop_outs;
+  arguments << " --steps " << sensor.steps << " --noise " << shortest(options.disturbance.range_noise)
+            << " --drop-outs " << shortest(options.disturbance.drop_outs);
   return arguments.str();
 }
 
@@ -366,6 +378,7 @@ int simulate(const Options& options) {
 
 int main(int argc, char** argv) {
   return runProgram("lisco_simulate", [&] {
+    Interruption::listen();
     Options options;
     return parse(argc, argv, options) ? simulate(options) : 0;
   });

@@ -36,7 +36,7 @@ void addPoint(const CaseResult& result, const Baseline& baseline, double x, std:
 constexpr const char* kOverTolerance = "tolerance, metres";
 
 std::string overPoints(double tolerance) {
-  return formatted("time_over_points_%g", tolerance);
+  return formatted("time_over_points_%.9g", tolerance);
 }
 std::string overTolerance(const std::string& input) {
   return "time_over_tolerance_" + input;

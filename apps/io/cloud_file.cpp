@@ -29,10 +29,10 @@ bool isTable(const fs::path& file) {
 std::vector<fs::path> cloudFilesIn(const fs::path& folder) {
   std::vector<fs::path> files;
   try {
-    const bool has_results = fs::exists(folder / kResultMarker);
+    const std::set<std::string> results = ownFilesIn(folder, kClusterProgram);
     for (const auto& entry : fs::directory_iterator(folder)) {
       const std::string name = entry.path().filename().string();
-      if (has_results && (name == "labels.pcd" || name == "clusters.csv")) continue;
+      if (results.count(name) > 0) continue;
       if (entry.is_regular_file() && isCloudFile(entry.path()) && !isTable(entry.path())) files.push_back(entry.path());
     }
   } catch (const fs::filesystem_error& error) {
@@ -65,7 +65,9 @@ std::vector<std::string> namesOf(const std::vector<fs::path>& files) {
   std::vector<std::string> names;
   std::set<std::string> taken;
   for (const fs::path& file : files) {
-    const std::string stem = file.stem().string();
+    std::string stem = file.stem().string();
+    // Names of other folders, and of the page beside the results.
+    if (stem.empty() || stem == "." || stem == ".." || stem == "view.html") stem = "scan";
     names.push_back(stem);
     for (int number = 2; !taken.insert(names.back()).second; ++number)
       names.back() = stem + "-" + std::to_string(number);

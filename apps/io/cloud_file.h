@@ -23,7 +23,8 @@ std::vector<fs::path> cloudFilesIn(const fs::path& folder);
 /// \param failures receives a line for each folder that holds none or cannot be read
 std::vector<fs::path> expandInputs(const std::vector<std::string>& inputs, std::vector<std::string>& failures);
 
-/// A unique name per file, for its results: without folder and ending, numbered where names repeat.
+/// A unique name per file, for a folder of its results: without folder and ending, numbered where names repeat; "scan"
+/// where that is no name of a folder.
 std::vector<std::string> namesOf(const std::vector<fs::path>& files);
 
 /// The points to be clustered: valid returns (see doc/contract.md) with z >= ground_z.

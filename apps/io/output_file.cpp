@@ -11,6 +11,7 @@
 #include <fstream>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include <boost/algorithm/string/replace.hpp>
 
@@ -37,6 +38,39 @@ void removeAbandoned(const fs::path& folder, const std::string& prefix) {
     if (*end == '\0' && process > 0 && kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH)
       fs::remove_all(entry.path(), ignored);
   }
+}
+
+/// The hidden file that lists what the programs have written into a folder: after a line for people, in each line a
+/// program, a blank, and a file's path in the folder.
+constexpr const char* kList = ".lisco_results";
+using Listed = std::pair<std::string, std::string>;  ///< program and file
+
+std::set<Listed> listedIn(const fs::path& folder) {
+  std::set<Listed> listed;
+  std::ifstream stream(folder / kList);
+  std::string line;
+  std::getline(stream, line);
+  while (std::getline(stream, line))
+    if (const std::size_t blank = line.find(' '); blank != std::string::npos)
+      listed.emplace(line.substr(0, blank), line.substr(blank + 1));
+  return listed;
+}
+
+void writeList(const fs::path& file, const std::set<Listed>& listed) {
+  std::ofstream stream(file);
+  stream << "The programs have written these files, and may replace or remove them:\n";
+  for (const auto& [program, name] : listed) stream << program << ' ' << name << '\n';
+  stream.close();
+  if (!stream) failToWrite(file);
+}
+
+/// The paths of files in a folder and the folders in it.
+std::vector<std::string> filesBelow(const fs::path& folder) {
+  std::vector<std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (!entry.is_directory()) files.push_back(entry.path().lexically_relative(folder).generic_string());
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 /// Checks that entries can be made in an existing folder.
@@ -128,42 +162,55 @@ void MadeFolders::removeEmpty() const {
   for (const fs::path& folder : made_) fs::remove(folder, ignored);  // only if empty
 }
 
-void checkMayWriteInto(const fs::path& folder, const std::vector<std::string>& names) {
+std::set<std::string> ownFilesIn(const fs::path& folder, const std::string& program) {
+  std::set<std::string> files;
+  for (const auto& [owner, file] : listedIn(folder))
+    if (owner == program) files.insert(file);
+  return files;
+}
+
+void checkMayWriteInto(const fs::path& folder, const std::string& program, const std::vector<std::string>& names) {
   std::error_code error;
   fs::path existing = fs::absolute(folder).lexically_normal();
   while (!fs::exists(existing, error) && existing.has_relative_path()) existing = existing.parent_path();
   if (!fs::is_directory(existing, error)) fail(folder, "cannot be written: " + existing.string() + " is no folder");
   checkWritable(existing, folder);
-  if (fs::exists(folder / kResultMarker)) return;
-  for (const std::string& name : names)
-    if (fs::exists(folder / name))
+  const std::set<std::string> own = ownFilesIn(folder, program);
+  for (const std::string& name : names) {
+    const auto first_in = own.lower_bound(name + "/");
+    const bool is_own = own.count(name) > 0 || (first_in != own.end() && first_in->rfind(name + "/", 0) == 0);
+    const bool is_empty_folder = fs::is_directory(folder / name) && fs::is_empty(folder / name);
+    if (!is_own && !is_empty_folder && fs::exists(folder / name))
       fail(folder / name, "exists and was not written by this program; choose another folder");
+  }
 }
 
-void writeOwnFolder(const fs::path& folder, const std::vector<std::string>& names,
-                    const std::function<void(const fs::path&)>& make, const std::function<void()>& tidy) {
+void writeOwnFolder(const fs::path& folder, const std::string& program, const std::vector<std::string>& names,
+                    const std::function<void(const fs::path&)>& make) {
   std::error_code ignored;
   const MadeFolders made(folder);
   const fs::path aside = folder / (kFolderPartial + std::to_string(getpid()));
   const auto undo = [&] { fs::remove_all(aside, ignored); };
   try {
-    checkMayWriteInto(folder, names);
+    checkMayWriteInto(folder, program, names);
     removeAbandoned(folder, kFolderPartial);
     fs::create_directory(aside);
     make(aside);
-    std::ofstream marker(folder / kResultMarker);
-    marker << "The results in this folder were written by lisco and may be replaced by it.\n";
-    marker.close();
-    if (!marker) fail(folder / kResultMarker, "cannot be written");
-    tidy();
-    for (const std::string& name : names) {
-      if (!fs::is_directory(aside / name)) {
-        if (fs::exists(aside / name)) fs::rename(aside / name, folder / name);
-        continue;
-      }
-      fs::create_directory(folder / name);  // may exist, with other files in it
-      for (const auto& entry : fs::directory_iterator(aside / name))
-        fs::rename(entry.path(), folder / name / entry.path().filename());
+    const std::vector<std::string> files = filesBelow(aside);
+    checkMayWriteInto(folder, program, files);
+    const std::set<std::string> before = ownFilesIn(folder, program);
+    std::set<Listed> listed = listedIn(folder);
+    for (const std::string& file : before) listed.erase({program, file});
+    for (const std::string& file : files) listed.insert({program, file});
+    writeList(aside / kList, listed);
+    for (const std::string& file : before) {
+      fs::remove(folder / file);
+      fs::remove((folder / file).parent_path(), ignored);  // a folder of files, if it is empty
+    }
+    fs::rename(aside / kList, folder / kList);
+    for (const std::string& file : files) {
+      fs::create_directories((folder / file).parent_path());
+      fs::rename(aside / file, folder / file);
     }
     fs::remove_all(aside, ignored);
   } catch (const fs::filesystem_error& error) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <fstream>
 #include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,8 +14,10 @@
 
 namespace lisco_apps {
 
-/// The file that marks a folder as holding results of these programs.
-inline constexpr const char* kResultMarker = ".lisco_results";
+inline constexpr const char* kClusterProgram = "lisco_cluster";  ///< whose results are no scans
+
+/// The files that a program has written into a folder, by their paths there.
+std::set<std::string> ownFilesIn(const fs::path& folder, const std::string& program);
 
 /// Checks that a file may be written: its folder exists and is writable, and the file does not exist or was written by
 /// these programs.
@@ -66,19 +69,19 @@ class MadeFolders {
   std::vector<fs::path> made_;  ///< innermost first
 };
 
-/// Checks that files of these names may be written into a folder: these programs have written there before, or the
-/// folder has nothing of these names, or can be made.
+/// Checks that files of these names, or folders of files, may be written into a folder: the program has written those
+/// that are there, or the folder can be made.
+/// \param names may be empty: checks the folder only
 /// \throws std::runtime_error with one line that names what would be overwritten, is no folder, or is not writable
-void checkMayWriteInto(const fs::path& folder, const std::vector<std::string>& names);
+void checkMayWriteInto(const fs::path& folder, const std::string& program, const std::vector<std::string>& names);
 
 /// Writes files and folders of files into a folder, all or nothing: they are made aside and moved into place at the
 /// end. Makes the folder and those above it, and removes them again on failure. Checks as checkMayWriteInto () does.
+/// Removes what the program has written there before. A hidden file lists what it has written.
 /// \param make writes all, or some, of `names` into the folder it is given
-/// \param tidy called before the files are moved into place, to remove those of an earlier run
 /// \throws std::runtime_error with one line: what cannot be written
-void writeOwnFolder(
-    const fs::path& folder, const std::vector<std::string>& names,
-    const std::function<void(const fs::path& aside)>& make, const std::function<void()>& tidy = [] {});
+void writeOwnFolder(const fs::path& folder, const std::string& program, const std::vector<std::string>& names,
+                    const std::function<void(const fs::path& aside)>& make);
 
 /// The files of a folder whose names begin with `prefix` and have this ending.
 /// \throws fs::filesystem_error if it cannot be read

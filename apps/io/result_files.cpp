@@ -87,13 +87,6 @@ void writeClusterClouds(const ClusteredScan& scan, const fs::path& folder) {
   }
 }
 
-/// Removes the clouds of an earlier run, and the folder if nothing else is in it.
-void removeClusterClouds(const fs::path& folder) {
-  if (!fs::is_directory(folder)) return;
-  for (const fs::path& file : filesIn(folder, "cluster_", ".pcd")) fs::remove(file);
-  if (fs::is_empty(folder)) fs::remove(folder);
-}
-
 }  // namespace
 
 ResultKinds resultKindsOf(const std::string& text) {
@@ -115,32 +108,20 @@ ResultKinds resultKindsOf(const std::string& text) {
 
 std::string writeResults(const ClusteredScan& scan, const fs::path& folder, const ResultKinds& kinds) {
   const bool are_too_many = kinds.semantickitti && scan.clusters.size() > kMaxSemanticKittiClusters;
-  std::vector<std::string> wanted, others;
+  std::vector<std::string> wanted;
   for (const Kind& kind : allKinds())
-    for (const std::string& file : kind.files) {
-      const bool is_wanted = kinds.*kind.is_wanted && !(are_too_many && file == kSemanticKitti);
-      (is_wanted ? wanted : others).push_back(file);
-    }
-  std::error_code unreadable;  // a folder of which writeOwnFolder () says more
-  const bool has_results = fs::exists(folder / kResultMarker, unreadable);
-  writeOwnFolder(
-      folder, wanted,
-      [&](const fs::path& aside) {
-        if (kinds.labels) writeLabelledPcd(scan, aside / "labels.pcd");
-        if (kinds.table) writeText(aside / "clusters.csv", tableOf(scan));
-        if (kinds.pictures) drawPictures(scan, aside / "range_image.png", aside / "top_view.png");
-        if (kinds.view) writeText(aside / "view.html", viewPage(scan.name, {encodeViewScan(viewScanOf(scan))}));
-        if (kinds.clouds) writeClusterClouds(scan, aside / kClouds);
-        if (kinds.json) writeText(aside / "clusters.json", lineOf(jsonOf(scan)) + "\n");
-        if (kinds.semantickitti && !are_too_many) writeSemanticKitti(scan, aside / kSemanticKitti);
-        if (kinds.semantickitti) writeNpy(scan, aside / "labels.npy");
-      },
-      [&] {
-        if (!has_results) return;
-        removeClusterClouds(folder / kClouds);
-        for (const std::string& file : others)
-          if (file != kClouds) fs::remove(folder / file);
-      });
+    for (const std::string& file : kind.files)
+      if (kinds.*kind.is_wanted && !(are_too_many && file == kSemanticKitti)) wanted.push_back(file);
+  writeOwnFolder(folder, kClusterProgram, wanted, [&](const fs::path& aside) {
+    if (kinds.labels) writeLabelledPcd(scan, aside / "labels.pcd");
+    if (kinds.table) writeText(aside / "clusters.csv", tableOf(scan));
+    if (kinds.pictures) drawPictures(scan, aside / "range_image.png", aside / "top_view.png");
+    if (kinds.view) writeText(aside / "view.html", viewPage(scan.name, {encodeViewScan(viewScanOf(scan))}));
+    if (kinds.clouds) writeClusterClouds(scan, aside / kClouds);
+    if (kinds.json) writeText(aside / "clusters.json", lineOf(jsonOf(scan)) + "\n");
+    if (kinds.semantickitti && !are_too_many) writeSemanticKitti(scan, aside / kSemanticKitti);
+    if (kinds.semantickitti) writeNpy(scan, aside / "labels.npy");
+  });
   if (!are_too_many) return "";
   return (folder / kSemanticKitti).string() +
          formatted(

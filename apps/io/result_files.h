@@ -25,8 +25,8 @@ struct ResultKinds {
 /// Reads a list such as "labels,table". \throws std::runtime_error with one line if a kind is unknown, or none is given
 ResultKinds resultKindsOf(const std::string& text);
 
-/// Writes results into a folder, all or nothing; replaces the files of an earlier run, removes those of its kinds that
-/// are not asked for now, and refuses to replace any other file of these names, see writeOwnFolder ().
+/// Writes results into a folder, all or nothing; replaces the files of an earlier run, removes those that are not asked
+/// for now, and refuses to replace any other file of these names, see writeOwnFolder ().
 /// - labels.pcd: all fields of the input, organized as it is, and the field `label` (uint32): the cluster's id, 0 in
 ///   none. Where ground was looked for, also `ground` (uint8): 1 for returns left out as ground, else 0. Fields `label`
 ///   and `ground` of the input are written as `input_label` and `input_ground`.

@@ -4,8 +4,11 @@
 
 #include <cmath>
 #include <optional>
+#include <stdexcept>
+#include <system_error>
 #include <vector>
 
+#include "io/interruption.h"
 #include "io/output_file.h"
 #include "simulate/drive_packets.h"
 
@@ -74,31 +77,30 @@ DriveCounts writeDrive(Drive& drive, std::size_t rotations, bool with_packets, c
   DriveCounts counts;
   const auto make = [&](const fs::path& aside) {
     writeOwnFile(aside / kObjects, objectsOf(drive.world()), "label,");
-    std::string poses = "rotation,column,seconds,x,y,z,roll_degrees,pitch_degrees,yaw_degrees\n";
+    OwnFile poses(aside / kPoses, "rotation,");
+    poses.write("rotation,column,seconds,x,y,z,roll_degrees,pitch_degrees,yaw_degrees\n");
     std::optional<PacketWriter> packets;
     if (with_packets) packets.emplace(aside / kCapture, drive.sensor());
     for (std::size_t rotation = 0; rotation < rotations; ++rotation) {
+      if (Interruption::happened()) throw std::runtime_error("interrupted; nothing is written");
       const SimulatedScan scan = drive.columns(rotation * steps, steps);
       count(scan, counts);
       if (packets) packets->add(scan);
       writeOwnFile(aside / names[kOthers + rotation], pcdOf(scan, comment), kSignature);
       for (std::size_t column = 0; column < steps; ++column) {
         const Pose pose = drive.poseOf(rotation * steps + column);
-        poses += formatted("%zu,%zu,%.6f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f\n", rotation + 1, column,
-                           drive.secondsOf(rotation * steps + column), pose.place.x, pose.place.y, pose.place.z,
-                           degrees(pose.roll), degrees(pose.pitch), degrees(pose.yaw));
+        poses.write(formatted("%zu,%zu,%.6f,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f\n", rotation + 1, column,
+                              drive.secondsOf(rotation * steps + column), pose.place.x, pose.place.y, pose.place.z,
+                              degrees(pose.roll), degrees(pose.pitch), degrees(pose.yaw)));
       }
     }
     if (packets) packets->finish();
-    writeOwnFile(aside / kPoses, poses, "rotation,");
+    poses.finish();
   };
-  const auto tidy = [&] {
-    const std::vector<fs::path> clouds = filesIn(folder, kPrefix, kEnding);
-    for (const fs::path& cloud : clouds) checkMayWrite(cloud, kSignature);
-    for (const fs::path& cloud : clouds) fs::remove(cloud);
-    fs::remove(folder / kCapture);
-  };
-  writeOwnFolder(folder, names, make, tidy);
+  std::error_code unreadable;                // a folder of which writeOwnFolder () says more
+  if (fs::is_directory(folder, unreadable))  // rotations of others would be taken for these
+    for (const fs::path& cloud : filesIn(folder, kPrefix, kEnding)) names.push_back(cloud.filename().string());
+  writeOwnFolder(folder, "lisco_simulate", names, make);
   return counts;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <system_error>
 
@@ -90,8 +92,9 @@ void PacketWriter::add(const SimulatedScan& scan) {
     for (std::size_t laser = 0; laser < firing.size(); ++laser) {
       const SimulatedCell& cell = scan.at(row_of_[laser], step);
       if (std::isnan(cell.x)) continue;
-      const double range = length(placeOf(cell));
-      firing[laser] = {static_cast<std::uint16_t>(std::lround(range / distance_unit_)), kIntensity};
+      const double distance = length(placeOf(cell)) / distance_unit_;
+      if (distance > std::numeric_limits<std::uint16_t>::max()) continue;  // by its noise
+      firing[laser] = {static_cast<std::uint16_t>(std::lround(distance)), kIntensity};
     }
     waiting_.push_back(std::move(firing));
     if (waiting_.size() == encoder_.firingsPerPacket()) writePacket();

@@ -117,7 +117,7 @@ void addTraffic(World& world, Random& random, double speed) {
   const double ahead = random.between(13, 18);
   add(car(random), ahead, 0, speed + 2);
   const double behind = random.between(-18, -13);
-  add(car(random), behind, 0, std::max(speed - 2, 0.0));
+  add(car(random), behind, 0, speed < 0 ? speed : std::max(speed - 2, 0.0));  // never run into
   const double near = random.between(8, 20);
   add(car(random), near, oncoming, -9);
   const double far = random.between(38, 45);

@@ -25,7 +25,7 @@ LabelledClouds::LabelledClouds(fs::path folder, bool has_ground) : folder_(std::
   std::error_code error;
   if (fs::exists(folder_, error) && !fs::is_directory(folder_, error))
     fail(folder_, "cannot be written: it is no folder");
-  checkMayWriteInto(folder_, {});
+  checkMayWriteInto(folder_, "lisco_stream", {});
   try {
     fs::create_directories(folder_);
     const std::vector<fs::path> clouds = filesIn(folder_, kPrefix, kEnding);

@@ -123,6 +123,7 @@ class Capture {
         lisco_apps::openPackets(file, options.recording, options.decoder, options.port, [] { return false; });
     decoder_ = std::move(input.decoder);
     source_ = std::move(input.source);
+    cutter_ = lisco_apps::RotationCutter(decoder_->rotationStart());
   }
 
   /// \return nothing at the end
@@ -130,16 +131,18 @@ class Capture {
     const py::gil_scoped_release release;
     const std::lock_guard<std::mutex> lock(mutex_);
     lisco_apps::Packet packet;
+    const std::function<void(const lisco_apps::Column&)> take = [&](const lisco_apps::Column& column) {
+      add(column, packet);
+    };
     while (ended_.empty()) {
       if (source_->next(packet) != lisco_apps::PacketSource::Arrival::kPacket) {
-        if (!turn_.azimuths.empty()) return std::exchange(turn_, {});
+        decoder_->flush(take);
+        if (!turn_.azimuths.empty()) ended_.push_back(std::exchange(turn_, {}));
+        if (!ended_.empty()) break;
         if (const std::string error = std::exchange(error_, source_->error()); error.empty() && !error_.empty())
           throw std::runtime_error(error_);
         return std::nullopt;
       }
-      const std::function<void(const lisco_apps::Column&)> take = [&](const lisco_apps::Column& column) {
-        add(column, packet);
-      };
       decoder_->decode(packet, take);
     }
     Turn first = std::move(ended_.front());
@@ -160,7 +163,7 @@ class Capture {
   void add(const lisco_apps::Column& column, const lisco_apps::Packet& packet) {
     constexpr double kSecondsPerMicrosecond = 1e-6;
     const bool starts = cutter_.startsRotation(column.azimuth, column.after_break);
-    if (starts || turn_.azimuths.size() == lisco_apps::kMaxColumns) {
+    if (starts || turn_.azimuths.size() == lisco_apps::kMaxColumns || column.cells.size() != turn_.lasers) {
       if (!turn_.azimuths.empty()) ended_.push_back(std::exchange(turn_, {}));
       turn_.lasers = column.cells.size();
       turn_.time = static_cast<double>(packet.time_us) * kSecondsPerMicrosecond;

@@ -5,6 +5,7 @@ import ctypes
 import filecmp
 import os
 import platform
+import shutil
 import signal
 import socket
 import sqlite3
@@ -92,6 +93,23 @@ def wait_until(condition, process=None):
         assert process is None or process.poll() is None, process.communicate()
         assert time.monotonic() < deadline
         time.sleep(0.005)
+
+
+def test_results_and_tables_are_no_inputs(tmp_path, scans):
+    source = tmp_path / "mixed"
+    source.mkdir()
+    shutil.copy(scans / "0000.bin", source / "a.bin")
+    shutil.copy(scans / "0001.bin", source / "labels.pcd.bin")
+    (source / "poses.csv").write_text("rotation,column\n1,0\n")
+    (source / "clusters.csv").write_text("id,size\n1,10\n")
+    (source / "labels.npy").write_bytes(b"no cloud")
+    (source / ".lisco_results").write_text("These files:\nlisco_cluster labels.npy\nlisco_cluster clusters.csv\n")
+    for _ in range(2):  # the second run goes on with its own results inside
+        done = run(source, source / "out", "--workers", "0")
+        assert done.returncode == 0, done.stderr
+        assert "2 scans" in done.stdout
+    other = run(source, tmp_path / "other", "--workers", "0")
+    assert other.returncode == 0 and "2 scans" in other.stdout, other.stderr
 
 
 def finished_pieces(out):

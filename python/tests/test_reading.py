@@ -58,6 +58,32 @@ def test_captures_are_rotations(data):
     assert 0.8 < np.isfinite(whole[..., 0]).sum() / np.isfinite(expected[..., 0]).sum() < 1.2
 
 
+def without_packets(capture, left_out, file):
+    """A copy of a capture without some of its packets, counted from 0, or from the end."""
+    content = capture.read_bytes()
+    records, at = [], 24
+    while at < len(content):
+        size = 16 + int.from_bytes(content[at + 8 : at + 12], "little")
+        records.append(content[at : at + size])
+        at += size
+    for number in sorted((n % len(records) for n in left_out), reverse=True):
+        del records[number]
+    file.write_bytes(content[:24] + b"".join(records))
+    return file
+
+
+def test_captures_are_cut_and_put_in_order_as_by_the_programs(data, tmp_path):
+    late = data / "ouster" / "OS-1-32-G_v2.1.1_1024x10.pcap"
+    for name, left_out, columns in (
+        (late, (-4,), [1008]),  # the last packets wait for it
+        (data / "ouster" / "OS-1-128_v2.3.0_1024x10_lb_n3.pcap", range(20), [752, 1024, 1024]),  # frames
+    ):
+        metadata = next(file for file in sorted(name.parent.glob("*.json")) if file.stem in name.stem)
+        capture = without_packets(name, left_out, tmp_path / "part.pcap")
+        scans = list(lisco.read(capture, sensor="ouster", metadata=metadata))
+        assert [scan.shape[1] for scan in scans] == columns
+
+
 def test_streams_of_captures_are_clustered_rotations(data):
     capture = data / "captures" / "vlp16_street.pcap"
     rotations = list(lisco.stream(capture, 0.4, sensor="vlp16", min_size=10))

@@ -99,7 +99,8 @@ TEST_F(LiscoCluster, WritesOneCloudPerClusterOnRequest) {
   EXPECT_FALSE(fs::exists(folder_ / "results/clusters/cluster_0002.pcd"));
   EXPECT_EQ(textOf(folder_ / "results/clusters/mine.txt"), "keep me");
   fs::remove(folder_ / "results/clusters/mine.txt");
-  ASSERT_EQ(run("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results").status, 0);
+  for (const char* clouds : {" --clouds", ""})
+    ASSERT_EQ(run(std::string("walls.pcd --tolerance 0.3 --ground-z -1.5 -o results") + clouds).status, 0);
   EXPECT_FALSE(fs::exists(folder_ / "results/clusters"));
 }
 
@@ -612,6 +613,50 @@ TEST_F(LiscoCluster, KeepsForeignFiles) {
   EXPECT_EQ(run("walls.pcd --tolerance 0.3 -o shared").status, 0);
   EXPECT_EQ(run("walls.pcd --tolerance 0.3 -o shared").status, 0);
   EXPECT_EQ(textOf(folder_ / "shared/notes.txt"), "keep me");
+}
+
+TEST_F(LiscoCluster, ReplacesOnlyFilesThatItHasWritten) {
+  // The scan itself has a name of results, and lies where they go.
+  fs::create_directories(folder_ / "own/clusters");
+  const std::string scan = twoWalls();
+  write("own/labels.pcd", scan);
+  const std::vector<std::string> foreign{"labels.label",
+                                         "view.html",
+                                         "capture.pcap",
+                                         "poses.csv",
+                                         "clusters/cluster_truth.pcd",
+                                         "clusters/cluster_0001.pcd"};
+  for (const std::string& file : foreign) write("own/" + file, "mine");
+  const std::string options = " --tolerance 0.3 --ground none -o own --write ";
+  for (int i = 0; i < 2; ++i) ASSERT_EQ(run("own/labels.pcd" + options + "table").status, 0);
+  for (const char* kind : {"labels", "semantickitti", "view", "clouds"})
+    expectRefusal("own/labels.pcd" + options + "table," + kind, {"own/", "not written by this program"});
+  EXPECT_EQ(runLine(std::string(LISCO_SIMULATE) + " --terrain plane --sensor vlp16 --steps 100 -o own").status, 2);
+  EXPECT_EQ(textOf(folder_ / "own/labels.pcd"), scan);
+  for (const std::string& file : foreign) EXPECT_EQ(textOf(folder_ / "own" / file), "mine") << file;
+  // It is found in the folder, where the table is none.
+  const Outcome found = run("own --tolerance 0.3 --ground none");
+  EXPECT_EQ(found.status, 0) << found.err;
+  EXPECT_EQ(found.out.rfind("labels.pcd\n", 0), 0U) << found.out;
+  // A run that is refused leaves no list of files.
+  fs::create_directory(folder_ / "other");
+  write("other/clusters.csv", "mine");
+  expectRefusal("own/labels.pcd --tolerance 0.3 -o other", {"clusters.csv", "not written by this program"});
+  EXPECT_FALSE(fs::exists(folder_ / "other/.lisco_results"));
+}
+
+TEST_F(LiscoCluster, WritesIntoItsFolderWhateverTheNamesOfScans) {
+  fs::create_directory(folder_ / "scans");
+  for (const char* name : {"...pcd", ".pcd", "view.html.pcd", "b.pcd"}) write(std::string("scans/") + name, twoWalls());
+  const Outcome outcome = run("scans --tolerance 0.3 --write table,view -o out/results");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder_ / "out/results"))
+    names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(std::count_if(names.begin(), names.end(), [](const auto& name) { return name.rfind("scan", 0) == 0; }), 2);
+  EXPECT_EQ(std::count(names.begin(), names.end(), "b") + std::count(names.begin(), names.end(), "view.html"), 2);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out"), fs::directory_iterator()), 1) << "results alone";
 }
 
 TEST_F(LiscoCluster, ContinuesAfterABadFile) {

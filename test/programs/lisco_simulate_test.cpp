@@ -262,6 +262,25 @@ TEST_F(LiscoSimulate, WritesADriveIntoAFolder) {
   expectRefusal(options + "-o theirs", {"poses.csv", "not written by this program"});
 }
 
+TEST_F(LiscoSimulate, NamesTheArgumentsThatGiveTheSameFile) {
+  ASSERT_EQ(run("--case sheets --gap 0.41234567 --steps 100 -o a.pcd").status, 0);
+  const std::string text = textOf(folder_ / "a.pcd");
+  const std::size_t begin = text.find("--case");
+  const std::string arguments = text.substr(begin, text.find('\n') - begin);
+  EXPECT_NE(arguments.find("--gap 0.41234567 "), std::string::npos) << arguments;
+  ASSERT_EQ(run(arguments + " -o b.pcd").status, 0);
+  EXPECT_TRUE(textOf(folder_ / "b.pcd") == text);
+}
+
+TEST_F(LiscoSimulate, LeavesNothingWhenInterrupted) {
+  const Outcome outcome = runLine("sh -c '" + program_ +
+                                  " --terrain plane --sensor vlp16 --rotations 10000 -o drive & p=$!; sleep 1; "
+                                  "kill -INT $p; wait $p'");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(fs::exists(folder_ / "drive"));
+}
+
 TEST_F(LiscoSimulate, WritesPacketsBesideADrive) {
   const std::string options = "--terrain ramp --sensor vlp16 --rotations 2 -o drive";
   const Outcome outcome = run(options + " --pcap");

@@ -161,6 +161,25 @@ TEST_F(PageTest, OfLiscoCompareShowsMethodsAndTolerancesSideBySide) {
   EXPECT_EQ(textOf("#differences"), differing.dump() + " points differ");
 }
 
+TEST_F(PageTest, OfLiscoCompareLeavesOutClustersThatAreNotShown) {
+  const std::string scan = (folder_ / "far.pcd").string(), page = (folder_ / "far.html").string();
+  std::ofstream points(scan);
+  points
+      << "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 48\nHEIGHT 1\nPOINTS 48\nDATA ascii\n";
+  for (const double x : {50000.0, 5.0, 8.0, 12.0})  // the first is too far away to be shown
+    for (int i = 0; i < 12; ++i) points << x << ' ' << 0.1 * i << " 0\n";
+  points.close();
+  ASSERT_EQ(
+      std::system((LISCO_COMPARE " " + scan +
+                   " --tolerance 0.3 --ground none --baselines pcl,lisco --check-only --view " + page + " >/dev/null")
+                      .c_str()),
+      0);
+  browser_->open("file://" + page);
+  browser_->evaluate("lisco.ready.then(() => 1)");
+  EXPECT_EQ(browser_->evaluate("lisco.view.labelling.clusters.length"), 3);
+  EXPECT_EQ(textOf("#differences"), "0 points differ");
+}
+
 TEST_F(PageTest, ReadsThePointsAsTheyWereWritten) {
   const ViewScan scan = largeScan();
   open({scan});

@@ -4,7 +4,8 @@
 // point differs if its clusters are no such pair, or if it is in a cluster in one labelling only.
 function differencesOf(left, right) {
   const overlaps = new Map();
-  const size = right.clusters.length + 2;
+  let size = 1;  // more than the largest class: clusters without points shown have none
+  for (const b of right.classes) size = Math.max(size, b + 1);
   for (let i = 0; i < left.classes.length; ++i) {
     const [a, b] = [left.classes[i], right.classes[i]];
     if (a <= NOISE || b <= NOISE) continue;

@@ -13,11 +13,11 @@ from typing import Any, Dict, List, NamedTuple, TextIO
 
 from ..reading import is_recording
 from . import pieces as cutting
-from .pieces import Piece, Settings, canonical
+from .pieces import STATE, Piece, Settings, canonical
 from .table import merge
 from .work import count_rotations, do_piece, report_of, write_whole
 
-STATE, COUNTS, LOCK = "archive.json", "rotations.json", ".lock"
+COUNTS, LOCK = "rotations.json", ".lock"
 
 
 class Summary(NamedTuple):
