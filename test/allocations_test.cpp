@@ -92,6 +92,8 @@ TEST(Allocations, GroundFilterAllocatesNothingAfterItIsCopied) {
 
 TEST(Allocations, AreCounted) {
   EXPECT_EQ(allocationsOf(2, [] { ::operator delete(::operator new(1)); }), 1U);
+  constexpr std::align_val_t kLine{64};
+  EXPECT_EQ(allocationsOf(2, [] { ::operator delete(::operator new(1, kLine), kLine); }), 1U);
 }
 
 TEST(Allocations, NoneForLabelsOfAScanLikeTheLastOne) {

@@ -28,6 +28,19 @@ std::atomic<std::size_t> refused_allocation{0};  ///< number of the allocation t
 [[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
   ::operator delete(memory);
 }
+[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
+  const auto line = static_cast<std::size_t>(alignment);
+  if (++allocations != refused_allocation)
+    if (void* const memory = std::aligned_alloc(line, (size + line - 1) / line * line)) return memory;
+  ++deallocations;  // delete of a null pointer
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
+  ::operator delete(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  ::operator delete(memory);
+}
 
 namespace lisco_test {
 

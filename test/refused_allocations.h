@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// Counts the allocations of operator new, and refuses one on request. Programs that include refused_allocations.cpp
-// replace operator new.
+// Counts the allocations of operator new, aligned ones too, and refuses one on request. Programs that include
+// refused_allocations.cpp replace operator new.
 #pragma once
 
 #include <cstddef>

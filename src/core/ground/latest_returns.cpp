@@ -2,6 +2,8 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "core/ground/latest_returns.h"
 
+#include <algorithm>
+
 #include "core/ground/direction.h"
 #include "core/ground/targets.h"
 
@@ -84,7 +86,8 @@ HWY_EXPORT(updateLatest);
 
 void LatestReturns::begin(std::size_t lasers) {
   lasers_ = lasers;
-  const std::size_t size = lasers + Block::kColumns - 1;
+  // Sizes never shrink: a copy of a vector has no capacity beyond its size.
+  const std::size_t size = std::max(x.size(), lasers + Block::kColumns - 1);
   for (auto* values : {&y, &height, &azimuth}) values->assign(size, 0.0F);
   for (auto* values : {&x, &rho}) values->assign(size, 1.0F);
   sector.assign(size, 0);

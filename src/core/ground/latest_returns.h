@@ -25,6 +25,7 @@ struct LatestReturns {
   AlignedVector<std::int32_t> sector;      ///< of the azimuth
   AlignedVector<std::uint32_t> block;      ///< number of the block with the return; 0: none yet
 
+  /// Forgets all returns. Allocates only if there are more lasers than ever before.
   void begin(std::size_t lasers);
   /// Enters a block's returns.
   /// \param number of the block, from 1 on
