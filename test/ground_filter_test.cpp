@@ -378,6 +378,7 @@ TEST(GroundFilter, RejectsBadCallsAndParameters) {
     lisco::GroundParameters nowhere;
     nowhere.sensor.origin[1] = coordinate;
     EXPECT_THROW(filter.begin(nowhere, 4), std::invalid_argument) << coordinate;
+    EXPECT_THROW(estimateGroundPlane(1, 1, nowhere, lisco::CellSource(cell_at)), std::invalid_argument) << coordinate;
   }
   for (const float slope : {10.1F, -1e30F, std::numeric_limits<float>::quiet_NaN()})
     for (const std::size_t axis : {0, 1}) {
@@ -479,9 +480,12 @@ TEST(LabelGround, RejectsBadArguments) {
   EXPECT_THROW(lisco::labelGround(nullptr, 1, 12, parameters, &ground), std::invalid_argument);
   EXPECT_THROW(lisco::labelGround(point, 1, 12, parameters, nullptr), std::invalid_argument);
   EXPECT_NO_THROW(lisco::labelGround(nullptr, 0, 12, parameters, nullptr));
-  parameters.origin[2] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_THROW(lisco::labelGround(point, 1, 12, parameters, &ground), std::invalid_argument);
-  parameters.origin[2] = 0.0F;
+  for (const std::size_t axis : {0, 1, 2}) {
+    parameters.origin[axis] = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_THROW(lisco::labelGround(point, 1, 12, parameters, &ground), std::invalid_argument);
+    EXPECT_THROW(lisco::labelGround(nullptr, 0, 12, parameters, nullptr), std::invalid_argument);
+    parameters.origin[axis] = 0.0F;
+  }
   parameters.lasers = 0;
   EXPECT_THROW(lisco::labelGround(point, 1, 12, parameters, &ground), std::invalid_argument);
 }

@@ -139,6 +139,19 @@ TEST(PclClusterFeatures, AreThoseOfTheLatestInput) {
   estimation.compute();
   estimation.setIndices(pcl::PointIndicesConstPtr(chosen));
   EXPECT_FALSE(estimation.getFeatures(features));
+  const auto organized = std::make_shared<Cloud>(*cloud);
+  organized->width = 3;
+  organized->height = static_cast<std::uint32_t>(cloud->size() / 3);
+  estimation.setInputCloud(organized);
+  estimation.compute();
+  ASSERT_TRUE(estimation.getFeatures(features));
+  estimation.setIndices(1, 1, 2, 2);
+  EXPECT_FALSE(estimation.getFeatures(features));
+  estimation.compute();
+  ASSERT_TRUE(estimation.getFeatures(features));
+  EXPECT_EQ(features.size, 4U);
+  estimation.setInputCloud(cloud);
+  estimation.setIndices(some);
   // Through the base class as well.
   estimation.compute();
   static_cast<pcl::PCLBase<pcl::PointXYZI>&>(estimation).setInputCloud(twoWalls());

@@ -26,7 +26,7 @@ struct GroundParameters {
   /// 60. Ground of more than 31 degrees is found only where gentler ground leads to it.
   float max_slope = 17.0F;
   /// Its origin and tilt decide where the ground is searched for; see estimateSensor. If steps_per_turn is not 0, or
-  /// the origin is not (0, 0, 0), the ground is more than 0.2 m below the origin.
+  /// the origin is not (0, 0, 0), only ground more than 0.2 m below the origin is estimated.
   SensorHints sensor;
 };
 
@@ -73,6 +73,7 @@ class LISCO_EXPORT GroundFilter {
   }
 
   /// Visits the columns that are not final yet. More columns may follow.
+  /// \param visit as that of addColumn; if it throws, another finish () visits the rest
   template <typename Visit>
   void finish(Visit&& visit) {
     decideRest(std::ref(visit));
@@ -116,7 +117,7 @@ class LISCO_EXPORT GroundFilter {
 
 /// Estimates the sensor and its height above the ground from a sample of an organized cloud's cells, or of a rotation
 /// before. The height stays NaN where no ground is clearly seen.
-/// \param declared_origin position that the cloud states for its sensor, metres
+/// \param declared_origin position that the cloud states for its sensor, metres; without effect if not finite
 /// \param cells lasers in any order, columns in that of the rotation
 LISCO_EXPORT GroundParameters estimateGround(std::size_t columns, std::size_t lasers,
                                              const std::array<float, 3>& declared_origin, const CellSource& cells);

@@ -14,8 +14,8 @@ namespace lisco {
 
 /// How points are labelled as ground.
 struct LabelGroundParameters {
-  /// Of the sensor above the ground beneath it, metres, any finite value; NaN: estimated. If it is given, points of
-  /// unorganized clouds are seen from `origin`, never from above it.
+  /// Of the sensor above the ground beneath it, metres, any finite value; NaN: estimated. In unorganized clouds, a
+  /// given height counts from `origin`, and the points are seen from there, never from above it.
   float sensor_height = std::numeric_limits<float>::quiet_NaN();
   float max_slope = 17.0F;        ///< steepest ground, see GroundParameters
   std::size_t lasers = 1;         ///< rows of an organized cloud, stored row by row; 1: unorganized

@@ -46,7 +46,8 @@ struct FollowSetting {
 /// What they show, for each row.
 struct FollowResult {
   Passed* passed;
-  GroundReached* followed;  ///< of the rows that change what the rows below have shown; those of `starts` lie behind
+  /// Of each row that changes the ground reached; see Passed::followed. Elements of `starts` follow those of the rows.
+  GroundReached* followed;
   Found* found;
 };
 
