@@ -35,9 +35,9 @@ namespace pcl {
  * The cloud's z axis points up, to within about 10 degrees. Organized scans (height = lasers, width = steps of the
  * rotation) are filtered column by column, as lisco::GroundFilter does it; the sensor's position and tilt are
  * estimated. Unorganized clouds, in any order, are sorted by azimuth about sensor_origin_ first; a height that is set
- * counts from there. If no height is set, and the ground is less than 0.5 m below sensor_origin_, as in a vehicle's
- * frame, they are sorted about a point above it instead. If no height is set, and the cloud as a whole shows no ground
- * clearly, none is removed.
+ * counts from there. If no height is set, the ground is less than 0.5 m below sensor_origin_, and hardly any return
+ * straight below it, as in a vehicle's frame, they are sorted about a point 1.5 m above it instead. If no height is
+ * set, and the cloud as a whole shows no ground clearly, none is removed.
  *
  * An infinite height, a slope out of range, a sensor_origin_ that is not finite, or an index that is not within the
  * cloud: a PCL_ERROR, and no indices. With setKeepOrganized (true), the output then is the whole input, as after an
