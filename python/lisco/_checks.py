@@ -3,7 +3,7 @@
 
 import math
 import operator
-from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Tuple
+from typing import TYPE_CHECKING, Any, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
@@ -93,6 +93,19 @@ def number_of(value: Any, name: str) -> float:
     if not math.isfinite(number):
         raise ValueError(f"{name} must be a finite number, not {value!r}")
     return number
+
+
+def origin_of(origin: Any) -> List[float]:
+    """x, y and z, finite numbers that a float32 can hold."""
+    try:
+        place = [number_of(value, "origin") for value in origin]
+    except TypeError:
+        raise ValueError(f"origin must be x, y and z, not {origin!r}") from None
+    if len(place) != 3:
+        raise ValueError(f"origin must be x, y and z, not {len(place)} numbers")
+    if any(abs(value) > np.finfo(np.float32).max for value in place):
+        raise ValueError(f"origin must be numbers that a float32 can hold, not {origin!r}")
+    return place
 
 
 def tolerance_of(tolerance: Any) -> float:

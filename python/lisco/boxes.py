@@ -6,7 +6,7 @@ from typing import Any, Sequence
 import numpy as np
 
 from . import _core
-from ._checks import Array, axes_of, labels_of, number_of
+from ._checks import Array, axes_of, labels_of, origin_of
 
 
 def boxes(points: Any, labels: Any, origin: Sequence[float] = (0.0, 0.0, 0.0)) -> Array:
@@ -58,10 +58,7 @@ def boxes(points: Any, labels: Any, origin: Sequence[float] = (0.0, 0.0, 0.0)) -
     array([[6. , 1.5, 0.5]])
     """
     axes = axes_of(points)
-    place = [number_of(value, "origin") for value in origin]
-    if len(place) != 3:
-        raise ValueError(f"origin must be x, y and z, not {len(place)} numbers")
-    return _core.boxes(axes.x, axes.y, axes.z, labels_of(labels, axes.shape), place)
+    return _core.boxes(axes.x, axes.y, axes.z, labels_of(labels, axes.shape), origin_of(origin))
 
 
 def corners(boxes: Any) -> Array:

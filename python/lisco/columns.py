@@ -6,7 +6,7 @@ from typing import Any, List, NamedTuple, Optional, Sequence
 import numpy as np
 
 from . import _core
-from ._checks import Array, axes_of, column_of, number_of, sizes_of, tolerance_of
+from ._checks import Array, axes_of, column_of, number_of, origin_of, sizes_of, tolerance_of
 
 
 class ColumnClusterer:
@@ -142,9 +142,7 @@ class EndlessClusterer:
         per_turn = 0.0 if columns_per_turn is None else number_of(columns_per_turn, "columns_per_turn")
         if columns_per_turn is not None and per_turn <= 0:
             raise ValueError(f"columns_per_turn must be more than 0, not {columns_per_turn}")
-        place = [number_of(value, "origin") for value in origin]
-        if len(place) != 3:
-            raise ValueError(f"origin must be x, y and z, not {len(place)} numbers")
+        place = origin_of(origin)
         widest = _core.MAX_STAGGER if stagger is None else number_of(stagger, "stagger")
         if not 0 <= widest <= _core.MAX_STAGGER:
             raise ValueError(f"stagger must be 0 to {_core.MAX_STAGGER} radians, not {stagger}")

@@ -124,6 +124,8 @@ def test_any_points_have_boxes_that_hold_them(points, modulus):
         (np.full(5, 2**63, np.uint64), (0, 0, 0), "less than 2\\^63"),
         (np.zeros(5, int), (0, 0), "x, y and z"),
         (np.zeros(5, int), (0, 0, np.nan), "finite"),
+        (np.zeros(5, int), (1e300, 0, 0), "float32"),
+        (np.zeros(5, int), 5, "x, y and z"),
     ],
 )
 def test_wrong_arguments_are_value_errors(labels, origin, message):

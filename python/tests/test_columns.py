@@ -151,6 +151,7 @@ def test_endless_arguments_are_checked():
         {"columns_per_turn": np.nan},
         {"origin": (1, 2)},
         {"origin": (1, 2, np.inf)},
+        {"origin": 5},
         {"stagger": 1},
         {"start_azimuth": np.inf},
         {"start_azimuth": 1e9},
