@@ -208,6 +208,18 @@ TEST(Motion, FollowsItsCircleAndSways) {
 
 // --- Drives --------------------------------------------------------------------------------------------------------
 
+TEST(Motion, KeepsALowSensorAboveCrests) {
+  const Terrain ramp = makeTerrain("ramp", 30 * kDegree, 1);
+  Motion motion;
+  motion.speed = 20;
+  double least = 1;
+  for (double turns = 0; turns < 30; turns += 0.01) {
+    const Vector place = motion.poseAfter(turns, ramp, 0.2).place;
+    least = std::min(least, place.z - ramp.height(place.x, place.y));
+  }
+  EXPECT_NEAR(least, 0.1, 1e-9);
+}
+
 TEST_P(EachTerrain, LabelsReturnsWithWhatTheyLieOn) {
   Drive drive = driveOver(GetParam(), restlessMotion(), kExact);
   const World& world = drive.world();

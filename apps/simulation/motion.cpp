@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 #include "simulation/motion.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lisco_simulation {
@@ -35,7 +36,8 @@ Pose Motion::poseAfter(double turns, const Terrain& ground, double height) const
       const Vector wheel = pose.place + rotated({along, across, 0}, pose.yaw);
       sum += ground.height(wheel.x, wheel.y);
     }
-  pose.place.z = sum / 4 + height;
+  // Over a crest, the ground in the middle is higher than beneath the wheels; a low sensor stays above it.
+  pose.place.z = std::max(sum / 4 + height, ground.height(pose.place.x, pose.place.y) + height / 2);
   return pose;
 }
 

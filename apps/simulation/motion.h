@@ -38,7 +38,8 @@ struct Motion {
   /// \param turns since the start
   double headingAfter(double turns) const { return turn_rate * turn_seconds * turns; }
   Vector placeAfter(double turns) const;
-  /// \param height of the sensor above the ground beneath its vehicle, metres
+  /// \param height of the sensor above the ground beneath its wheels in the mean, metres; at least half of it above the
+  ///        ground in the middle
   Pose poseAfter(double turns, const Terrain& ground, double height) const;
 };
 
