@@ -339,10 +339,12 @@ int drive(const Options& options, const Sensor& sensor, const std::string& comme
   std::printf("  sensor    %s, %zu lasers x %zu steps, %g m above the ground\n", options.sensor.c_str(),
               sensor.lasers(), sensor.steps, options.height);
   DriveCounts counts;
-  if (options.isFolder())
+  if (options.isFolder()) {
+    Interruption::listen();
     counts = writeDrive(drive, options.rotations, options.pcap, comment, options.output);
-  else
+  } else {
     counts = writeRotation(drive, comment, options.output);
+  }
   std::printf("  returns   %zu in %zu rotation%s, %zu of them of the ground (label 0)\n  written   %s\n",
               counts.returns, options.rotations, options.rotations == 1 ? "" : "s", counts.ground,
               options.output.c_str());
@@ -378,7 +380,6 @@ int simulate(const Options& options) {
 
 int main(int argc, char** argv) {
   return runProgram("lisco_simulate", [&] {
-    Interruption::listen();
     Options options;
     return parse(argc, argv, options) ? simulate(options) : 0;
   });

@@ -50,9 +50,17 @@ std::set<Listed> listedIn(const fs::path& folder) {
   std::ifstream stream(folder / kList);
   std::string line;
   std::getline(stream, line);
-  while (std::getline(stream, line))
-    if (const std::size_t blank = line.find(' '); blank != std::string::npos)
-      listed.emplace(line.substr(0, blank), line.substr(blank + 1));
+  while (std::getline(stream, line)) {
+    const std::size_t blank = line.find(' ');
+    if (blank == std::string::npos) continue;
+    const fs::path file = line.substr(blank + 1);
+    // Others may have made the list: no path leads out of the folder, or to itself.
+    const bool is_below = !file.empty() && std::all_of(file.begin(), file.end(), [](const fs::path& name) {
+      return name != "/" && name != "." && name != ".." && !name.empty();
+    });
+    if (!is_below) continue;
+    listed.emplace(line.substr(0, blank), file.string());
+  }
   return listed;
 }
 

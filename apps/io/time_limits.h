@@ -7,8 +7,8 @@
 
 namespace lisco_apps {
 
-/// Nanoseconds before and after 1970, 73 years: sums and differences of such times do not overflow.
-inline constexpr std::int64_t kMaxTimeNs = std::int64_t{1} << 61;
+/// Nanoseconds before and after 1970, 146 years: sums and differences of two such times do not overflow.
+inline constexpr std::int64_t kMaxTimeNs = (std::int64_t{1} << 62) - 1;
 
 /// A time from a file, which may be malformed, within these limits.
 inline std::int64_t limitedTime(std::int64_t time_ns) {

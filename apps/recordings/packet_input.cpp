@@ -189,6 +189,7 @@ PacketInput openPackets(const fs::path& input, const RecordingOptions& options, 
     const std::unique_ptr<Recording> recording = openRecording(input);
     topic = chooseTopic(*recording, input, options.topic, true);
     const Topic& chosen = recording->topics()[topic];
+    if (kindOf(chosen) != TopicKind::kPackets) fail(input, "topic " + chosen.name + " holds clouds, not packets");
     maker = makerOfPackets(chosen.type);
     const bool is_ouster = decoder.sensor == kOuster || (decoder.sensor.empty() && boost::contains(maker, "Ouster"));
     if (is_ouster && decoder.metadata.empty()) {

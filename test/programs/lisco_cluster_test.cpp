@@ -645,6 +645,19 @@ TEST_F(LiscoCluster, ReplacesOnlyFilesThatItHasWritten) {
   EXPECT_FALSE(fs::exists(folder_ / "other/.lisco_results"));
 }
 
+TEST_F(LiscoCluster, RemovesNothingOutsideItsFolder) {
+  write("walls.pcd", twoWalls());
+  write("precious.txt", "mine");
+  fs::create_directory(folder_ / "results");
+  write("results/.lisco_results",
+        "These files:\nlisco_cluster ../precious.txt\nlisco_cluster a/../../precious.txt\n"
+        "lisco_cluster " +
+            (folder_ / "precious.txt").string() + "\nlisco_cluster \nlisco_cluster .\n");
+  EXPECT_EQ(run("walls.pcd --tolerance 0.3 --ground none --write table -o results").status, 0);
+  EXPECT_EQ(textOf(folder_ / "precious.txt"), "mine");
+  EXPECT_TRUE(fs::exists(folder_ / "results/clusters.csv"));
+}
+
 TEST_F(LiscoCluster, WritesIntoItsFolderWhateverTheNamesOfScans) {
   fs::create_directory(folder_ / "scans");
   for (const char* name : {"...pcd", ".pcd", "view.html.pcd", "b.pcd"}) write(std::string("scans/") + name, twoWalls());
