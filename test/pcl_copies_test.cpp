@@ -63,6 +63,21 @@ TEST(PclCopies, OfAnExtractionAreIndependent) {
   EXPECT_TRUE(areSame(clustersOf(copy), expected));
 }
 
+TEST(PclCopies, OfAnExtractionHaveTheirOwnListsOfPoints) {
+  Random random(3);
+  const auto small = cloudOf(boxesAround(random, 60, 4)), large = cloudOf(boxesAround(random, 120, 8));
+  Extraction extraction;
+  extraction.setClusterTolerance(0.5);
+  extraction.setInputCloud(small);
+  clustersOf(extraction);
+  Extraction copy(extraction);
+  copy.setInputCloud(large);
+  clustersOf(copy);
+  EXPECT_NE(copy.getIndices(), extraction.getIndices()) << "threads would change one list";
+  EXPECT_EQ(extraction.getIndices()->size(), small->size());
+  EXPECT_EQ(copy.getIndices()->size(), large->size());
+}
+
 TEST(PclCopies, MovedFromExtractionsWorkAgain) {
   Random random(2);
   const auto cloud = cloudOf(boxesAround(random, 120, 8));

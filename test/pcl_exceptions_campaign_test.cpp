@@ -468,6 +468,61 @@ TEST_F(PclExceptionsCampaign, WindowsSurviveRefusedMemory) {
   refuseStreams<WindowSession>(2000, timesEffort(20));
 }
 
+/// Refuses each allocation of an assignment in turn: the object assigned to goes on, or is another's copy.
+template <typename Stream, typename Begin, typename End>
+void refuseAssignments(Begin&& begin, End&& end) {
+  const Cloud::Ptr cloud = streetScan(true);
+  const auto addColumns = [&](Stream& stream, std::uint32_t count) {
+    Cloud column;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      column.clear();
+      for (std::uint32_t row = 0; row < cloud->height; ++row) column.push_back(cloud->at(i, row));
+      stream.addColumn(column);
+    }
+  };
+  const auto begun = [&](std::uint32_t columns) {
+    auto stream = std::make_unique<Stream>();
+    stream->setClusterTolerance(0.5);
+    begin(*stream);
+    addColumns(*stream, columns);
+    return stream;
+  };
+  const Clusters right = end(*begun(24));
+  std::size_t refused = 0;
+  for (bool happened = true; happened;) {
+    const auto to = begun(24), from = begun(150);
+    try {
+      const RefusedAllocation refusal(++refused);
+      *to = *from;
+      happened = refusal.happened();
+    } catch (const std::bad_alloc&) {
+      EXPECT_EQ(differenceOf(right, end(*to)), "") << "allocation " << refused;
+    }
+    if (testing::Test::HasFailure()) return;
+  }
+  EXPECT_GT(refused, 5U);
+}
+
+TEST_F(PclExceptionsCampaign, StreamsSurviveRefusedAssignments) {
+  refuseAssignments<pcl::LiscoStreamExtraction<PointXYZ>>([](auto& stream) { stream.beginRotation(); },
+                                                          [](auto& stream) {
+                                                            Clusters clusters;
+                                                            stream.endRotation(clusters);
+                                                            return clusters;
+                                                          });
+  refuseAssignments<pcl::LiscoWindowExtraction<PointXYZ>>(
+      [](auto& stream) {
+        stream.setWindowSize(24);
+        stream.setHop(6);
+        stream.beginStream();
+      },
+      [](auto& stream) {
+        Clusters clusters;
+        stream.extract(clusters);
+        return clusters;
+      });
+}
+
 TEST_F(PclExceptionsCampaign, EndlessStreamsSurviveRefusedMemory) {
   refuseStreams<EndlessSession>(3000, timesEffort(20));
 }

@@ -11,7 +11,7 @@ namespace lisco {
 
 EndlessSets::Set& EndlessSets::create(std::int64_t pane, double position) {
   std::vector<Set>& sets = sets_[slotOf(pane)];
-  if (sets.size() >> kRunBits != 0)
+  if ((sets.size() + 1) >> kRunBits != 0)  // the last number of the last slot would be kNone
     throw std::length_error("lisco::EndlessClusterer: too many runs in an eighth of a turn");
   const Element element = elementOf(pane, static_cast<std::uint32_t>(sets.size()));
   constexpr Ticks kNever = std::numeric_limits<Ticks>::min();

@@ -7,6 +7,8 @@
 #include <string>
 
 #include <pcl/point_representation.h>
+#include <pcl/search/brute_force.h>
+#include <pcl/search/octree.h>
 
 #include "examples/example_scan.h"
 #include "pcl_client.h"
@@ -133,6 +135,25 @@ TEST(Migration, PclsClustersDifferWithAnInexactKdTree) {
 TEST(Migration, PclsClustersDifferWithAnotherMetric) {
   expectPclsAlone(treeWithScales({1.0F, 1.0F, 0.1F}));
   expectPclsAlone(treeOfPlan());
+}
+
+TEST(Migration, PclsClustersDifferWithSearchesThatReachTheTolerance) {
+  auto pair = std::make_shared<Cloud>(2, 1);
+  for (std::size_t i = 0; i < 2; ++i) (*pair)[i].getVector3fMap() << 1.0F + 0.5F * static_cast<float>(i), 1.0F, 1.0F;
+  const auto count = [&](auto&& extraction, const pcl::search::Search<PointXYZI>::Ptr& tree) {
+    extraction.setInputCloud(pair);
+    extraction.setSearchMethod(tree);
+    extraction.setClusterTolerance(0.5);
+    Clusters clusters;
+    extraction.extract(clusters);
+    return clusters.size();
+  };
+  const pcl::search::Search<PointXYZI>::Ptr brute = std::make_shared<pcl::search::BruteForce<PointXYZI>>();
+  const pcl::search::Search<PointXYZI>::Ptr octree = std::make_shared<pcl::search::Octree<PointXYZI>>(0.5);
+  for (const auto& tree : {brute, octree}) {
+    EXPECT_EQ(count(pcl::EuclideanClusterExtraction<PointXYZI>(), tree), 1U);
+    EXPECT_EQ(count(pcl::LiscoClusterExtraction<PointXYZI>(), tree), 2U);
+  }
 }
 
 void giveToClass(const Tree::Ptr& tree) {

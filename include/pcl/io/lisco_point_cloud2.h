@@ -41,10 +41,11 @@ namespace pcl {
  * Rows and columns:
  * - a message of several rows is taken as it is, except that rows and columns are exchanged if its `ring` field says
  *   that its rows are firings; every point keeps a cell, no-returns as well;
- * - a message of one row with a `ring` field gets a row for each ring that occurs, in ascending order. The points
- *   within most of a firing's duration make a column, by the first of the fields `time`, `t`, `timestamp` and
- *   `time_stamp` that has finite and different values, of any unit and origin; without one, by their azimuth around
- *   (0, 0, 0). Points of one ring in one firing (dual returns) go into columns side by side. No-returns are left out;
+ * - a message of one row with a field `ring` or `channel` gets a row for each that occurs, in ascending order. The
+ *   points within three quarters of the time between firings make a column, by the first of the fields `time`, `t`,
+ *   `timestamp` and `time_stamp` that has finite and different values, of any unit and origin; without one, by their
+ *   azimuth around (0, 0, 0). Points of one ring in one firing (dual returns) go into columns side by side. No-returns
+ *   are left out;
  * - any other message becomes one row. So does one whose rings and times would leave most cells empty (more than 16
  *   cells per point, and more than 65536).
  *

@@ -43,6 +43,7 @@ namespace pcl {
  *
  * Any cloud is accepted. It is fastest on organized scans (height = lasers, width = steps of the rotation), and faster
  * on unorganized clouds in the sensor's order than on shuffled ones. Using one object for many scans saves allocations.
+ * An object is for one thread at a time; copies are independent.
  *
  * After H. Najdataei, Y. Nikolakopoulos, V. Gulisano, M. Papatriantafilou: "Lisco: A Continuous Approach in
  * LiDAR Point-cloud Clustering", 2018. \ingroup segmentation
@@ -67,8 +68,8 @@ class LiscoClusterExtraction : public PCLBase<PointT> {
   /** \brief Extract the clusters of the cloud given by setInputCloud () and setIndices ().
    * \param[in,out] clusters receives the clusters after those it already holds; then all are sorted by size,
    * largest first, as EuclideanClusterExtraction does it. Indices within a cluster ascend. Cleared if there
-   * is no input, or none to cluster; cleared, with a PCL_ERROR, if an index is not within the cloud or the
-   * cloud is too large for pcl::index_t.
+   * is no input, or the cloud or the indices are empty; a cloud of no-returns adds nothing. Cleared, with a
+   * PCL_ERROR, if an index is not within the cloud or the cloud is too large for pcl::index_t.
    */
   void extract(std::vector<PointIndices>& clusters);
 
@@ -166,9 +167,10 @@ class LiscoClusterExtraction : public PCLBase<PointT> {
  * size.
  * \param[in] cloud the scan
  * \param[in] tolerance metres
- * \param[in,out] clusters receives the clusters after those it already holds, in the order of their first points
+ * \param[in,out] clusters receives the clusters after those it already holds, in the order of their first points;
+ * unchanged if the cloud or the indices are empty; cleared, with a PCL_ERROR, as LiscoClusterExtraction::extract ()
  * \param[in] min_pts_per_cluster least number of points of a cluster
- * \param[in] max_pts_per_cluster largest number of points of a cluster
+ * \param[in] max_pts_per_cluster largest number of points of a cluster (default INT_MAX)
  * \ingroup segmentation
  */
 template <typename PointT>

@@ -88,8 +88,10 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
    * \param[in] points one of each laser; copied
    * \param[in] count number of rows, may be 0
    * \param[in] position turns of the sensor since any moment, never less than that of the column before
-   * \return false, after a PCL_ERROR and without effect: before beginStream (); if there are more rows than lasers
-   * declared; if the position is less than the one before, not finite, or beyond 1e12 turns
+   * \return false, after a PCL_ERROR and without effect: before beginStream (), or after an exception; if \a points is
+   * null and count is not 0; if there are more rows than lasers declared; if the columns that are held, of as many rows
+   * as the largest so far, are more points than pcl::index_t can number; if the position is less than the one before,
+   * not finite, or beyond 1e12 turns
    */
   inline bool addColumn(const PointT* points, std::size_t count, double position) {
     return (addColumnAt(points, count, &position));

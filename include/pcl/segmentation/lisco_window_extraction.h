@@ -42,7 +42,8 @@ class LiscoWindowExtraction : public detail::LiscoColumnStream<PointT> {
   using PointCloud = typename Base::PointCloud;  ///< of its points
 
   /** \brief Begin a stream. Discards the last one.
-   * \return false, after a PCL_ERROR and without effect, if the window is not a positive multiple of the hop
+   * \return false, after a PCL_ERROR and without effect, if the window is not a positive multiple of the hop,
+   * or has more columns than pcl::index_t can number
    */
   bool beginStream();
 
@@ -50,8 +51,9 @@ class LiscoWindowExtraction : public detail::LiscoColumnStream<PointT> {
    * \param[in] points one of each laser; copied
    * \param[in] count number of rows, may be 0
    * \return whether a window ends with this column. The first windows are shorter: all columns so far. Also false,
-   * after a PCL_ERROR and without effect: before beginStream (); if there are more rows than lasers declared; if the
-   * window would have more points than pcl::index_t can number
+   * after a PCL_ERROR and without effect: before beginStream (), or after an exception; if \a points is null and count
+   * is not 0; if there are more rows than lasers declared; if a window and a hop of as many rows would have more points
+   * than pcl::index_t can number
    */
   bool addColumn(const PointT* points, std::size_t count);
 
@@ -72,6 +74,8 @@ class LiscoWindowExtraction : public detail::LiscoColumnStream<PointT> {
     Base::allocate(getNumberOfColumns(), numberOfRows(), cloud);
     copyColumns(cloud.points.data());
     cloud.header = header_;
+    cloud.sensor_origin_ = Eigen::Vector4f::Zero();
+    cloud.sensor_orientation_ = Eigen::Quaternionf::Identity();
   }
 
   LiscoWindowExtraction();

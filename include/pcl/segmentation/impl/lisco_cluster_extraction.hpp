@@ -13,6 +13,8 @@
 
 template <typename PointT>
 std::size_t pcl::LiscoClusterExtraction<PointT>::appendClusters(std::vector<PointIndices>& clusters) {
+  // Copies share the list of all points, which initCompute () changes: each gets its own.
+  if (fake_indices_ && indices_.use_count() > 1) indices_.reset();
   if (input_ && !indices_) {  // initCompute () lists all points, and takes this memory for them
     fake_indices_ = true;
     indices_ = std::make_shared<Indices>();

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <pcl/console/print.h>
@@ -52,10 +53,11 @@ pcl::LiscoStreamExtraction<PointT>::LiscoStreamExtraction(const LiscoStreamExtra
 
 template <typename PointT>
 pcl::LiscoStreamExtraction<PointT>& pcl::LiscoStreamExtraction<PointT>::operator=(const LiscoStreamExtraction& other) {
+  auto state = std::make_unique<State>(*other.state_);  // may throw: nothing has changed
   Base::operator=(other);
   sensor_origin_ = other.sensor_origin_;
   block_columns_ = other.block_columns_;
-  *state_ = *other.state_;
+  state_ = std::move(state);
   return (*this);
 }
 

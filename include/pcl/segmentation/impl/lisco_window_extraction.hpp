@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <pcl/console/print.h>
@@ -36,15 +37,20 @@ pcl::LiscoWindowExtraction<PointT>::LiscoWindowExtraction(const LiscoWindowExtra
 
 template <typename PointT>
 pcl::LiscoWindowExtraction<PointT>& pcl::LiscoWindowExtraction<PointT>::operator=(const LiscoWindowExtraction& other) {
+  auto state = std::make_unique<State>(*other.state_);  // may throw: nothing has changed
   Base::operator=(other);
   window_size_ = other.window_size_;
   hop_ = other.hop_;
-  *state_ = *other.state_;
+  state_ = std::move(state);
   return (*this);
 }
 
 template <typename PointT>
 bool pcl::LiscoWindowExtraction<PointT>::beginStream() {
+  if (!detail::LiscoCloudClusterer::fitsIndexType(window_size_)) {
+    PCL_ERROR("[pcl::LiscoWindowExtraction::beginStream] A window of %zu columns.\n", window_size_);
+    return (false);
+  }
   const bool begun = state_->begun;
   state_->begun = false;  // stays so after an exception, here and below
   lisco::WindowParameters parameters;
