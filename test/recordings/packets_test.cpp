@@ -42,7 +42,8 @@ std::string twoNebulaPackets() {
 TEST(PacketMessages, OfTwoNebulaPackets) {
   const Topic topic{"/p", "nebula_msgs/NebulaPackets", Serialization::kCdr, 1};
   std::vector<Packet> packets;
-  lisco_apps::packetsIn(messageOf(twoNebulaPackets()), topic, packets);
+  const std::string message = twoNebulaPackets();  // packets point into it
+  lisco_apps::packetsIn(messageOf(message), topic, packets);
   ASSERT_EQ(packets.size(), 2U);
   EXPECT_EQ(contentOf(packets[0]), "odd");
   EXPECT_EQ(contentOf(packets[1]), "four");
