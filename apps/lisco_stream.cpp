@@ -371,19 +371,6 @@ std::unique_ptr<Stream> makeStream(const Options& options, const Decoder& decode
   return std::make_unique<RotationStream>(options.stream, decoder, report);
 }
 
-/// Warns of returns that mode endless leaves alone, if these are many: the cloud is not a rotating sensor's, or the
-/// sensor's place or stagger is wrong.
-void warnOfOutliers(const Stream& stream, Report& report) {
-  constexpr double kMany = 0.05;  // of the returns
-  const auto outliers = static_cast<double>(stream.outliers().value_or(0));
-  const auto returns = static_cast<double>(report.totals().returns);
-  if (outliers > kMany * returns)
-    report.warn(
-        formatted("%.0f %% of the returns are not at the azimuth of their column and in no cluster (outliers): is "
-                  "this a rotating sensor? --mode rotation clusters all",
-                  100 * outliers / returns));
-}
-
 int run(const Options& options) {
   Interruption::listen();
   std::optional<LabelledClouds> clouds;
@@ -418,7 +405,7 @@ int run(const Options& options) {
   stream->finish();
   report.flush();
   if (live) live->finish(decoder, *stream);
-  warnOfOutliers(*stream, report);
+  report.warnOfOutliers(*stream);
   if (bag) bag->finish();
   if (options.statistics) report.printStatistics(*input.source, decoder, *stream);
 

@@ -72,6 +72,13 @@ void writeList(const fs::path& file, const std::set<Listed>& listed) {
   if (!stream) failToWrite(file);
 }
 
+std::set<std::string> filesOf(const std::string& program, const std::set<Listed>& listed) {
+  std::set<std::string> files;
+  for (const auto& [owner, file] : listed)
+    if (owner == program) files.insert(file);
+  return files;
+}
+
 /// The paths of files in a folder and the folders in it.
 std::vector<std::string> filesBelow(const fs::path& folder) {
   std::vector<std::string> files;
@@ -171,10 +178,7 @@ void MadeFolders::removeEmpty() const {
 }
 
 std::set<std::string> ownFilesIn(const fs::path& folder, const std::string& program) {
-  std::set<std::string> files;
-  for (const auto& [owner, file] : listedIn(folder))
-    if (owner == program) files.insert(file);
-  return files;
+  return filesOf(program, listedIn(folder));
 }
 
 void checkMayWriteInto(const fs::path& folder, const std::string& program, const std::vector<std::string>& names) {
@@ -206,8 +210,8 @@ void writeOwnFolder(const fs::path& folder, const std::string& program, const st
     make(aside);
     const std::vector<std::string> files = filesBelow(aside);
     checkMayWriteInto(folder, program, files);
-    const std::set<std::string> before = ownFilesIn(folder, program);
     std::set<Listed> listed = listedIn(folder);
+    const std::set<std::string> before = filesOf(program, listed);
     for (const std::string& file : before) listed.erase({program, file});
     for (const std::string& file : files) listed.insert({program, file});
     writeList(aside / kList, listed);

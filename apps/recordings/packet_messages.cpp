@@ -6,18 +6,12 @@
 #include <array>
 #include <string_view>
 
-#include "io/text.h"
 #include "recordings/message_fields.h"
 
 namespace lisco_apps {
 namespace {
 
 using Packets = std::vector<Packet>;
-
-/// For %llu.
-unsigned long long number(std::uint64_t count) {
-  return count;
-}
 
 /// A packet with the time at which the driver received it, or else the message's.
 Packet packetOf(const std::uint8_t* data, std::size_t size, std::int64_t stamp_ns, const Message& message) {
@@ -104,9 +98,8 @@ std::string textIn(const Message& message, const Topic& topic) {
 
 std::string MessagePackets::malformedOnes() const {
   if (malformed_ == 0) return "";
-  return formatted("%llu message%s of %s malformed, the first is number ", number(malformed_),
-                   malformed_ == 1 ? "" : "s", reader_->topic().name.c_str()) +
-         first_malformed_;
+  return std::to_string(malformed_) + (malformed_ == 1 ? " message of " : " messages of ") + reader_->topic().name +
+         " malformed, the first is number " + first_malformed_;
 }
 
 PacketSource::Arrival MessagePackets::next(Packet& packet) {
@@ -122,7 +115,7 @@ PacketSource::Arrival MessagePackets::next(Packet& packet) {
       packetsIn(message, reader_->topic(), waiting_);
     } catch (const Broken& why) {
       ++foreign_;
-      if (++malformed_ == 1) first_malformed_ = formatted("%llu: ", number(reader_->number())) + why.what();
+      if (++malformed_ == 1) first_malformed_ = std::to_string(reader_->number()) + ": " + why.what();
     }
   }
   packet = waiting_[next_++];

@@ -180,6 +180,17 @@ void Report::warn(const std::string& text) {
   std::fprintf(stderr, "lisco_stream: %s\n", text.c_str());
 }
 
+void Report::warnOfOutliers(const Stream& stream) {
+  constexpr double kMany = 0.05;  // of the returns
+  const auto outliers = static_cast<double>(stream.outliers().value_or(0));
+  const auto returns = static_cast<double>(totals_.returns);
+  if (outliers > kMany * returns)
+    warn(
+        formatted("%.0f %% of the returns are not at the azimuth of their column and in no cluster (outliers): is "
+                  "this a rotating sensor? --mode rotation clusters all",
+                  100 * outliers / returns));
+}
+
 void Report::printStatistics(const PacketSource& source, const Decoder& decoder, const Stream& stream) {
   flush();
   shown_.clear();

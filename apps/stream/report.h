@@ -50,6 +50,9 @@ class Report : public Listener {
   void showStatus(const Decoder& decoder, const Stream& stream, const PacketSource* file);
   /// Prints a line on stderr.
   void warn(const std::string& text);
+  /// Warns of returns that mode endless leaves alone, if these are many: the cloud is not a rotating sensor's, or the
+  /// sensor's place or stagger is wrong.
+  void warnOfOutliers(const Stream& stream);
 
   const Totals& totals() const { return totals_; }
 
