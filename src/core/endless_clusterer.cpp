@@ -10,6 +10,7 @@
 
 #include "core/column_block.h"
 #include "core/endless_sets.h"
+#include "core/finite.h"
 #include "core/neighbour.h"
 #include "core/partition.h"
 #include "core/simd.h"
@@ -23,8 +24,7 @@ namespace {
 void check(const EndlessParameters& parameters, const EndlessClusterer::Callback& callback) {
   if (!(parameters.stagger >= 0 && parameters.stagger <= EndlessParameters::kMaxStagger))
     throw std::invalid_argument("lisco::EndlessClusterer: the stagger must be within 0 and a sixteenth of a turn");
-  if (!std::all_of(parameters.origin.begin(), parameters.origin.end(), [](float c) { return std::isfinite(c); }))
-    throw std::invalid_argument("lisco::EndlessClusterer: the origin must be finite");
+  if (!areFinite(parameters.origin)) throw std::invalid_argument("lisco::EndlessClusterer: the origin must be finite");
   if (!(std::fabs(parameters.start_azimuth) <= EndlessParameters::kMaxAzimuth))
     throw std::invalid_argument("lisco::EndlessClusterer: the start azimuth must be within -1e6 and 1e6 radians");
   if (!callback) throw std::invalid_argument("lisco::EndlessClusterer: the callback must not be empty");

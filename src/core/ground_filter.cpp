@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/finite.h"
 #include "core/ground/block.h"
 #include "core/ground/follower.h"
 #include "core/ground/ground_map.h"
@@ -37,8 +38,7 @@ void check(const GroundParameters& parameters) {
     throw std::invalid_argument("lisco::GroundFilter: the sensor height is infinite");
   if (!(parameters.max_slope >= 1.0F && parameters.max_slope <= 60.0F))
     throw std::invalid_argument("lisco::GroundFilter: max_slope is not within 1 to 60 degrees");
-  const std::array<float, 3>& origin = parameters.sensor.origin;
-  if (!std::all_of(origin.begin(), origin.end(), [](float coordinate) { return std::isfinite(coordinate); }))
+  if (!areFinite(parameters.sensor.origin))
     throw std::invalid_argument("lisco::GroundFilter: the sensor's origin must be finite");
   constexpr float kMaxSlope = 10.0F;
   for (const float slope :
