@@ -57,12 +57,13 @@ inline constexpr double kMinBinInCoarseness = 1;  ///< width of a bin over the r
 
 // --- Cost of linking: measured --------------------------------------------------------------------------------------
 
-/// Cost of searching one segment's neighbours in a sector, in comparisons of registers of bins.
-inline constexpr std::uint32_t kSegmentCost = 2;
+/// Cost of searching one segment's neighbours in a sector, in comparisons of bins: narrower registers slow both down.
+inline constexpr std::uint32_t kSegmentCost = 48;
 /// Units of work where it is done in parts, about 5 ns each.
-inline constexpr std::uint32_t kWorkOfSameBins = 12;  ///< of a laser
-inline constexpr std::uint32_t kWorkOfCutting = 20;   ///< of a laser
-inline constexpr std::uint32_t kWorkOfBins = 2;       ///< of comparing a register of bins
+inline constexpr std::uint32_t kWorkOfSameBins = 12;       ///< of a laser
+inline constexpr std::uint32_t kWorkOfCutting = 20;        ///< of a laser
+inline constexpr std::uint32_t kWorkOfWideRegister = 2;    ///< of comparing 16 bins
+inline constexpr std::uint32_t kWorkOfNarrowRegister = 1;  ///< of comparing 4 or 8
 inline constexpr std::uint32_t kWorkOfSegment = 10;
 inline constexpr std::uint32_t kWorkOfPair = 6;  ///< of segments that are compared
 /// Far returns are worth a range image if placing and linking them takes no more work than sorting them would: this

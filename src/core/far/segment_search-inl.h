@@ -19,6 +19,8 @@ HWY_BEFORE_NAMESPACE();
 namespace lisco {
 namespace HWY_NAMESPACE {
 
+constexpr std::uint32_t kWorkOfRegister = kLanes < 16 ? kWorkOfNarrowRegister : kWorkOfWideRegister;
+
 /// The returns of a segment.
 struct Returns {
   RowBins bins;
@@ -147,9 +149,9 @@ class SegmentSearch {
     mask.nearest = nearest;
     mask.before = binsWithin(asinBound(image_.reach / nearest));
     reachRows(row, nearest, mask);
-    const auto registers = static_cast<std::uint32_t>(RangeImage::kSector / kLanes);
+    const auto bins = static_cast<std::uint32_t>(RangeImage::kSector);
     const auto lasers = (mask.last_row - mask.first_row) / static_cast<std::uint32_t>(image_.layers) + 1;
-    const std::uint32_t by_bins = lasers * static_cast<std::uint32_t>(mask.before) * registers;
+    const std::uint32_t by_bins = lasers * static_cast<std::uint32_t>(mask.before) * bins;
     const std::uint32_t by_segments = (end - begin) * static_cast<std::uint32_t>(sectorsWithin(mask.before) + 1);
     mask.by_bins = by_bins < kSegmentCost * by_segments;
   }
@@ -167,7 +169,7 @@ class SegmentSearch {
         const RowBins same = image_.at(other, bin + static_cast<std::int64_t>(k));
         const bool both_ways = other < row && !state_.masks[other].by_bins;
         const int first = both_ways ? -mask.before : other > row && other != compared ? 0 : 1;
-        state_.work += static_cast<std::size_t>(mask.before + 1 - first) * kWorkOfBins;
+        state_.work += static_cast<std::size_t>(mask.before + 1 - first) * kWorkOfRegister;
         for (int before = first; before <= mask.before; ++before) compareBinsWith(own, same.from(-before));
       }
     }

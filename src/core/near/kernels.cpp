@@ -81,9 +81,11 @@ std::size_t gather(const PointSpan& clique, std::size_t from, const Box& box, fl
     const FloatMask near =
         areNeighbours(gap(x, box.lo[0], box.hi[0]), gap(y, box.lo[1], box.hi[1]), gap(z, box.lo[2], box.hi[2]), r2);
     const FloatMask chosen = hn::And(near, hn::FirstN(kFloats, clique.count - from));
-    hn::CompressStore(x, chosen, kFloats, points.x + points.count);
-    hn::CompressStore(y, chosen, kFloats, points.y + points.count);
-    points.count += hn::CompressStore(z, chosen, kFloats, points.z + points.count);
+    // Whole vectors are stored, into room that is left: a store of chosen lanes takes far longer on a Zen 4.
+    hn::StoreU(hn::Compress(x, chosen), kFloats, points.x + points.count);
+    hn::StoreU(hn::Compress(y, chosen), kFloats, points.y + points.count);
+    hn::StoreU(hn::Compress(z, chosen), kFloats, points.z + points.count);
+    points.count += hn::CountTrue(kFloats, chosen);
   }
   return from;
 }
