@@ -91,6 +91,23 @@ TEST(PclGroundFilter, FiltersUnorganizedCloudsInAnyOrder) {
   expectGround(cloud, ground);
 }
 
+TEST(PclGroundFilter, TakesOneColumnForAnUnorganizedCloud) {
+  const auto cloud = scan();
+  cloud->width *= cloud->height;
+  cloud->height = 1;
+  const auto column = std::make_shared<Cloud>(*cloud);
+  std::swap(column->width, column->height);
+  pcl::LiscoGroundFilter<pcl::PointXYZI> filter;
+  filter.setNegative(true);
+  pcl::Indices of_row, of_column;
+  filter.setInputCloud(cloud);
+  filter.filter(of_row);
+  filter.setInputCloud(column);
+  filter.filter(of_column);
+  expectGround(*cloud, of_row);
+  EXPECT_EQ(of_column, of_row);
+}
+
 TEST(PclGroundFilter, WritesItsIndicesOverThoseGiven) {
   const auto cloud = scan();
   auto given = std::make_shared<pcl::Indices>(cloud->size() / 2);

@@ -441,6 +441,21 @@ TEST(PointCloud2, ConvertsNumbers) {
   }
 }
 
+TEST(PointCloud2, LeavesFieldsOfSeveralElementsOut) {
+  PCLPointCloud2 message =
+      messageOf({{1, 2, 3, 0, 0, 0}}, {{"x", kF32, 0}, {"y", kF32, 4}, {"z", kF32, 8}, {"intensity", kF32, 12}}, 20);
+  const float intensities[2] = {5, 6};
+  std::memcpy(message.data.data() + 12, intensities, sizeof(intensities));
+  pcl::Indices point_of_cell;
+  for (const auto& [elements, intensity] : {std::pair(1U, 5.0F), {2U, PointXYZI().intensity}}) {
+    message.fields[3].count = elements;
+    pcl::PointCloud<PointXYZI> cloud;
+    ASSERT_TRUE(pcl::organizeLiscoCloud(message, cloud, point_of_cell));
+    EXPECT_EQ(cloud[0].z, 3.0F);
+    EXPECT_EQ(cloud[0].intensity, intensity);
+  }
+}
+
 // Color is copied bit by bit under either name and type, as PCL does it.
 TEST(PointCloud2, CopiesColor) {
   for (const char* const name : {"rgb", "rgba"})

@@ -70,7 +70,8 @@ class LISCO_EXPORT EndlessClusterer {
   void addColumn(const Return* cells, std::size_t lasers);
 
   /// Position of the next column that is added without one: 1 / columns_per_turn after the last column, 0 for the
-  /// first. Counted from the last position given, so that rounding does not add up.
+  /// first. Counted from the last position given, so that rounding does not add up. Infinite if columns_per_turn is not
+  /// known.
   double nextPosition() const;
 
   /// Delivers what can be delivered with the columns added so far, without waiting for the block to be complete.

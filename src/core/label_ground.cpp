@@ -26,8 +26,7 @@ void check(const void* points, std::size_t count, std::size_t stride, const Labe
     throw std::invalid_argument("lisco::labelGround: the number of points must be below 2^31");
   if (parameters.lasers == 0 || count % parameters.lasers != 0)
     throw std::invalid_argument("lisco::labelGround: the number of points must be a multiple of the lasers");
-  if (!areFinite(parameters.origin))
-    throw std::invalid_argument("lisco::labelGround: the origin must be finite");
+  if (!areFinite(parameters.origin)) throw std::invalid_argument("lisco::labelGround: the origin must be finite");
   if (count > 0 && (points == nullptr || ground == nullptr))
     throw std::invalid_argument("lisco::labelGround: points and ground must not be null");
 }

@@ -59,8 +59,9 @@ bool LiscoCloudClusterer::clusterPoints(const Layout& layout, const lisco::CellS
     few_points.erase(std::unique(few_points.begin(), few_points.end()), few_points.end());
   }
 
-  // Lasers are the cloud's rows and columns its columns; an unorganized selection has one laser.
-  const bool organized = !few && layout.height > 1 && layout.width * layout.height == layout.points;
+  // Lasers are the cloud's rows and columns its columns; an unorganized selection has one laser. So has a cloud of one
+  // column, as lists of points are often stored: a laser for each would take far more time and memory.
+  const bool organized = !few && layout.width > 1 && layout.height > 1 && layout.width * layout.height == layout.points;
   const std::size_t lasers = organized ? layout.height : 1;
   const std::size_t columns = (few ? few_points.size() : layout.points) / lasers;
   state_->columns = columns;

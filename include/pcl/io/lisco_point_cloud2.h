@@ -51,17 +51,18 @@ namespace pcl {
  *
  * Fields of PointT are taken from the fields of the same names. Numbers of another type are converted: a value beyond
  * the limits of the type becomes the limit (beyond those of a float: infinite), NaN becomes 0 in an integer. Fields
- * missing in the message are those of PointT (), without a warning.
+ * that are missing in the message, or have another number of elements there, are those of PointT (), without a warning.
  *
  * \param[in] message of this machine's byte order, with fields x, y and z of type FLOAT32 or FLOAT64. A FLOAT64 is
  * rounded to float, as PointT has it, first of all.
  * \param[out] cloud receives the header, the points, and in cells without a point NaN. Its sensor pose stays as it is.
  * \param[out] point_of_cell for each point of \a cloud its number in the message, UNAVAILABLE if the cell is empty;
  * numbers count row by row
- * \return false, after a PCL_ERROR and with both cleared, if x, y or z is missing; if a field to be read is of an
- * unknown type, has several elements where one is needed, or reaches beyond point_step; if the rows overlap or reach
- * beyond the data; if there are data but no points; if the byte order is not this machine's; or if there are more
- * points than pcl::index_t can number. A message without points or data gives an empty cloud and true.
+ * \return false, after a PCL_ERROR and with both cleared, if x, y or z is missing; if one of them, or the ring or time
+ * that points are arranged by, has several elements; if a field to be read is of an unknown type or reaches beyond
+ * point_step; if the rows overlap or reach beyond the data; if there are data but no points; if the byte order is not
+ * this machine's; or if there are more points than pcl::index_t can number. A message without points or data gives an
+ * empty cloud and true.
  * \ingroup io
  */
 template <typename PointT>

@@ -33,18 +33,20 @@ class LiscoColumnStream {
   /** \brief Get the cluster tolerance in metres. */
   inline double getClusterTolerance() const { return (cluster_tolerance_); }
 
-  /** \brief Set the least number of points of a cluster (default 1). */
+  /** \brief Set the least number of points of a cluster (default 1). Takes effect where clusters are written next; in
+   * LiscoEndlessExtraction when the next stream begins.
+   */
   inline void setMinClusterSize(pcl::uindex_t min_cluster_size) { min_pts_per_cluster_ = min_cluster_size; }
   /** \brief Get the least number of points of a cluster. */
   inline pcl::uindex_t getMinClusterSize() const { return (min_pts_per_cluster_); }
 
-  /** \brief Set the largest number of points of a cluster (default: no limit). */
+  /** \brief Set the largest number of points of a cluster (default: no limit). Takes effect as the least one. */
   inline void setMaxClusterSize(pcl::uindex_t max_cluster_size) { max_pts_per_cluster_ = max_cluster_size; }
   /** \brief Get the largest number of points of a cluster. */
   inline pcl::uindex_t getMaxClusterSize() const { return (max_pts_per_cluster_); }
 
   /** \brief Declare the number of lasers: a column with more rows is an error (default 0: any number). Columns may
-   * always have fewer.
+   * always have fewer. Takes effect with the next column.
    */
   inline void setNumberOfLasers(std::size_t lasers) { lasers_ = lasers; }
   /** \brief Get the number of lasers, as it was set. */

@@ -45,7 +45,8 @@ void pcl::LiscoGroundFilter<PointT>::applyFilter(Indices& indices) {
   lisco::LabelGroundParameters parameters;
   parameters.sensor_height = sensor_height_;
   parameters.max_slope = max_slope_;
-  const bool is_organized = cloud.height > 1 && static_cast<std::size_t>(cloud.width) * cloud.height == cloud.size();
+  const bool is_organized =
+      cloud.width > 1 && cloud.height > 1 && static_cast<std::size_t>(cloud.width) * cloud.height == cloud.size();
   parameters.lasers = is_organized ? cloud.height : 1;
   parameters.origin = {cloud.sensor_origin_[0], cloud.sensor_origin_[1], cloud.sensor_origin_[2]};
   try {
