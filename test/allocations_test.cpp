@@ -2,6 +2,7 @@
 // Copyright (c) 2026, the Lisco for PCL authors
 // A program for itself: refused_allocations.cpp replaces operator new.
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <cmath>
 #include <cstddef>
@@ -113,6 +114,41 @@ TEST(Allocations, NoneForLabelsOfAScanLikeTheLastOne) {
                           }),
             0U);
   EXPECT_GT(clusters, 1U);
+}
+
+/// Bytes of all memory that malloc () has given, of which operator new is a part; 0 under sanitizers.
+std::size_t bytesInUse() {
+  const auto state = mallinfo2();
+  return state.uordblks + state.hblkhd;
+}
+
+// A clusterer has two planes of bricks in memory, which take turns: an odd number of planes must change nothing.
+TEST(Allocations, KeepNoMoreAfterASecondRotation) {
+  constexpr std::size_t kColumns = 200;
+  constexpr std::size_t kRows = 20;
+  for (const std::size_t lasers : {std::size_t{1}, kRows})
+    for (const double size : {5.0, 6.0, 7.0, 8.0, 9.0, 10.0}) {
+      Random random(3);
+      std::vector<lisco::Return> returns;
+      for (std::size_t i = 0; i < kColumns * kRows; ++i) {
+        const double most = random.chance(0.9) ? 0.5 : size;  // most of them in one plane
+        const auto coordinate = [&] { return static_cast<float>(random.between(0.1, most)); };
+        returns.push_back({coordinate(), coordinate(), coordinate(), static_cast<std::uint32_t>(i)});
+      }
+      lisco::ColumnClusterer clusterer;
+      lisco::Parameters parameters;
+      parameters.tolerance = 0.1F;
+      const std::size_t columns = returns.size() / lasers;
+      std::size_t after_first = 0;
+      for (int rotation = 0; rotation < 2; ++rotation) {
+        clusterer.begin(parameters);
+        clusterer.addColumns(columns, lasers,
+                             [&](std::size_t laser, std::size_t column) { return returns[laser * columns + column]; });
+        clusterer.update();
+        if (rotation == 0) after_first = bytesInUse();
+      }
+      EXPECT_EQ(bytesInUse(), after_first) << lasers << " lasers, " << size << " m";
+    }
 }
 
 TEST(Allocations, NoneForARotationLikeTheLastOne) {

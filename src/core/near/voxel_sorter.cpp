@@ -160,6 +160,7 @@ void VoxelSorter::sort(const Slab& slab) {
 void VoxelSorter::linkSlab(std::size_t slab, const PlaneLayout& layout, DisjointSets& subclusters) {
   division_.slabs[slab].voxels = 0;
   planes_[slab].number = kNoPlane;
+  planes_[slab].latest = 0;  // a scan like the last one fills each of the two as much as that one did
   const bool descends = SlabDivision::descends(slab);
   if (slab > 0 && !descends && linksPlanes()) fillPlaneBefore(slab, layout, subclusters);
   SlabPair& pair = division_.pairOf(slab);
