@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <deque>
 #include <stdexcept>
 #include <utility>
 
@@ -13,9 +12,9 @@
 #include "io/options.h"
 #include "recordings/bytes.h"
 #include "recordings/packet_input.h"
+#include "recordings/packet_rotations.h"
 #include "recordings/point_cloud2.h"
 #include "recordings/topic_choice.h"
-#include "sensors/rotation_cutter.h"
 
 namespace lisco_apps {
 namespace {
@@ -51,15 +50,6 @@ ScanItem itemOf(const fs::path& file, std::uint64_t number, std::int64_t time_ns
   return item;
 }
 
-/// The columns of one rotation.
-struct Rotation {
-  std::vector<Cell> cells;  ///< column by column
-  std::size_t rows = 0;
-  std::vector<double> times_us;  ///< of the columns, see Column
-
-  std::size_t columns() const { return times_us.size(); }
-};
-
 /// Seconds from one time past the hour to another, the nearest.
 float secondsBetween(double from_us, double to_us) {
   constexpr double kHourUs = 3600e6;
@@ -69,9 +59,9 @@ float secondsBetween(double from_us, double to_us) {
 /// A rotation as a cloud, with fields x y z intensity ring time: the laser, 0 at the top, and seconds since the first
 /// column, of the firing of the column's first laser.
 /// \param lasers of the sensor; one with several returns has a row for each
-Scan scanOf(const Rotation& rotation, std::size_t lasers) {
+Scan scanOf(const PacketRotation& rotation, std::size_t lasers) {
   static_assert(sizeof(Cell) == 4 * sizeof(float), "cells are written as they are");
-  const std::size_t columns = rotation.columns();
+  const std::size_t columns = rotation.columns.size();
   const std::size_t rows_of_laser = std::max<std::size_t>(1, rotation.rows / lasers);
   Scan scan;
   scan.cloud = std::make_shared<Cloud>(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rotation.rows));
@@ -92,7 +82,7 @@ Scan scanOf(const Rotation& rotation, std::size_t lasers) {
       (*scan.cloud)[row * columns + column] = pcl::PointXYZ(cell.x, cell.y, cell.z);
       put(cell);
       put(static_cast<std::uint16_t>(row / rows_of_laser));
-      put(secondsBetween(rotation.times_us.front(), rotation.times_us[column]));
+      put(secondsBetween(rotation.columns.front().time_us, rotation.columns[column].time_us));
     }
   return scan;
 }
@@ -150,71 +140,35 @@ class ScanSource::Messages : public Sequence {
   bool has_begun_ = false;
 };
 
-/// Each rotation of a sensor's packets, cut as lisco_stream does it: a row per laser, from top to bottom, a column per
-/// firing. Holds one or two rotations at a time.
+/// Each rotation of a sensor's packets: a row per laser, from top to bottom, a column per firing.
 class ScanSource::Turns : public Sequence {
  public:
   Turns(fs::path file, PacketInput input, const RecordingOptions& part)
-      : file_(std::move(file)), input_(std::move(input)), part_(part), cutter_(input_.decoder->rotationStart()) {}
+      : file_(std::move(file)), rotations_(std::move(input)), part_(part) {}
 
   std::optional<ScanItem> next() override {
-    const Decoder::Visitor visit = [this](const Column& column) { add(column); };
-    Packet packet;
-    while (ended_.empty() && !is_over_) {
-      const PacketSource::Arrival arrival = input_.source->next(packet);
-      if (arrival == PacketSource::Arrival::kPacket) {
-        packet_time_us_ = packet.time_us;
-        input_.decoder->decode(packet, visit);
-      } else if (arrival == PacketSource::Arrival::kEnd) {
-        is_over_ = true;
-        input_.decoder->flush(visit);
-        end();
-      }
+    while (std::optional<PacketRotation> rotation = rotations_.next()) {
+      if (count_++ % part_.every != 0) continue;
+      ScanItem item = itemOf(file_, count_, 1000 * rotation->last_packet_us);
+      item.of_packets = true;
+      item.read = [rotation = std::move(*rotation), lasers = rotations_.decoder().lasers()] {
+        return scanOf(rotation, lasers);
+      };
+      return item;
     }
-    if (ended_.empty()) {
-      if (!input_.source->error().empty()) throw std::runtime_error(input_.source->error());
-      if (rotations_ == 0)
-        fail(file_, "holds no data packet of the sensor (" + input_.decoder->name() + ")" +
-                        (part_.isSpanGiven() ? " between --from and --to" : ""));
-      return std::nullopt;
-    }
-    ScanItem item = std::move(ended_.front());
-    ended_.pop_front();
-    return item;
+    if (!rotations_.error().empty()) throw std::runtime_error(rotations_.error());
+    if (count_ == 0)
+      fail(file_, "holds no data packet of the sensor (" + rotations_.decoder().name() + ")" +
+                      (part_.isSpanGiven() ? " between --from and --to" : ""));
+    return std::nullopt;
   }
-  double share() const override { return input_.source->share(); }
+  double share() const override { return rotations_.share(); }
 
  private:
-  void add(const Column& column) {
-    const bool is_full = rotation_.columns() == kMaxColumns;
-    if (cutter_.startsRotation(column.azimuth, column.after_break) || is_full ||
-        column.cells.size() != rotation_.rows) {
-      end();
-      rotation_.rows = column.cells.size();
-    }
-    rotation_.cells.insert(rotation_.cells.end(), column.cells.begin(), column.cells.end());
-    rotation_.times_us.push_back(column.time_us);
-    time_us_ = packet_time_us_;
-  }
-
-  void end() {
-    Rotation ended = std::exchange(rotation_, Rotation());
-    if (ended.cells.empty() || rotations_++ % part_.every != 0) return;
-    ScanItem item = itemOf(file_, rotations_, 1000 * time_us_);
-    item.of_packets = true;
-    item.read = [rotation = std::move(ended), lasers = input_.decoder->lasers()] { return scanOf(rotation, lasers); };
-    ended_.push_back(std::move(item));
-  }
-
   fs::path file_;
-  PacketInput input_;
+  PacketRotations rotations_;
   RecordingOptions part_;
-  RotationCutter cutter_;
-  bool is_over_ = false;
-  std::uint64_t rotations_ = 0;                    ///< that have ended
-  Rotation rotation_;                              ///< that has begun
-  std::int64_t time_us_ = 0, packet_time_us_ = 0;  ///< of the last column, and of the last packet
-  std::deque<ScanItem> ended_;
+  std::uint64_t count_ = 0;  ///< of rotations
 };
 
 void addFileOptions(boost::program_options::options_description& shown, ReadOptions& files) {

@@ -2,7 +2,7 @@
 """Scans on file, by the readers of the programs."""
 
 import os
-from typing import Any, Iterator, List, NamedTuple, Optional, Union
+from typing import Any, Iterator, List, NamedTuple, Optional, Set, Tuple, Union
 
 from ._checks import Array
 
@@ -74,6 +74,15 @@ def is_recording(path: Any) -> bool:
     """Whether a path is a recording of many scans: a capture (pcap, pcapng), or a bag (db3, mcap, bag, or a folder)."""
     name = os.fspath(path)
     return bool(_readers().is_capture(name) or _readers().is_recording(name))
+
+
+def results_and_clouds(folder: str) -> Tuple[Set[str], Set[str]]:
+    """Names of what `lisco_cluster` has written into a folder, and of the clouds that it would read there."""
+    try:
+        clouds = _readers().cloud_files_in(folder)
+    except RuntimeError as error:
+        raise ValueError(str(error)) from None
+    return {name.split("/")[0] for name in _readers().results_in(folder)}, {os.path.basename(file) for file in clouds}
 
 
 def _reading(sensor: Optional[str], calibration: Any, metadata: Any, topic: Optional[str], port: Optional[int]) -> Any:

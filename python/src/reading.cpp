@@ -18,12 +18,14 @@
 #include <utility>
 #include <vector>
 
+#include "io/cloud_file.h"
+#include "io/output_file.h"
 #include "io/scan_file.h"
 #include "recordings/packet_input.h"
+#include "recordings/packet_rotations.h"
 #include "recordings/recording.h"
 #include "recordings/scan_source.h"
 #include "sensors/decoder.h"
-#include "sensors/rotation_cutter.h"
 #include "stream/turn_position.h"
 
 namespace lisco_python {
@@ -117,71 +119,52 @@ struct Turn {
 /// Rotations of a capture. Calls from several threads wait for each other.
 class Capture {
  public:
-  Capture(const fs::path& file, const Reading& reading) {
-    const lisco_apps::InputOptions options = reading.options();
-    lisco_apps::PacketInput input =
-        lisco_apps::openPackets(file, options.recording, options.decoder, options.port, [] { return false; });
-    decoder_ = std::move(input.decoder);
-    source_ = std::move(input.source);
-    cutter_ = lisco_apps::RotationCutter(decoder_->rotationStart());
-  }
+  Capture(const fs::path& file, const Reading& reading) : rotations_(openedFor(file, reading)) {}
 
   /// \return nothing at the end
   std::optional<Turn> next() {
     const py::gil_scoped_release release;
     const std::lock_guard<std::mutex> lock(mutex_);
-    lisco_apps::Packet packet;
-    const std::function<void(const lisco_apps::Column&)> take = [&](const lisco_apps::Column& column) {
-      add(column, packet);
-    };
-    while (ended_.empty()) {
-      if (source_->next(packet) != lisco_apps::PacketSource::Arrival::kPacket) {
-        decoder_->flush(take);
-        if (!turn_.azimuths.empty()) ended_.push_back(std::exchange(turn_, {}));
-        if (!ended_.empty()) break;
-        if (const std::string error = std::exchange(error_, source_->error()); error.empty() && !error_.empty())
-          throw std::runtime_error(error_);
-        return std::nullopt;
-      }
-      decoder_->decode(packet, take);
-    }
-    Turn first = std::move(ended_.front());
-    ended_.erase(ended_.begin());
-    return first;
+    std::optional<lisco_apps::PacketRotation> rotation = rotations_.next();
+    if (rotation) return turnOf(*rotation);
+    if (!std::exchange(is_over_, true) && !rotations_.error().empty()) throw std::runtime_error(rotations_.error());
+    return std::nullopt;
   }
 
   /// Largest azimuth between a column and its returns, radians.
-  double stagger() const { return decoder_->stagger(); }
+  double stagger() const { return rotations_.decoder().stagger(); }
 
   std::size_t dataPackets() {
     const py::gil_scoped_release release;
     const std::lock_guard<std::mutex> lock(mutex_);
-    return decoder_->counts().data;
+    return rotations_.decoder().counts().data;
   }
 
  private:
-  void add(const lisco_apps::Column& column, const lisco_apps::Packet& packet) {
+  static lisco_apps::PacketInput openedFor(const fs::path& file, const Reading& reading) {
+    const lisco_apps::InputOptions options = reading.options();
+    return lisco_apps::openPackets(file, options.recording, options.decoder, options.port, [] { return false; });
+  }
+
+  Turn turnOf(const lisco_apps::PacketRotation& rotation) {
     constexpr double kSecondsPerMicrosecond = 1e-6;
-    const bool starts = cutter_.startsRotation(column.azimuth, column.after_break);
-    if (starts || turn_.azimuths.size() == lisco_apps::kMaxColumns || column.cells.size() != turn_.lasers) {
-      if (!turn_.azimuths.empty()) ended_.push_back(std::exchange(turn_, {}));
-      turn_.lasers = column.cells.size();
-      turn_.time = static_cast<double>(packet.time_us) * kSecondsPerMicrosecond;
+    Turn turn;
+    turn.lasers = rotation.rows;
+    turn.time = static_cast<double>(rotation.first_packet_us) * kSecondsPerMicrosecond;
+    turn.cells.reserve(4 * rotation.cells.size());
+    for (const lisco_apps::Cell& cell : rotation.cells)
+      turn.cells.insert(turn.cells.end(), {cell.x, cell.y, cell.z, cell.intensity});
+    for (const auto& column : rotation.columns) {
+      turn.azimuths.push_back(column.azimuth);
+      turn.positions.push_back(position_.next(column.azimuth, std::nullopt, column.after_break));
     }
-    for (const lisco_apps::Cell& cell : column.cells)
-      turn_.cells.insert(turn_.cells.end(), {cell.x, cell.y, cell.z, cell.intensity});
-    turn_.azimuths.push_back(column.azimuth);
-    turn_.positions.push_back(position_.next(column.azimuth, std::nullopt, column.after_break));
+    return turn;
   }
 
   std::mutex mutex_;
-  std::unique_ptr<lisco_apps::Decoder> decoder_;
-  std::unique_ptr<lisco_apps::PacketSource> source_;
-  lisco_apps::RotationCutter cutter_;
+  lisco_apps::PacketRotations rotations_;
   lisco_apps::TurnPosition position_;
-  Turn turn_;                ///< that has begun
-  std::vector<Turn> ended_;  ///< but not yet given
-  std::string error_;
+  bool is_over_ = false;
 };
 
 /// (lasers, columns, 4): a view of the columns, which are copied.
@@ -202,6 +185,10 @@ PYBIND11_MODULE(_reading, module) {
   module.doc() = "The readers of the programs.";
   module.def("read_file", &readFile, py::arg("file"));
   module.def("sensors", &lisco_apps::decodableSensors);
+  module.def("cloud_files_in", &lisco_apps::cloudFilesIn, py::arg("folder"));
+  module.def(
+      "results_in", [](const fs::path& folder) { return lisco_apps::ownFilesIn(folder, lisco_apps::kClusterProgram); },
+      py::arg("folder"));
   module.def("is_capture", &lisco_apps::isCapture, py::arg("path"));
   module.def("is_recording", &lisco_apps::isRecording, py::arg("path"));
   py::class_<Reading>(module, "Reading")

@@ -6,10 +6,9 @@ import json
 import os
 from typing import Any, Dict, Iterator, List, Optional, Tuple
 
-from ..reading import is_recording
+from ..reading import is_recording, results_and_clouds
 
 STATE = "archive.json"  # of an archive's results, in their folder
-CLOUDS = (".pcd", ".ply", ".bin", ".npy", ".csv")  # in folders; other files are given one by one
 MOST_PIECES_OF_A_RECORDING = 8  # each reads the recording from its beginning
 
 
@@ -92,7 +91,7 @@ def _inside(folder: str) -> Iterator[str]:
     """
     if os.path.exists(os.path.join(folder, STATE)):
         return
-    results = set(_results_of_cluster(folder))
+    results, clouds = results_and_clouds(folder)
     for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
         if entry.name.startswith(".") or entry.name in results:
             continue
@@ -100,29 +99,8 @@ def _inside(folder: str) -> Iterator[str]:
             yield entry.path
         elif entry.is_dir():
             yield from _inside(entry.path)
-        elif entry.name.lower().endswith(CLOUDS) and not _is_table(entry.path):
+        elif entry.name in clouds:
             yield entry.path
-
-
-def _results_of_cluster(folder: str) -> Iterator[str]:
-    """Files and folders that `lisco_cluster` has written into a folder, as its hidden list has them."""
-    try:
-        with open(os.path.join(folder, ".lisco_results"), encoding="utf-8", errors="replace") as lines:
-            for line in lines:
-                program, _, name = line.rstrip("\n").partition(" ")
-                if program == "lisco_cluster":
-                    yield name.split("/")[0]
-    except FileNotFoundError:
-        return
-
-
-def _is_table(path: str) -> bool:
-    """Whether a .csv has names of columns, the first of which is not x, as that of points would be."""
-    if not path.lower().endswith(".csv"):
-        return False
-    with open(path, "rb") as file:
-        first = file.read(1).lower()
-    return first.isalpha() and first != b"x"
 
 
 def identity(files: List[str], settings: Settings) -> Dict[str, Any]:
