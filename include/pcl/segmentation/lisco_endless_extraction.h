@@ -165,8 +165,8 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
   /** \brief Get the number of columns of a turn. */
   inline double getColumnsPerTurn() const { return (columns_per_turn_); }
 
-  /** \brief Set how many columns are clustered together, 1..64, the nearest of which others become (default 16). The fewer,
-   * the sooner clusters are delivered. Takes effect when the next stream begins.
+  /** \brief Set how many columns are clustered together, 1..64, the nearest of which others become (default 16). The
+   * fewer, the sooner clusters are delivered. Takes effect when the next stream begins.
    */
   inline void setBlockColumns(std::size_t columns) { block_columns_ = columns; }
   /** \brief Get how many columns are clustered together. */

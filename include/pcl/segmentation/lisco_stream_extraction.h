@@ -132,9 +132,9 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
     return (Eigen::Vector4f(sensor_origin_[0], sensor_origin_[1], sensor_origin_[2], 0.0F));
   }
 
-  /** \brief Set how many columns are clustered together, 1..64, the nearest of which others become (default 64, which is the
-   * least work). The fewer, the less work is left for subclusters in between and for the end. Takes effect when the next
-   * rotation begins; it changes no result.
+  /** \brief Set how many columns are clustered together, 1..64, the nearest of which others become (default 64, which
+   * is the least work). The fewer, the less work is left for subclusters in between and for the end. Takes effect when
+   * the next rotation begins; it changes no result.
    */
   inline void setBlockColumns(std::size_t columns) { block_columns_ = columns; }
   /** \brief Get how many columns are clustered together. */
