@@ -7,7 +7,6 @@
 #include <deque>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "recordings/packet_input.h"
@@ -18,9 +17,9 @@ namespace lisco_apps {
 
 /// The columns of one rotation.
 struct PacketRotation {
+  /// What Column states beside its cells.
   struct ColumnState {
-    double azimuth;  ///< these as Column has them
-    double time_us;
+    double azimuth, time_us;
     bool after_break;
   };
 

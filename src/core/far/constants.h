@@ -63,7 +63,7 @@ inline constexpr std::uint32_t kSegmentCost = 48;
 inline constexpr std::uint32_t kWorkOfSameBins = 12;       ///< of a laser
 inline constexpr std::uint32_t kWorkOfCutting = 20;        ///< of a laser
 inline constexpr std::uint32_t kWorkOfWideRegister = 2;    ///< of comparing 16 bins
-inline constexpr std::uint32_t kWorkOfNarrowRegister = 1;  ///< of comparing 4 or 8
+inline constexpr std::uint32_t kWorkOfNarrowRegister = 1;  ///< of comparing 8 or fewer
 inline constexpr std::uint32_t kWorkOfSegment = 10;
 inline constexpr std::uint32_t kWorkOfPair = 6;  ///< of segments that are compared
 /// Far returns are worth a range image if placing and linking them takes no more work than sorting them would: this

@@ -149,9 +149,9 @@ class SegmentSearch {
     mask.nearest = nearest;
     mask.before = binsWithin(asinBound(image_.reach / nearest));
     reachRows(row, nearest, mask);
-    const auto bins = static_cast<std::uint32_t>(RangeImage::kSector);
+    constexpr auto kSector = static_cast<std::uint32_t>(RangeImage::kSector);
     const auto lasers = (mask.last_row - mask.first_row) / static_cast<std::uint32_t>(image_.layers) + 1;
-    const std::uint32_t by_bins = lasers * static_cast<std::uint32_t>(mask.before) * bins;
+    const std::uint32_t by_bins = lasers * static_cast<std::uint32_t>(mask.before) * kSector;
     const std::uint32_t by_segments = (end - begin) * static_cast<std::uint32_t>(sectorsWithin(mask.before) + 1);
     mask.by_bins = by_bins < kSegmentCost * by_segments;
   }
