@@ -79,6 +79,19 @@ void Partition::readLasers(const CellSource& cells, std::size_t first, std::size
     }
 }
 
+void Partition::addRing(const RingBlock& block, std::size_t laser, std::uint32_t first_column, std::size_t columns,
+                        ColumnBits chosen, DisjointSets& subclusters) {
+  runs.add(block, info_, laser, first_column, columns, first_element, subclusters);
+  ColumnBits unplaced = 0;
+  if (info_.far != 0) unplaced = image_.place(block, info_, laser, first_column);
+  const ColumnBits near = chosen & (~info_.interior | unplaced);
+  if (near == 0) return;
+  if (collects_near_)
+    near_returns_.add(block, info_.run, near);
+  else
+    voxels_.add(block, info_, near, subclusters);
+}
+
 void Partition::linkWithin(DisjointSets& subclusters) {
   segments_.linkRest(image_, subclusters);
   near_.link(voxels_, subclusters);

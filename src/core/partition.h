@@ -89,16 +89,23 @@ class alignas(kSeparate) Partition {
                   DisjointSets& subclusters);
 
   /// Reads a ring block; linkWithin () links it.
-  void readRing(RingBlock& block, std::size_t laser, std::uint32_t first_column, std::size_t columns,
+  void readRing(const RingBlock& block, std::size_t laser, std::uint32_t first_column, std::size_t columns,
                 DisjointSets& subclusters) {
-    readRing(block, laser, first_column, columns, subclusters,
-             [](const RingBlock&, const RingBlockInfo& info) { return info.returns; });
+    if (hasFar())
+      measure(block, columns, tolerance_.squared(), image_.range, info_);
+    else
+      findRuns(block, columns, tolerance_.squared(), info_);
+    if (info_.returns != 0) addRing(block, laser, first_column, columns, info_.returns, subclusters);
   }
-  /// \param choose callable as ColumnBits (const RingBlock&, RingBlockInfo&), once runs are found and before they are
-  ///        cut: returns those of info.returns that may have neighbours, and may add starts of runs to info.starts
+  /// \param choose callable as ColumnBits (const RingBlock&, RingBlockInfo&), once runs and distances are measured and
+  ///        before runs are cut: returns those of info.returns that may have neighbours, and may add starts of runs to
+  ///        info.starts
   template <typename Choose>
-  void readRing(RingBlock& block, std::size_t laser, std::uint32_t first_column, std::size_t columns,
-                DisjointSets& subclusters, Choose&& choose);
+  void readRing(const RingBlock& block, std::size_t laser, std::uint32_t first_column, std::size_t columns,
+                DisjointSets& subclusters, Choose&& choose) {
+    measure(block, columns, tolerance_.squared(), image_.range, info_);
+    if (info_.returns != 0) addRing(block, laser, first_column, columns, choose(block, info_), subclusters);
+  }
 
   /// Links all returns read since the last call among themselves and with those before, near and far.
   void linkWithin(DisjointSets& subclusters);
@@ -156,6 +163,11 @@ class alignas(kSeparate) Partition {
   std::uint32_t first_element = 0;
 
  private:
+  /// Cuts the runs of a ring block, and hands its returns to the range image and the voxels.
+  /// \param chosen returns that may have neighbours
+  void addRing(const RingBlock& block, std::size_t laser, std::uint32_t first_column, std::size_t columns,
+               ColumnBits chosen, DisjointSets& subclusters);
+
   Tolerance tolerance_;
   RangeImage image_;  ///< far returns
   SegmentLinker segments_;
@@ -168,22 +180,5 @@ class alignas(kSeparate) Partition {
   RingBlock block_{};
   RingBlockInfo info_{};
 };
-
-template <typename Choose>
-void Partition::readRing(RingBlock& block, std::size_t laser, std::uint32_t first_column, std::size_t columns,
-                         DisjointSets& subclusters, Choose&& choose) {
-  measure(block, columns, tolerance_.squared(), image_.range, info_);
-  if (info_.returns == 0) return;
-  const ColumnBits chosen = choose(block, info_);
-  runs.add(block, info_, laser, first_column, columns, first_element, subclusters);
-  ColumnBits unplaced = 0;
-  if (info_.far != 0) unplaced = image_.place(block, info_, laser, first_column);
-  const ColumnBits near = chosen & (~info_.interior | unplaced);
-  if (near == 0) return;
-  if (collects_near_)
-    near_returns_.add(block, info_, near);
-  else
-    voxels_.add(block, info_, near, subclusters);
-}
 
 }  // namespace lisco

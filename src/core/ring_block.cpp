@@ -10,60 +10,98 @@
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
+#include "core/bits.h"
 #include "core/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace lisco {
 namespace HWY_NAMESPACE {
 
-void measureBlock(RingBlock& block, float squared_tolerance, const FarRange& range, RingBlockInfo& info) {
-  const FloatVector nan = hn::Set(kFloats, std::numeric_limits<float>::quiet_NaN());
+/// The returns of a ring block, and which of them are linked to the return in the column before.
+class RunFinder {
+ public:
+  RunFinder(const RingBlock& block, std::size_t columns, float squared_tolerance)
+      : block_(block), columns_(columns), squared_tolerance_(hn::Set(kFloats, squared_tolerance)) {}
+
+  /// \return the returns of the kLanes columns from k on, bit 0 for column k
+  std::uint64_t find(std::size_t k) {
+    const FloatVector x = coordinate(block_.x, k);
+    const FloatVector y = coordinate(block_.y, k);
+    const FloatVector z = coordinate(block_.z, k);
+    const std::uint64_t returns = bitsOf(areReturns(x, y, z)) & ~bitsFrom(columns_ - std::min(columns_, k));
+    if (returns == 0) return 0;
+    returns_ |= returns << k;
+    const auto step = [k](FloatVector here, const float* coordinates) {
+      return hn::Sub(here, hn::LoadU(kFloats, coordinates + RingBlock::kMargin + k - 1));
+    };
+    const FloatMask near = areNeighbours(step(x, block_.x), step(y, block_.y), step(z, block_.z), squared_tolerance_);
+    near_before_ |= std::uint64_t{bitsOf(near)} << k;
+    return returns;
+  }
+
+  FloatVector coordinate(const float* coordinates, std::size_t k) const {
+    return hn::LoadU(kFloats, coordinates + RingBlock::kMargin + k);
+  }
+  ColumnBits returns() const { return returns_; }
+  ColumnBits starts() const { return returns_ & ~(near_before_ & returns_ << 1); }
+
+ private:
+  const RingBlock& block_;
+  const std::size_t columns_;
+  const FloatVector squared_tolerance_;
+  ColumnBits returns_ = 0;
+  ColumnBits near_before_ = 0;  ///< columns within the tolerance of the one before, whether that is a return or not
+};
+
+ColumnBits findReturnsOf(const RingBlock& block, std::size_t columns) {
+  ColumnBits returns = 0;
+  for (std::size_t k = 0; k < columns; k += kLanes) {
+    const auto coordinate = [k](const float* coordinates) {
+      return hn::LoadU(kFloats, coordinates + RingBlock::kMargin + k);
+    };
+    returns |= ColumnBits{bitsOf(areReturns(coordinate(block.x), coordinate(block.y), coordinate(block.z)))} << k;
+  }
+  return returns & ~bitsFrom(columns);
+}
+
+void findRunsOf(const RingBlock& block, std::size_t columns, float squared_tolerance, RingBlockInfo& info) {
+  RunFinder finder(block, columns, squared_tolerance);
+  for (std::size_t k = 0; k < columns; k += kLanes) finder.find(k);
+  info.returns = finder.returns();
+  info.starts = finder.starts();
+  info.far = info.interior = 0;
+}
+
+void measureBlock(const RingBlock& block, std::size_t columns, float squared_tolerance, const FarRange& range,
+                  RingBlockInfo& info) {
   const FloatVector infinity = hn::Set(kFloats, std::numeric_limits<float>::infinity());
-  const FloatVector r2 = hn::Set(kFloats, squared_tolerance);
-  info.returns = info.far = info.interior = 0;
-  std::uint64_t linked = 0;
+  RunFinder finder(block, columns, squared_tolerance);
+  info.far = info.interior = 0;
   FloatVector lowest = infinity;
   FloatVector highest = hn::Neg(infinity);
-  block.x[RingBlock::kMargin - 1] = std::numeric_limits<float>::quiet_NaN();
-  for (std::size_t k = 0; k < RingBlock::kColumns; k += kLanes) {
-    float* const px = block.x + RingBlock::kMargin + k;
-    const float* const py = block.y + RingBlock::kMargin + k;
-    const float* const pz = block.z + RingBlock::kMargin + k;
-    FloatVector x = hn::LoadU(kFloats, px);
-    const FloatVector y = hn::LoadU(kFloats, py);
-    const FloatVector z = hn::LoadU(kFloats, pz);
-    const FloatMask returned = areReturns(x, y, z);
-    const std::uint64_t returns = bitsOf(returned);
-    x = hn::IfThenElse(returned, x, nan);
-    hn::StoreU(x, kFloats, px);
+  for (std::size_t k = 0; k < columns; k += kLanes) {
+    const std::uint64_t returns = finder.find(k);
     if (returns == 0) continue;
-    info.returns |= returns << k;
-    const FloatVector east = hn::Sub(x, hn::Set(kFloats, range.origin[0]));
-    const FloatVector north = hn::Sub(y, hn::Set(kFloats, range.origin[1]));
+    const FloatVector east = hn::Sub(finder.coordinate(block.x, k), hn::Set(kFloats, range.origin[0]));
+    const FloatVector north = hn::Sub(finder.coordinate(block.y, k), hn::Set(kFloats, range.origin[1]));
     const FloatVector rho = hn::Sqrt(hn::Add(hn::Mul(east, east), hn::Mul(north, north)));
     hn::StoreU(rho, kFloats, info.rho + k);
-    const FloatMask far =
-        hn::And(hn::Ge(rho, hn::Set(kFloats, range.min_range)), hn::Lt(rho, hn::Set(kFloats, range.max_range)));
-    const FloatMask interior =
-        hn::And(hn::Ge(rho, hn::Set(kFloats, range.interior_min)), hn::Lt(rho, hn::Set(kFloats, range.interior_max)));
+    const FloatMask returned = lanesOf(returns);
+    const auto within = [&](float lo, float hi) {
+      return hn::And(returned, hn::And(hn::Ge(rho, hn::Set(kFloats, lo)), hn::Lt(rho, hn::Set(kFloats, hi))));
+    };
+    const FloatMask far = within(range.min_range, range.max_range);
     info.far |= std::uint64_t{bitsOf(far)} << k;
-    info.interior |= std::uint64_t{bitsOf(interior)} << k;
+    info.interior |= std::uint64_t{bitsOf(within(range.interior_min, range.interior_max))} << k;
     const FloatVector horizon =
         hn::Add(hn::Mul(east, hn::Set(kFloats, range.tilt[0])), hn::Mul(north, hn::Set(kFloats, range.tilt[1])));
-    const FloatVector slope = hn::Div(hn::Sub(hn::Sub(z, hn::Set(kFloats, range.origin[2])), horizon), rho);
+    const FloatVector up = hn::Sub(finder.coordinate(block.z, k), hn::Set(kFloats, range.origin[2]));
+    const FloatVector slope = hn::Div(hn::Sub(up, horizon), rho);
     lowest = hn::Min(lowest, hn::IfThenElse(far, slope, infinity));
     highest = hn::Max(highest, hn::IfThenElse(far, slope, hn::Neg(infinity)));
   }
-  // A loop of its own: a load that straddles recent stores stalls.
-  for (std::size_t k = 0; k < RingBlock::kColumns; k += kLanes) {
-    if (bitsAt(info.returns, k) == 0) continue;
-    const auto step = [k](const float* coordinate) {
-      const float* const here = coordinate + RingBlock::kMargin + k;
-      return hn::Sub(hn::LoadU(kFloats, here), hn::LoadU(kFloats, here - 1));
-    };
-    linked |= std::uint64_t{bitsOf(areNeighbours(step(block.x), step(block.y), step(block.z), r2))} << k;
-  }
-  info.starts = info.returns & ~linked;
+  info.returns = finder.returns();
+  info.starts = finder.starts();
   info.lowest = hn::GetLane(hn::MinOfLanes(kFloats, lowest));
   info.highest = hn::GetLane(hn::MaxOfLanes(kFloats, highest));
 }
@@ -75,13 +113,21 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace lisco {
 
+HWY_EXPORT(findReturnsOf);
+HWY_EXPORT(findRunsOf);
 HWY_EXPORT(measureBlock);
 
-void measure(RingBlock& block, std::size_t columns, float squared_tolerance, const FarRange& range,
+ColumnBits findReturns(const RingBlock& block, std::size_t columns) {
+  return HWY_DYNAMIC_DISPATCH(findReturnsOf)(block, columns);
+}
+
+void findRuns(const RingBlock& block, std::size_t columns, float squared_tolerance, RingBlockInfo& info) {
+  HWY_DYNAMIC_DISPATCH(findRunsOf)(block, columns, squared_tolerance, info);
+}
+
+void measure(const RingBlock& block, std::size_t columns, float squared_tolerance, const FarRange& range,
              RingBlockInfo& info) {
-  std::fill(block.x + RingBlock::kMargin + columns, block.x + RingBlock::kMargin + RingBlock::kColumns,
-            std::numeric_limits<float>::quiet_NaN());
-  HWY_DYNAMIC_DISPATCH(measureBlock)(block, squared_tolerance, range, info);
+  HWY_DYNAMIC_DISPATCH(measureBlock)(block, columns, squared_tolerance, range, info);
 }
 
 }  // namespace lisco

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/bits.h"
 #include "lisco/return.h"
 
 namespace lisco {
@@ -18,7 +19,7 @@ struct RingBlock {
   static constexpr std::size_t kSize = kMargin + kColumns + kMargin;
 
   float x[kSize], y[kSize], z[kSize];
-  std::uint32_t source_index[kColumns];
+  std::uint32_t source_index[kColumns + kMargin];
 
   /// Copies cells of one laser, from the block's column `at` on.
   void read(std::size_t at, const CellSource& cells, std::size_t laser, std::size_t first, std::size_t count) {
@@ -49,10 +50,17 @@ struct FarRange {
   float interior_max = 0;  ///< up to here all neighbours are below max_range
 };
 
-/// Finds the returns of a ring block, which of them are linked to the one before, and their distances. Sets x of cells
-/// that are no returns to NaN.
+/// The returns of a ring block.
 /// \param columns number of columns; those behind count as empty
-void measure(RingBlock& block, std::size_t columns, float squared_tolerance, const FarRange& range,
+ColumnBits findReturns(const RingBlock& block, std::size_t columns);
+
+/// Finds the returns of a ring block, and which of them are linked to the one before. None is far; what is known of far
+/// ones, and the distances, are left as they are.
+/// \param columns as above
+void findRuns(const RingBlock& block, std::size_t columns, float squared_tolerance, RingBlockInfo& info);
+
+/// The same, with the distances and the far returns.
+void measure(const RingBlock& block, std::size_t columns, float squared_tolerance, const FarRange& range,
              RingBlockInfo& info);
 
 }  // namespace lisco

@@ -8,49 +8,9 @@
 
 #include "core/near/constants.h"
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "core/unordered_returns.cpp"
-#include <hwy/foreach_target.h>  // must come before highway.h
-#include <hwy/highway.h>
-
-#include "core/lanes-inl.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace lisco {
-namespace HWY_NAMESPACE {
-
-/// Copies the returns of a ring block side by side. Up to kReadBehind more are written.
-/// \param columns those behind are no returns
-/// \return bit i: column i is a return
-ColumnBits copyReturns(const RingBlock& block, std::size_t columns, NearReturn* to) {
-  static_assert(kLanes <= kReadBehind, "a vector fits behind the last");
-  static_assert(sizeof(NearReturn) == 4 * sizeof(float), "lane 4 i + k is coordinate k");
-  ColumnBits all = 0;
-  for (std::size_t k = 0; k < columns; k += kLanes) {
-    const FloatVector x = hn::LoadU(kFloats, block.x + RingBlock::kMargin + k);
-    const FloatVector y = hn::LoadU(kFloats, block.y + RingBlock::kMargin + k);
-    const FloatVector z = hn::LoadU(kFloats, block.z + RingBlock::kMargin + k);
-    const std::uint64_t returns = bitsOf(areReturns(x, y, z)) & lanesBelow(columns - k);
-    const FloatMask chosen = lanesOf(returns);
-    const FloatVector sources = hn::BitCast(kFloats, hn::LoadU(kWords, block.source_index + k));
-    hn::StoreInterleaved4(hn::Compress(x, chosen), hn::Compress(y, chosen), hn::Compress(z, chosen),
-                          hn::Compress(sources, chosen), kFloats, &to->x);
-    to += countBits(returns);
-    all |= returns << k;
-  }
-  return all;
-}
-
-}  // namespace HWY_NAMESPACE
-}  // namespace lisco
-HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
 namespace lisco {
 
 namespace {
-
-HWY_EXPORT(copyReturns);
 
 /// Shares of returns that begin a run, and that begin a fragment: a run or its part in another voxel. Above either,
 /// runs take more time than they save; lower ones slow down dense clouds in order, higher ones sparse clouds
@@ -113,9 +73,9 @@ void UnorderedReturns::readPart(std::size_t number, const CellSource& cells, std
       const std::size_t columns = std::min(end - column, RingBlock::kColumns);
       block.read(0, cells, laser, column, columns);
       const std::size_t count = part.near.count;
-      const ColumnBits returns = HWY_DYNAMIC_DISPATCH(copyReturns)(block, columns, part.near.returns.data() + count);
+      const ColumnBits returns = findReturns(block, columns);
       if (returns == 0) continue;
-      part.near.count += countBits(returns);
+      part.near.add(block, block.source_index, returns);
       reserveInSteps(part.blocks, part.blocks.size() + 1);
       part.blocks.push_back({static_cast<std::uint32_t>(laser), static_cast<std::uint32_t>(column),
                              static_cast<std::uint32_t>(count), returns});
@@ -200,4 +160,3 @@ void UnorderedReturns::moveTo(Partition& partition, DisjointSets& subclusters) {
 }
 
 }  // namespace lisco
-#endif

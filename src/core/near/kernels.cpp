@@ -42,11 +42,10 @@ bool numberReturns(const RingBlock& block, std::uint64_t which, float per_metre,
   changes = 0;
   for (std::size_t k = 0; k < RingBlock::kColumns; k += kLanes) {
     if (bitsAt(which, k) == 0) continue;
-    const FloatVector x = hn::LoadU(kFloats, coordinates[0] + k);
-    const FloatMask returned = hn::Eq(x, x);
+    const FloatMask chosen = lanesOf(which >> k);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const FloatVector number = hn::Mul(hn::LoadU(kFloats, coordinates[axis] + k), scale);
-      farthest = hn::Max(farthest, hn::IfThenElseZero(returned, hn::Abs(number)));
+      farthest = hn::Max(farthest, hn::IfThenElseZero(chosen, hn::Abs(number)));
       hn::StoreU(hn::BitCast(kWords, hn::ConvertTo(signed_words, convertible(hn::Floor(number)))), kWords,
                  numbers.of[axis] + 1 + k);
     }

@@ -4,20 +4,47 @@
 
 #include "core/near/constants.h"
 
-namespace lisco {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/near/near_returns.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
 
-void NearReturns::add(const RingBlock& block, const RingBlockInfo& info, ColumnBits which) {
-  returns.growInSteps(count + RingBlock::kColumns + kReadBehind);
-  const float* const x = block.x + RingBlock::kMargin;
-  const float* const y = block.y + RingBlock::kMargin;
-  const float* const z = block.z + RingBlock::kMargin;
+#include "core/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lisco {
+namespace HWY_NAMESPACE {
+
+/// Copies some returns of a ring block side by side, as vectors of consecutive columns: gathering the chosen lanes of a
+/// vector takes AVX2 several times as long. Up to kReadBehind more are written.
+void copyReturns(const RingBlock& block, const std::uint32_t* elements, ColumnBits which, NearReturn* to) {
+  static_assert(kLanes <= kReadBehind, "a vector fits behind the last");
+  static_assert(sizeof(NearReturn) == 4 * sizeof(float), "lane 4 i + k is coordinate k");
+  const auto at = [](const float* coordinates, std::size_t i) {
+    return hn::LoadU(kFloats, coordinates + RingBlock::kMargin + i);
+  };
   forEachChain(which & ~(which << 1), which, [&](std::size_t begin, std::size_t end) {
-    NearReturn* const to = returns.data() + count;
-    for (std::size_t i = 0; i < end - begin; i += kNearStep)
-      for (std::size_t k = i; k < i + kNearStep; ++k)
-        to[k] = {x[begin + k], y[begin + k], z[begin + k], info.run[begin + k]};
-    count += end - begin;
+    for (std::size_t i = begin; i < end; i += kLanes)
+      hn::StoreInterleaved4(at(block.x, i), at(block.y, i), at(block.z, i),
+                            hn::BitCast(kFloats, hn::LoadU(kWords, elements + i)), kFloats, &to[i - begin].x);
+    to += end - begin;
   });
 }
 
+}  // namespace HWY_NAMESPACE
 }  // namespace lisco
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lisco {
+
+HWY_EXPORT(copyReturns);
+
+void NearReturns::add(const RingBlock& block, const std::uint32_t* elements, ColumnBits which) {
+  returns.growInSteps(count + RingBlock::kColumns + kReadBehind);
+  HWY_DYNAMIC_DISPATCH(copyReturns)(block, elements, which, returns.data() + count);
+  count += countBits(which);
+}
+
+}  // namespace lisco
+#endif

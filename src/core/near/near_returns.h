@@ -22,9 +22,10 @@ struct NearReturns {
   GrowingArray<NearReturn> returns;  ///< kReadBehind longer than count, at least
   std::size_t count = 0;
 
-  /// Appends some returns of a ring block, after Runs::add.
+  /// Appends some returns of a ring block.
+  /// \param elements of each column; may be read up to kReadBehind behind the last
   /// \param which bit i: return i
-  void add(const RingBlock& block, const RingBlockInfo& info, ColumnBits which);
+  void add(const RingBlock& block, const std::uint32_t* elements, ColumnBits which);
 };
 
 }  // namespace lisco
