@@ -168,9 +168,8 @@ void SegmentLinker::fit(const RangeImage& image) {
   times_reordered_ = image.times_reordered;
   linked_parts_ = 0;  // of a sector with other rows
   masks.assign(count, NeighborMask());
-  forgetSectors();
-  for (Sector& sector : sectors) sector.begin.resize(count + 1);
-  beyond.begin.resize(count + 1);
+  for (Sector& sector : sectors) sector.resize(count);
+  beyond.resize(count);
 }
 
 void Sector::grow(std::size_t segments) {

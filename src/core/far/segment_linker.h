@@ -17,13 +17,24 @@
 namespace lisco {
 
 /// The segments of a sector of sixteen bins, ordered by row and bin: the returns of each run there, with measured
-/// bounds.
+/// bounds. Where bins were compared in a row of the sector before, the row's segments are bounded when they are compared
+/// with others: most of them are not, since their bins are.
 struct Sector {
   static constexpr std::int64_t kNone = -1;
   static constexpr std::size_t kMaxLanes = 16;  ///< of the vectors that read segments
 
+  /// The returns of a row in the sector; bit i of a set: bin i.
+  struct Row {
+    float nearest;                  ///< least horizontal distance, if there are any
+    std::uint16_t returns, starts;  ///< starts: the first ones of segments
+  };
+  static_assert(RangeImage::kSector <= 16, "a set of bins fits");
+
   std::int64_t number = kNone;
   std::int64_t first_bin = 0;
+  float later = 0;  ///< added to bin numbers
+  std::vector<Row> rows;
+  std::vector<std::uint64_t> unbounded;   ///< rows whose segments are not bounded yet: bit i % 64 of word i / 64
   GrowingArray<float> nearest, farthest;  ///< horizontal distance
   GrowingArray<float> lowest, highest;    ///< z
   GrowingArray<float> first, last;        ///< bin
@@ -38,6 +49,16 @@ struct Sector {
     if (segments + kRow > std::min(place.size(), count.size())) grow(segments + kRow);
   }
   void grow(std::size_t segments);
+  bool hasUnbounded() const {
+    return std::any_of(unbounded.begin(), unbounded.end(), [](std::uint64_t word) { return word != 0; });
+  }
+  /// Adapts to a number of rows; the sector is to be cut again.
+  void resize(std::size_t row_count) {
+    number = kNone;
+    rows.resize(row_count);
+    unbounded.resize(row_count / 64 + 1);
+    begin.resize(row_count + 1);
+  }
 };
 
 /// The paper's neighbor mask (Algorithm 2) of one row's returns in a sector, from measured bounds.

@@ -54,24 +54,30 @@ class SegmentSearch {
   /// Cuts some rows of a sector and makes their masks. Ranges of rows follow each other, from the first on.
   void prepareSector(std::int64_t number, const RangeImage::Rows& rows) {
     Sector& sector = sectorOf(number);
-    cutSector(image_, number, 0.0F, rows, sector, subclusters_);
+    cutSector(image_, number, 0.0F, rows, state_.masks.data(), sector, subclusters_);
     for (std::size_t row = rows.begin; row < rows.end; ++row) prepareMask(sector, row);
   }
 
   /// Links a sector with itself and with those before it, for every one_in-th of its rows from first_row on.
   void linkSector(std::int64_t number, std::size_t first_row, std::size_t one_in) {
     Sector& sector = sectorOf(number);
+    const bool some_unbounded =
+        std::any_of(state_.sectors.begin(), state_.sectors.end(), [](const Sector& one) { return one.hasUnbounded(); });
     for (std::size_t row = first_row; row < image_.rows.size(); row += one_in) {
       if (sector.begin[row] == sector.begin[row + 1]) continue;
-      if (state_.masks[row].by_bins)
+      const NeighborMask& mask = state_.masks[row];
+      if (mask.by_bins) {
         compareBins(number, row);
-      else
-        forEachSegment(image_, sector, row, [&](Segment& segment) {
-          const std::int64_t sectors = sectorsWithin(segment.before);
-          for (std::int64_t other = std::max<std::int64_t>(number - sectors, 0); other < number; ++other)
-            search(segment, cut(other), ~0U);
-          search(segment, sector, segment.index);
-        });
+        continue;
+      }
+      if (some_unbounded)
+        for (std::int64_t other = firstWithin(number, mask.before); other <= number; ++other)
+          boundRows(cut(other), mask.first_row, mask.last_row);
+      forEachSegment(image_, sector, row, [&](Segment& segment) {
+        for (std::int64_t other = firstWithin(number, segment.before); other < number; ++other)
+          search(segment, cut(other), ~0U);
+        search(segment, sector, segment.index);
+      });
     }
   }
 
@@ -87,7 +93,7 @@ class SegmentSearch {
         sectorAt(std::min(static_cast<double>(other.end), static_cast<double>(image_.end) + reach - later));
     for (std::int64_t number = first_of_other; number <= last_of_other; ++number) {
       Sector& sector = state_.beyond;
-      cutSector(other, number, static_cast<float>(later), image_.allRows(), sector, subclusters_);
+      cutSector(other, number, static_cast<float>(later), image_.allRows(), nullptr, sector, subclusters_);
       for (std::size_t row = 0; row < image_.rows.size(); ++row) {
         prepareMask(sector, row);
         forEachSegment(other, sector, row, [&](Segment& segment) {
@@ -95,7 +101,11 @@ class SegmentSearch {
           segment.last += 1;
           const std::int64_t from = std::max<std::int64_t>(0, sectorAt(static_cast<double>(segment.first)));
           const std::int64_t to = std::min(last, sectorAt(static_cast<double>(segment.last)));
-          for (std::int64_t one = from; one <= to; ++one) search(segment, cut(one), ~0U);
+          for (std::int64_t one = from; one <= to; ++one) {
+            Sector& own = cut(one);
+            boundRows(own, segment.first_row, segment.last_row);
+            search(segment, own, ~0U);
+          }
         });
       }
     }
@@ -111,6 +121,11 @@ class SegmentSearch {
     Returns returns;
     float nearest, farthest, lowest, highest, first, last;
   };
+
+  /// The first sector within some bins before one.
+  static std::int64_t firstWithin(std::int64_t number, std::int64_t bins) {
+    return std::max<std::int64_t>(number - sectorsWithin(bins), 0);
+  }
 
   static std::int64_t sectorsWithin(std::int64_t bins) {
     constexpr auto kSector = static_cast<std::int64_t>(RangeImage::kSector);
@@ -131,10 +146,22 @@ class SegmentSearch {
     return {image.at(place / kSector, sector.first_bin + place % kSector), sector.count[segment]};
   }
 
+  /// The sector, cut.
   Sector& cut(std::int64_t number) {
     Sector& sector = sectorOf(number);
-    if (sector.number != number) cutSector(image_, number, 0.0F, image_.allRows(), sector, subclusters_);
+    if (sector.number != number) cutSector(image_, number, 0.0F, image_.allRows(), nullptr, sector, subclusters_);
     return sector;
+  }
+
+  /// Bounds the segments of some rows of a sector.
+  void boundRows(Sector& sector, std::size_t first_row, std::size_t last_row) {
+    for (std::size_t word = first_row / 64; word <= last_row / 64; ++word) {
+      std::uint64_t rows = sector.unbounded[word];
+      if (word == first_row / 64) rows &= bitsFrom(first_row % 64);
+      if (word == last_row / 64) rows &= ~bitsFrom(last_row % 64 + 1);
+      sector.unbounded[word] &= ~rows;
+      forEachBit(rows, [&](std::size_t i) { boundSegments(image_, sector, 64 * word + i, subclusters_); });
+    }
   }
 
   /// getNeighborMask (Algorithm 2) of a row's returns in a sector; chooses what is cheaper to compare, segments or
@@ -143,8 +170,7 @@ class SegmentSearch {
     const std::uint32_t begin = sector.begin[row];
     const std::uint32_t end = sector.begin[row + 1];
     if (begin == end) return;
-    float nearest = sector.nearest[begin];
-    for (std::uint32_t i = begin + 1; i < end; ++i) nearest = std::min(nearest, sector.nearest[i]);
+    const float nearest = sector.rows[row].nearest;
     NeighborMask& mask = state_.masks[row];
     mask.nearest = nearest;
     mask.before = binsWithin(asinBound(image_.reach / nearest));
