@@ -172,9 +172,9 @@ bool expectTrueSets(lisco::VoxelSorter& sorter, const Cloud& cloud) {
 
 // --- Clouds ---------------------------------------------------------------------------------------------------------
 
-/// Side of a voxel.
+/// Side of a voxel of a small cloud, whose voxels are numbered in float.
 double sideOf(const Cloud& cloud) {
-  return 0.9999 * lisco::Tolerance(cloud.tolerance).reach() / kSqrt3;
+  return lisco::kFloatVoxelSide * lisco::Tolerance(cloud.tolerance).reach();
 }
 
 std::size_t someCount(Random& random) {
@@ -235,18 +235,17 @@ void lines(Random& random, Cloud& cloud) {
   if (random.chance(0.5)) random.shuffle(cloud.points);
 }
 
-// On the borders of voxels, seen from the corner of the box, and a few units in the last place beside them.
-void borders(Random& random, Cloud& cloud) {
-  cloud.tolerance = random.chance(0.5) ? static_cast<float>(std::ldexp(1.0, static_cast<int>(random.below(8)) - 5))
-                                       : static_cast<float>(random.magnitude(0.01, 10));
-  const double side = sideOf(cloud);
+/// On the borders of voxels, seen from the corner of the box, and a few units in the last place beside them.
+/// \param first numbers of the voxels, along each axis; the corner has 0
+/// \param side of a voxel
+void addBorders(Random& random, Cloud& cloud, const Position& corner, const Position& first, double side) {
   const auto tolerance = static_cast<double>(cloud.tolerance);
-  const Position corner = anyCorner(random);
   const std::size_t reach = 2 + random.below(10);
   const double off = random.chance(0.5) ? 0.0 : 0.3;
   cloud.add(corner);
-  const Position start{static_cast<double>(cloud.points[0].x), static_cast<double>(cloud.points[0].y),
-                       static_cast<double>(cloud.points[0].z)};
+  Position start{static_cast<double>(cloud.points.back().x), static_cast<double>(cloud.points.back().y),
+                 static_cast<double>(cloud.points.back().z)};
+  for (std::size_t axis = 0; axis < 3; ++axis) start[axis] += side * first[axis];
   const std::size_t count = someCount(random);
   for (std::size_t i = 0; i < count; ++i) {
     Position here = start;
@@ -258,6 +257,27 @@ void borders(Random& random, Cloud& cloud) {
     for (float Point::*const axis : {&Point::x, &Point::y, &Point::z})
       cloud.points.back().*axis = nudged(random, cloud.points.back().*axis, 2);
   }
+}
+
+float someTolerance(Random& random) {
+  return random.chance(0.5) ? static_cast<float>(std::ldexp(1.0, static_cast<int>(random.below(8)) - 5))
+                            : static_cast<float>(random.magnitude(0.01, 10));
+}
+
+void borders(Random& random, Cloud& cloud) {
+  cloud.tolerance = someTolerance(random);
+  addBorders(random, cloud, anyCorner(random), {}, sideOf(cloud));
+}
+
+// The same so far from the corner that numbers are as large as they may be in float, or a little larger: in double.
+void farBorders(Random& random, Cloud& cloud) {
+  cloud.tolerance = someTolerance(random);
+  Position first{};
+  const std::size_t axes = 1 + random.below(7);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if ((axes >> axis & 1U) != 0) first[axis] = std::floor(lisco::kMaxFloatSide * random.between(0.99, 1.004));
+  const double double_side = lisco::kVoxelSide * lisco::Tolerance(cloud.tolerance).reach();
+  addBorders(random, cloud, anyCorner(random), first, random.chance(0.7) ? sideOf(cloud) : double_side);
 }
 
 void duplicates(Random& random, Cloud& cloud) {
@@ -292,6 +312,30 @@ void pairs(Random& random, Cloud& cloud) {
     cloud.add({p[0] + by[0] * stretch, p[1] + by[1] * stretch, p[2] + by[2] * stretch});
   }
   if (random.chance(0.5)) random.shuffle(cloud.points);
+}
+
+// Pairs at about opposite corners of a voxel, whose numbers are as large as they may be in float. Their coordinates are
+// small, and finer than the differences from the corner of the box: rounding moves the borders of voxels.
+void farPairs(Random& random, Cloud& cloud) {
+  cloud.tolerance = static_cast<float>(random.magnitude(0.01, 10));
+  const double side = sideOf(cloud);
+  const double corner = -side * std::floor(lisco::kMaxFloatSide * random.between(0.8, 0.95));
+  cloud.add({corner, corner, corner});
+  const auto start = static_cast<double>(cloud.points.front().x) - corner;
+  const std::size_t count = 1 + random.below(60);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto voxel = 8 * static_cast<double>(i);  // along each axis, so that rounding is alike
+    const std::size_t turned = random.below(4);
+    const double beyond = random.between(0, 3e-4);  // of a voxel
+    for (const bool is_first : {true, false}) {
+      Position here{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const bool is_low = is_first != ((turned >> axis & 1U) != 0);
+        here[axis] = start + side * (voxel + (is_low ? -beyond : 1 + beyond));
+      }
+      cloud.add(here);
+    }
+  }
 }
 
 // Eastings and northings, where floats are half a metre apart.
@@ -458,6 +502,7 @@ TEST_P(VoxelSorterClouds, AreLinkedAsByBruteForce) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, VoxelSorterClouds,
                          testing::Values(Kind{"boxes", boxes, 1}, Kind{"sheets", sheets, 1}, Kind{"lines", lines, 1},
+                                         Kind{"far_borders", farBorders, 1}, Kind{"far_pairs", farPairs, 1},
                                          Kind{"borders", borders, 1}, Kind{"duplicates", duplicates, 1},
                                          Kind{"pairs", pairs, 1}, Kind{"map_coordinates", mapCoordinates, 1},
                                          Kind{"slices", slices, 1}, Kind{"far_apart", farApart, 0.5},

@@ -32,6 +32,11 @@ inline constexpr double kMinSortedTolerance = 1e-18;
 inline constexpr double kMaxSortedTolerance = 1e18;
 /// Side of a voxel over eps in a slice, whose returns differ along two axes: a little less than 1 / sqrt (2).
 inline constexpr double kSliceVoxelSide = 0.9999 / 1.4142135623730951;
+/// Side of a voxel over eps where sorted voxels are numbered in float, and the longest side of the box of all returns,
+/// in voxels, up to which they are: rounding moves a border by less than the side falls short of 1 / sqrt (3)
+/// (doc/algorithm.md). In float, numbering takes half the time.
+inline constexpr double kFloatVoxelSide = 0.998 / 1.7320508075688772;
+inline constexpr double kMaxFloatSide = 4096;
 /// Least number of slices that count as such: threads share out planes, which slices are then. With slices, clouds in
 /// UTM coordinates take 0.8 to 0.95 times as long at tolerances below 0.5 m (recordings --cloud UTM).
 inline constexpr double kMinSlices = 32;

@@ -30,99 +30,142 @@ void boundReturns(const NearReturn* returns, std::size_t count, Box& box) {
 
 constexpr std::size_t kBatch = 64;  // returns
 
-/// The returns of a batch, by coordinates. \param size those behind count as the corner, so that their numbers fit
-void loadBatch(const NearReturn* returns, std::size_t size, const VoxelNumbering& numbering,
-               float (&coordinates)[3][kBatch], std::uint32_t* elements) {
-  NearReturn padded[kBatch];
-  if (size < kBatch) {
-    std::copy_n(returns, size, padded);
-    std::fill(padded + size, padded + kBatch,
-              NearReturn{static_cast<float>(numbering.corner[0]), static_cast<float>(numbering.corner[1]),
-                         static_cast<float>(numbering.corner[2]), 0});
-    returns = padded;
+/// The numbers of the voxels of some coordinates along an axis.
+HWY_INLINE hn::Vec<Words> numbersAlong(const VoxelNumbering& numbering, std::size_t axis, FloatVector coordinates) {
+  const hn::RebindToSigned<Floats> integers;
+  if (numbering.in_float) {
+    const FloatVector corner = hn::Set(kFloats, static_cast<float>(numbering.corner[axis]));
+    const FloatVector per_metre = hn::Set(kFloats, static_cast<float>(numbering.per_metre[axis]));
+    return hn::BitCast(kWords, hn::ConvertTo(integers, hn::Mul(hn::Sub(coordinates, corner), per_metre)));
   }
-  static_assert(kBatch % kLanes == 0, "a batch is whole vectors");
-  for (std::size_t i = 0; i < kBatch; i += kLanes) {
-    FloatVector x;
-    FloatVector y;
-    FloatVector z;
-    FloatVector element;
-    hn::LoadInterleaved4(kFloats, &returns[i].x, x, y, z, element);
-    hn::StoreU(x, kFloats, &coordinates[0][i]);
-    hn::StoreU(y, kFloats, &coordinates[1][i]);
-    hn::StoreU(z, kFloats, &coordinates[2][i]);
-    hn::StoreU(hn::BitCast(kWords, element), kWords, &elements[i]);
-  }
-}
-
-/// The keys of a batch.
-void keysOf(const VoxelNumbering& numbering, const float (&coordinates)[3][kBatch], std::uint64_t* keys) {
   constexpr hn::CappedTag<double, 8> kDoubles;
-  const hn::Rebind<float, decltype(kDoubles)> half_floats;
-  const hn::Rebind<std::int32_t, decltype(kDoubles)> half_integers;
-  const hn::Rebind<std::uint32_t, decltype(kDoubles)> half_words;
-  const hn::Rebind<std::uint64_t, decltype(kDoubles)> words;
-  const unsigned voxel_shifts[3] = {0, numbering.voxel_bits[0], numbering.voxel_bits[0] + numbering.voxel_bits[1]};
-  const unsigned brick_shifts[3] = {6, 6 + numbering.minor_bits, 6 + numbering.minor_bits + numbering.middle_bits};
-  for (std::size_t i = 0; i < kBatch; i += hn::MaxLanes(kDoubles)) {
-    auto key = hn::Zero(words);
-    for (int along = 0; along < 3; ++along) {
-      const std::size_t axis = numbering.axis[along];
-      const auto coordinate = hn::PromoteTo(kDoubles, hn::LoadU(half_floats, &coordinates[axis][i]));
-      const auto scaled = hn::Mul(hn::Sub(coordinate, hn::Set(kDoubles, numbering.corner[axis])),
-                                  hn::Set(kDoubles, numbering.per_metre[axis]));
-      const auto number = hn::BitCast(half_words, hn::DemoteTo(half_integers, scaled));
-      const auto voxel = hn::And(number, hn::Set(half_words, (1U << numbering.voxel_bits[along]) - 1));
-      // Bricks begin with 1, so that those before and after one have keys too.
-      const auto brick =
-          hn::Add(hn::ShiftRightSame(number, static_cast<int>(numbering.voxel_bits[along])), hn::Set(half_words, 1));
-      const auto shifted = [&](auto bits, unsigned shift) {
-        return hn::ShiftLeftSame(hn::PromoteTo(words, bits), static_cast<int>(shift));
-      };
-      key = hn::Or(key, hn::Or(shifted(brick, brick_shifts[along]), shifted(voxel, voxel_shifts[along])));
-    }
-    hn::StoreU(key, words, keys + i);
+  const hn::Rebind<float, decltype(kDoubles)> some_floats;
+  const hn::Rebind<std::int32_t, decltype(kDoubles)> some_integers;
+  const auto corner = hn::Set(kDoubles, numbering.corner[axis]);
+  const auto per_metre = hn::Set(kDoubles, numbering.per_metre[axis]);
+  const auto numbersOf = [&](hn::Vec<decltype(some_floats)> some) {
+    return hn::DemoteTo(some_integers, hn::Mul(hn::Sub(hn::PromoteTo(kDoubles, some), corner), per_metre));
+  };
+#if HWY_TARGET == HWY_SCALAR
+  return hn::BitCast(kWords, numbersOf(coordinates));
+#else
+  return hn::BitCast(kWords, hn::Combine(integers, numbersOf(hn::UpperHalf(some_floats, coordinates)),
+                                         numbersOf(hn::LowerHalf(some_floats, coordinates))));
+#endif
+}
+
+/// What keys are composed of: numbers of voxels in their bricks, and of these along the minor, middle and major axis.
+struct KeyParts {
+  hn::Vec<Words> voxel, brick[3];
+};
+
+HWY_INLINE KeyParts keyPartsOf(const VoxelNumbering& numbering, FloatVector x, FloatVector y, FloatVector z) {
+  const FloatVector coordinates[3] = {x, y, z};
+  KeyParts parts{hn::Zero(kWords), {}};
+  int shift = 0;
+  for (std::size_t along = 0; along < 3; ++along) {
+    const std::size_t axis = numbering.axis[along];
+    const auto bits = static_cast<int>(numbering.voxel_bits[along]);
+    const auto number = numbersAlong(numbering, axis, coordinates[axis]);
+    const auto in_brick = hn::And(number, hn::Set(kWords, (1U << bits) - 1));
+    parts.voxel = hn::Or(parts.voxel, hn::ShiftLeftSame(in_brick, shift));
+    // Bricks begin with 1, so that those before and after one have keys too.
+    parts.brick[along] = hn::Add(hn::ShiftRightSame(number, bits), hn::Set(kWords, 1));
+    shift += bits;
+  }
+  return parts;
+}
+
+/// Where the numbers of a brick along the axes begin in a key: see VoxelNumbering.
+struct BrickShifts {
+  explicit BrickShifts(const VoxelNumbering& numbering)
+      : along{6, static_cast<int>(6 + numbering.minor_bits), static_cast<int>(numbering.planeBits())} {}
+  int along[3];
+};
+
+HWY_INLINE void storeKeys(const KeyParts& parts, const BrickShifts& shifts, std::uint32_t* keys) {
+  auto key = parts.voxel;
+  for (int i = 0; i < 3; ++i) key = hn::Or(key, hn::ShiftLeftSame(parts.brick[i], shifts.along[i]));
+  hn::StoreU(key, kWords, keys);
+}
+
+HWY_INLINE void storeKeys(const KeyParts& parts, const BrickShifts& shifts, std::uint64_t* keys) {
+  constexpr hn::CappedTag<std::uint64_t, 8> kKeys;
+  const hn::Rebind<std::uint32_t, decltype(kKeys)> some_words;
+  std::uint32_t words[4][kLanes];
+  hn::StoreU(parts.voxel, kWords, words[0]);
+  for (int i = 0; i < 3; ++i) hn::StoreU(parts.brick[i], kWords, words[1 + i]);
+  for (std::size_t k = 0; k < kLanes; k += hn::MaxLanes(kKeys)) {
+    const auto part = [&](int i) { return hn::PromoteTo(kKeys, hn::LoadU(some_words, words[i] + k)); };
+    auto key = part(0);
+    for (int i = 0; i < 3; ++i) key = hn::Or(key, hn::ShiftLeftSame(part(1 + i), shifts.along[i]));
+    hn::StoreU(key, kKeys, keys + k);
   }
 }
 
-/// Bit i: return i is in another voxel or of another run than the one before. Both arrays have one before the first.
-HWY_INLINE std::uint64_t changes(const std::uint64_t* keys, const std::uint32_t* elements) {
-  using Keys = hn::CappedTag<std::uint64_t, 8>;
-  constexpr Keys kKeys{};
+/// Bit i: element i differs from the one before, of which there is one before the first.
+HWY_INLINE std::uint64_t changes(const std::uint32_t* elements) {
   std::uint64_t bits = 0;
-  for (std::size_t i = 0; i < kBatch; i += hn::MaxLanes(kKeys)) {
-    std::uint8_t mask[8] = {};
-    hn::StoreMaskBits(kKeys, hn::Ne(hn::LoadU(kKeys, keys + i), hn::LoadU(kKeys, keys + i - 1)), mask);
-    bits |= std::uint64_t{wordOf(mask[0])} << i;
-  }
   for (std::size_t i = 0; i < kBatch; i += kLanes)
     bits |= std::uint64_t{bitsOf(differ(elements + i, hn::LoadU(kWords, elements + i - 1)))} << i;
   return bits;
 }
 
+HWY_INLINE std::uint64_t changes(const std::uint64_t* elements) {
+  constexpr hn::CappedTag<std::uint64_t, 8> kKeys;
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < kBatch; i += hn::MaxLanes(kKeys)) {
+    std::uint8_t mask[8] = {};
+    hn::StoreMaskBits(kKeys, hn::Ne(hn::LoadU(kKeys, elements + i), hn::LoadU(kKeys, elements + i - 1)), mask);
+    bits |= std::uint64_t{wordOf(mask[0])} << i;
+  }
+  return bits;
+}
+
 /// Cuts a part's returns into fragments. \return the number of fragments
+/// \tparam Key std::uint32_t, or std::uint64_t for keys of more than 32 bits
 /// \param starts nullptr: each return is a fragment
-std::size_t cutPart(const VoxelNumbering& numbering, unsigned number_bits, const FragmentList::Part& part,
-                    std::uint64_t* starts, std::uint64_t* items) {
-  float coordinates[3][kBatch];
-  std::uint64_t keys[1 + kBatch];  // the first: of the return before
+template <typename Key>
+std::size_t cutPartBy(const VoxelNumbering& numbering, unsigned number_bits, const FragmentList::Part& part,
+                      std::uint64_t* starts, std::uint64_t* items) {
+  static_assert(kBatch % kLanes == 0, "a batch is whole vectors");
+  const BrickShifts shifts(numbering);
+  const NearReturn corner{static_cast<float>(numbering.corner[0]), static_cast<float>(numbering.corner[1]),
+                          static_cast<float>(numbering.corner[2]), 0};
+  Key keys[1 + kBatch];  // the first: of the return before
   std::uint32_t elements[1 + kBatch];
-  keys[kBatch] = ~std::uint64_t{0};
+  keys[kBatch] = static_cast<Key>(~Key{0});
   elements[kBatch] = 0;
-  const NearReturn* const returns = part.near->returns.data();
   std::size_t count = 0;
   for (std::size_t batch = 0; batch < part.near->count; batch += kBatch) {
     const std::size_t size = std::min(kBatch, part.near->count - batch);
+    const NearReturn* returns = part.near->returns.data() + batch;
+    NearReturn padded[kBatch];
+    if (size < kBatch) {  // those behind count as the corner, so that their numbers fit
+      std::copy_n(returns, size, padded);
+      std::fill(padded + size, padded + kBatch, corner);
+      returns = padded;
+    }
     keys[0] = keys[kBatch];
     elements[0] = elements[kBatch];
-    loadBatch(returns + batch, size, numbering, coordinates, elements + 1);
-    keysOf(numbering, coordinates, keys + 1);
-    std::uint64_t items_here[kBatch];
-    std::uint64_t* const all = starts == nullptr ? items + batch : items_here;
-    for (std::size_t i = 0; i < kBatch; ++i) all[i] = keys[1 + i] << number_bits | (part.first + batch + i);
-    if (starts == nullptr) continue;
-    const std::uint64_t starts_here = changes(keys + 1, elements + 1) & ~bitsFrom(size);
-    forEachBit(starts_here, [&](std::size_t i) { items[count++] = items_here[i]; });
+    for (std::size_t i = 0; i < kBatch; i += kLanes) {
+      FloatVector x;
+      FloatVector y;
+      FloatVector z;
+      FloatVector element;
+      hn::LoadInterleaved4(kFloats, &returns[i].x, x, y, z, element);
+      hn::StoreU(hn::BitCast(kWords, element), kWords, &elements[1 + i]);
+      storeKeys(keyPartsOf(numbering, x, y, z), shifts, &keys[1 + i]);
+    }
+    const auto itemOf = [&](std::size_t i) {
+      return std::uint64_t{keys[1 + i]} << number_bits | (part.first + batch + i);
+    };
+    if (starts == nullptr) {
+      for (std::size_t i = 0; i < kBatch; ++i) items[batch + i] = itemOf(i);
+      continue;
+    }
+    const std::uint64_t starts_here = (changes(keys + 1) | changes(elements + 1)) & ~bitsFrom(size);
+    forEachBit(starts_here, [&](std::size_t i) { items[count++] = itemOf(i); });
     starts[batch / kBatch] = starts_here;
   }
   if (starts == nullptr) return part.near->count;
@@ -130,6 +173,12 @@ std::size_t cutPart(const VoxelNumbering& numbering, unsigned number_bits, const
   if (end % kBatch == 0) starts[end / kBatch] = 0;  // a word that no batch has written
   starts[end / kBatch] |= std::uint64_t{1} << end % kBatch;
   return count;
+}
+
+std::size_t cutPart(const VoxelNumbering& numbering, unsigned number_bits, const FragmentList::Part& part,
+                    std::uint64_t* starts, std::uint64_t* items) {
+  return numbering.bits <= 32 ? cutPartBy<std::uint32_t>(numbering, number_bits, part, starts, items)
+                              : cutPartBy<std::uint64_t>(numbering, number_bits, part, starts, items);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -45,7 +45,13 @@ class ReturnsBox {
     const float* const values = &returns->x;
     addVector(values, 4 * count);  // both at once: a branch for each costs more
     addVector(values + kLanes, 4 * count > kLanes ? 4 * count - kLanes : 0);
-    for (std::size_t k = 2 * kLanes; k < 4 * count; k += kLanes) addVector(values + k, 4 * count - k);
+    std::size_t k = 2 * kLanes;
+    for (; k + kLanes <= 4 * count; k += kLanes) {
+      const FloatVector coordinates = hn::LoadU(kFloats, values + k);
+      lo_ = hn::Min(lo_, coordinates);
+      hi_ = hn::Max(hi_, coordinates);
+    }
+    if (k < 4 * count) addVector(values + k, 4 * count - k);
   }
 
   BoxLanes box() const {

@@ -87,20 +87,25 @@ bool VoxelNumbering::choose(const std::vector<Box>& parts, bool is_shared, const
   has_slices = slices.axis < kAxes;
   constexpr unsigned kVoxelBits[2][kAxes] = {{2, 2, 2}, {3, 2, 0}};
   std::copy_n(kVoxelBits[has_slices ? 1 : 0], kAxes, voxel_bits);
-  const double voxel = (has_slices ? kSliceVoxelSide : kVoxelSide) * tolerance.reach();
+  double lengths[kAxes];  // of the box, metres
+  for (std::size_t i = 0; i < kAxes; ++i) {
+    corner[i] = static_cast<double>(all.lo[i]);
+    lengths[i] = static_cast<double>(all.hi[i]) - corner[i];
+  }
+  const double longest = std::max({lengths[0], lengths[1], lengths[2]});
+  in_float = !has_slices && longest < kMaxFloatSide * kFloatVoxelSide * tolerance.reach();
+  const double voxel = (has_slices ? kSliceVoxelSide : in_float ? kFloatVoxelSide : kVoxelSide) * tolerance.reach();
   double sides[kAxes];  // of the box, in voxels
   for (std::size_t i = 0; i < kAxes; ++i) {
-    const auto lo = static_cast<double>(all.lo[i]);
-    const auto hi = static_cast<double>(all.hi[i]);
-    corner[i] = lo;
     per_metre[i] = 1 / (i == slices.axis ? static_cast<double>(slices.step) : voxel);
-    sides[i] = (hi - lo) * per_metre[i];
+    sides[i] = lengths[i] * per_metre[i];
     if (!(sides[i] < kMaxVoxelNumber)) return false;
   }
   orderAxes(sides, slices.axis);
   if (is_shared && !has_slices) alignWithParts(parts, all, sides);
   const auto bitsAlong = [&](std::size_t i) {
-    const auto last = static_cast<std::uint64_t>(sides[axis[i]]);
+    constexpr double kRounding = 1 + 1e-6;  // of numbers in float
+    const auto last = static_cast<std::uint64_t>(sides[axis[i]] * kRounding);
     return bitsFor((last >> voxel_bits[i]) + 3);
   };
   minor_bits = bitsAlong(0);

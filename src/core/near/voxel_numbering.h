@@ -9,9 +9,9 @@
 
 namespace lisco {
 
-/// How voxels are numbered: from a corner of the box around all returns, in double, so that returns of the same number
-/// are neighbours and neighbours differ by 2 at most along each axis. The longest side of the box is the major axis, or
-/// one along which threads have read returns beside each other.
+/// How voxels are numbered: from a corner of the box around all returns, in double, or in float if they are few along
+/// each axis, so that returns of the same number are neighbours and neighbours differ by 2 at most along each axis. The
+/// longest side of the box is the major axis, or one along which threads have read returns beside each other.
 ///
 /// Far from the origin, as in map coordinates, floats are so coarse that unlike coordinates along an axis may be eps
 /// apart. The returns of one coordinate are a *slice* then: neighbours lie in the same one, and differ along two axes
@@ -20,10 +20,11 @@ struct VoxelNumbering {
   static constexpr std::size_t kAxes = 3;
 
   std::size_t axis[3];     ///< minor, middle and major: 0 for x, 1 for y, 2 for z
-  double corner[3];        ///< of the box, metres, by x, y and z
+  double corner[3];        ///< of the box, metres, by x, y and z; each is a float
   double per_metre[3];     ///< voxels, by x, y and z
   unsigned voxel_bits[3];  ///< of a voxel's number in its brick, along the minor, middle and major axis
   bool has_slices;
+  bool in_float;  ///< numbers are computed in float
   /// Of a key: from the highest bit on, a brick's number along the major, middle and minor axis, and the voxel's in it.
   unsigned minor_bits, middle_bits, bits;
 
