@@ -10,11 +10,9 @@
 namespace lisco {
 
 /// Fixed-capacity vector, without memory of the heap; ignores elements beyond its capacity.
-template <typename T>
+template <typename T, std::size_t kCapacity = 256>
 class Sample {
  public:
-  static constexpr std::size_t kCapacity = 512;
-
   void push_back(const T& element) {
     if (size_ < kCapacity) elements_[size_++] = element;
   }
@@ -33,8 +31,8 @@ class Sample {
 };
 
 /// The element at a part (0 to 1) of the sample's ascending order. The sample is not empty.
-template <typename T>
-T quantile(Sample<T>& sample, double part) {
+template <typename T, std::size_t kCapacity>
+T quantile(Sample<T, kCapacity>& sample, double part) {
   return sortedElement(sample, static_cast<std::size_t>(part * static_cast<double>(sample.size() - 1)));
 }
 

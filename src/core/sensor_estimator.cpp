@@ -67,16 +67,25 @@ struct Seen {
   double range() const { return std::sqrt(x * x + y * y + z * z); }
 };
 
+/// The angle of a vector, radians within half a turn: small ones, as most steps are, by its series.
+double angleOf(double along, double across) {
+  constexpr double kSmall = 0.25;  // tangent, whose next term is 1e-7 of the angle
+  if (!(std::fabs(across) < kSmall * along)) return std::atan2(across, along);
+  const double tangent = across / along;
+  const double square = tangent * tangent;
+  return tangent * (1 - square * (1.0 / 3 - square * (1.0 / 5 - square * (1.0 / 7 - square / 9))));
+}
+
 /// From one azimuth to another, radians within half a turn.
 double azimuthStep(const Seen& from, const Seen& to) {
-  return std::atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y);
+  return angleOf(from.x * to.x + from.y * to.y, from.x * to.y - from.y * to.x);
 }
 
 /// Between two elevations, radians.
 double elevationStep(const Seen& a, const Seen& b) {
   const double a_rho = a.rho();
   const double b_rho = b.rho();
-  return std::fabs(std::atan2(a_rho * b.z - a.z * b_rho, a_rho * b_rho + a.z * b.z));
+  return std::fabs(angleOf(a_rho * b_rho + a.z * b.z, a_rho * b.z - a.z * b_rho));
 }
 
 float median(Sample<double>& values, float if_empty) {

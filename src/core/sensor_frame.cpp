@@ -42,7 +42,7 @@ Vector solve(Matrix a, Vector b) {
 /// The slopes of all returns as seen from a frame, laser by laser, and how they deviate from their laser's median.
 class SensorFrameEstimator::Slopes {
  public:
-  Slopes(const Sample<LaserReturn>& returns, const SensorFrame& frame) {
+  Slopes(const LaserReturns& returns, const SensorFrame& frame) {
     for (const LaserReturn& one : returns) {
       Seen seen;
       seen.x = static_cast<double>(one.point.x) - frame.origin[0];
@@ -53,7 +53,7 @@ class SensorFrameEstimator::Slopes {
           seen.rho;
       seen_.push_back(seen);
     }
-    Sample<double> sorted;
+    Sample<double, kMaxReturns> sorted;
     for (std::size_t first = 0; first < returns.size();) {
       sorted.clear();
       std::size_t end = first;
@@ -184,7 +184,7 @@ class SensorFrameEstimator::Slopes {
   /// \param unit_of callable as double (const Ring&): the unit of a ring's deviations
   template <typename UnitOf>
   double spreadIn(UnitOf&& unit_of) const {
-    Sample<double> deviations;
+    Sample<double, kMaxReturns> deviations;
     for (const Ring& ring : rings_) {
       const double unit = unit_of(ring);
       for (std::size_t i = ring.begin; i < ring.end; ++i)
@@ -195,7 +195,7 @@ class SensorFrameEstimator::Slopes {
     return spread < kInfinity ? spread : kInfinity;
   }
 
-  Sample<Seen> seen_;
+  Sample<Seen, kMaxReturns> seen_;
   Sample<Ring> rings_;
 };
 
@@ -208,7 +208,7 @@ SensorFrameEstimator::ElevationSteps SensorFrameEstimator::elevationSteps(const 
 }
 
 SensorFrame SensorFrameEstimator::middle() const {
-  Sample<double> x, y, z;
+  Sample<double, kMaxReturns> x, y, z;
   for (const LaserReturn& one : returns_) {
     x.push_back(static_cast<double>(one.point.x));
     y.push_back(static_cast<double>(one.point.y));

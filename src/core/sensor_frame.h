@@ -43,16 +43,18 @@ class SensorFrameEstimator {
   SensorFrame fit() const;
 
  private:
+  static constexpr std::size_t kMaxReturns = 512;
   struct LaserReturn {
     std::size_t laser;
     Return point;
   };
+  using LaserReturns = Sample<LaserReturn, kMaxReturns>;
   class Slopes;
 
   SensorFrame middle() const;
   SensorFrame fitFrom(SensorFrame frame) const;
 
-  Sample<LaserReturn> returns_;
+  LaserReturns returns_;
 };
 
 }  // namespace lisco

@@ -37,7 +37,10 @@ void VoxelGrid::prepare(const Tolerance& new_tolerance) {
   tolerance = new_tolerance;
   voxels_per_metre_ = 1.0 / (kVoxelSide * std::max(tolerance.reach(), 1e-22));
   in_float_range_ = voxels_per_metre_ > 1e-30 && voxels_per_metre_ < 1e30;
+  if (slots_.size() < kMinSlots) slots_.assign(kMinSlots, Slot());
+  all_in_float_range = true;
   points_ = 0;
+  if (fragments.empty()) return;  // nothing was added
   fragments.clear();
   cliques.clear();
   bricks.clear();
@@ -47,16 +50,13 @@ void VoxelGrid::prepare(const Tolerance& new_tolerance) {
   new_bricks.clear();
   linked_bricks = 0;
   filter.clear();
-  recent_cliques_.fill({Key{}, kNone});
-  all_in_float_range = true;
-  if (slots_.size() < kMinSlots)
-    slots_.assign(kMinSlots, Slot());
-  else
-    std::fill(slots_.begin(), slots_.end(), Slot());
+  std::fill(recent_cliques_.begin(), recent_cliques_.end(), RecentClique());
+  std::fill(slots_.begin(), slots_.end(), Slot());
 }
 
 void VoxelGrid::add(const RingBlock& block, const RingBlockInfo& info, ColumnBits which, DisjointSets& subclusters) {
   if (!tolerance.joinsAnything()) return;
+  if (recent_cliques_.empty()) recent_cliques_.resize(kRecentCliques);
   const float* const block_x = block.x + RingBlock::kMargin;
   const float* const block_y = block.y + RingBlock::kMargin;
   const float* const block_z = block.z + RingBlock::kMargin;

@@ -133,8 +133,8 @@ struct VoxelGrid {
  private:
   /// The clique of a voxel that the latest fragment went to.
   struct RecentClique {
-    Key voxel;
-    std::uint32_t clique;
+    Key voxel{};
+    std::uint32_t clique = kNone;
   };
   static constexpr std::size_t kRecentCliques = 1024;
   /// Of the hash table of groups. The hash rules out nearly all other groups without reading them.
@@ -169,8 +169,8 @@ struct VoxelGrid {
   std::size_t points_ = 0;
   std::vector<Slot> slots_;
   std::vector<Group> groups_;
-  std::vector<std::uint32_t> group_bricks_;                    ///< numbers of the bricks of each group
-  std::array<RecentClique, kRecentCliques> recent_cliques_{};  ///< by the hash of the voxel
+  std::vector<std::uint32_t> group_bricks_;   ///< numbers of the bricks of each group
+  std::vector<RecentClique> recent_cliques_;  ///< by the hash of the voxel; none before the first
 };
 
 /// The number of a group, kNone if there is none.
