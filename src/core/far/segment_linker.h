@@ -17,8 +17,8 @@
 namespace lisco {
 
 /// The segments of a sector of sixteen bins, ordered by row and bin: the returns of each run there, with measured
-/// bounds. Where bins were compared in a row of the sector before, the row's segments are bounded when they are compared
-/// with others: most of them are not, since their bins are.
+/// bounds. Where bins were compared in a row of the sector before, the row's segments are bounded when they are
+/// compared with others: most of them are not, since their bins are.
 struct Sector {
   static constexpr std::int64_t kNone = -1;
   static constexpr std::size_t kMaxLanes = 16;  ///< of the vectors that read segments
