@@ -17,6 +17,10 @@ HWY_BEFORE_NAMESPACE();
 namespace lisco {
 namespace HWY_NAMESPACE {
 
+HWY_INLINE FloatVector loadColumns(const float* coordinates, std::size_t k) {
+  return hn::LoadU(kFloats, coordinates + RingBlock::kMargin + k);
+}
+
 /// The returns of a ring block, and which of them are linked to the return in the column before.
 class RunFinder {
  public:
@@ -25,9 +29,9 @@ class RunFinder {
 
   /// \return the returns of the kLanes columns from k on, bit 0 for column k
   std::uint64_t find(std::size_t k) {
-    const FloatVector x = coordinate(block_.x, k);
-    const FloatVector y = coordinate(block_.y, k);
-    const FloatVector z = coordinate(block_.z, k);
+    const FloatVector x = loadColumns(block_.x, k);
+    const FloatVector y = loadColumns(block_.y, k);
+    const FloatVector z = loadColumns(block_.z, k);
     const std::uint64_t returns = bitsOf(areReturns(x, y, z)) & ~bitsFrom(columns_ - std::min(columns_, k));
     if (returns == 0) return 0;
     returns_ |= returns << k;
@@ -39,9 +43,6 @@ class RunFinder {
     return returns;
   }
 
-  FloatVector coordinate(const float* coordinates, std::size_t k) const {
-    return hn::LoadU(kFloats, coordinates + RingBlock::kMargin + k);
-  }
   ColumnBits returns() const { return returns_; }
   ColumnBits starts() const { return returns_ & ~(near_before_ & returns_ << 1); }
 
@@ -56,10 +57,8 @@ class RunFinder {
 ColumnBits findReturnsOf(const RingBlock& block, std::size_t columns) {
   ColumnBits returns = 0;
   for (std::size_t k = 0; k < columns; k += kLanes) {
-    const auto coordinate = [k](const float* coordinates) {
-      return hn::LoadU(kFloats, coordinates + RingBlock::kMargin + k);
-    };
-    returns |= ColumnBits{bitsOf(areReturns(coordinate(block.x), coordinate(block.y), coordinate(block.z)))} << k;
+    const FloatMask returned = areReturns(loadColumns(block.x, k), loadColumns(block.y, k), loadColumns(block.z, k));
+    returns |= ColumnBits{bitsOf(returned)} << k;
   }
   return returns & ~bitsFrom(columns);
 }
@@ -82,8 +81,8 @@ void measureBlock(const RingBlock& block, std::size_t columns, float squared_tol
   for (std::size_t k = 0; k < columns; k += kLanes) {
     const std::uint64_t returns = finder.find(k);
     if (returns == 0) continue;
-    const FloatVector east = hn::Sub(finder.coordinate(block.x, k), hn::Set(kFloats, range.origin[0]));
-    const FloatVector north = hn::Sub(finder.coordinate(block.y, k), hn::Set(kFloats, range.origin[1]));
+    const FloatVector east = hn::Sub(loadColumns(block.x, k), hn::Set(kFloats, range.origin[0]));
+    const FloatVector north = hn::Sub(loadColumns(block.y, k), hn::Set(kFloats, range.origin[1]));
     const FloatVector rho = hn::Sqrt(hn::Add(hn::Mul(east, east), hn::Mul(north, north)));
     hn::StoreU(rho, kFloats, info.rho + k);
     const FloatMask returned = lanesOf(returns);
@@ -95,7 +94,7 @@ void measureBlock(const RingBlock& block, std::size_t columns, float squared_tol
     info.interior |= std::uint64_t{bitsOf(within(range.interior_min, range.interior_max))} << k;
     const FloatVector horizon =
         hn::Add(hn::Mul(east, hn::Set(kFloats, range.tilt[0])), hn::Mul(north, hn::Set(kFloats, range.tilt[1])));
-    const FloatVector up = hn::Sub(finder.coordinate(block.z, k), hn::Set(kFloats, range.origin[2]));
+    const FloatVector up = hn::Sub(loadColumns(block.z, k), hn::Set(kFloats, range.origin[2]));
     const FloatVector slope = hn::Div(hn::Sub(up, horizon), rho);
     lowest = hn::Min(lowest, hn::IfThenElse(far, slope, infinity));
     highest = hn::Max(highest, hn::IfThenElse(far, slope, hn::Neg(infinity)));

@@ -160,16 +160,14 @@ class Placement {
       stored |= free << k;
       const FloatMask mask = lanesOf(free);
       // Not hn::BlendedStore (), which AVX2 executes slowly on AMD's processors.
-      const auto storeFree = [mask](FloatVector values, float* to) {
-        hn::StoreU(hn::IfThenElse(mask, values, hn::LoadU(kFloats, to)), kFloats, to);
+      const auto storeFree = [mask, k](auto lanes, const auto* from, auto* to) {
+        const auto chosen = hn::RebindMask(lanes, mask);
+        hn::StoreU(hn::IfThenElse(chosen, hn::LoadU(lanes, from + k), hn::LoadU(lanes, to + k)), lanes, to + k);
       };
-      storeFree(hn::LoadU(kFloats, block_.x + RingBlock::kMargin + k), bins.x() + k);
-      storeFree(hn::LoadU(kFloats, block_.y + RingBlock::kMargin + k), bins.y() + k);
-      storeFree(hn::LoadU(kFloats, block_.z + RingBlock::kMargin + k), bins.z() + k);
-      std::uint32_t* const element = bins.element() + k;
-      hn::StoreU(
-          hn::IfThenElse(hn::RebindMask(kWords, mask), hn::LoadU(kWords, info_.run + k), hn::LoadU(kWords, element)),
-          kWords, element);
+      storeFree(kFloats, block_.x + RingBlock::kMargin, bins.x());
+      storeFree(kFloats, block_.y + RingBlock::kMargin, bins.y());
+      storeFree(kFloats, block_.z + RingBlock::kMargin, bins.z());
+      storeFree(kWords, info_.run, bins.element());
     }
     return stored;
   }
