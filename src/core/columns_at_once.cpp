@@ -24,13 +24,11 @@ namespace {
 /// (recordings).
 constexpr std::size_t kTriedColumns = 128;
 static_assert(kTriedColumns % RingBlock::kColumns == 0, "whole blocks are read");
-/// Times the work of sorting up to which that of range images is worthwhile in a whole rotation: where both are alike,
-/// images take less time, most of all with several threads, which exchange fewer returns (recordings, threads).
-constexpr double kMostInRotation = 1.1;
-/// The same in the trial: other columns may take less. FarHistory corrects it (recordings, layouts).
-constexpr double kMostInTrial = 2.4;
+/// Times the work of sorting up to which the trial accepts that of range images: other columns may take less.
+/// FarHistory corrects it (recordings, layouts).
+constexpr double kMostInTrial = 2.65;
 /// The same above which the trial ends before its last column. More: clouds without range images wait for it.
-constexpr double kClearlyTooMuch = 6.0;
+constexpr double kClearlyTooMuch = 6.6;
 /// SensorHints::drift above which returns leave their expected bins too often, as in motion-compensated clouds. The
 /// first columns do not show it, as the motion grows from there. At rest 0.05; in motion 1 to 20 (recordings).
 constexpr float kMaxDrift = 1.25F;
@@ -206,7 +204,7 @@ void ColumnClusterer::Rotation::recordFar() {
     if (far_ == Far::kLeftOut)
       far_history_.recordLeftOut(content);
     else
-      far_history_.recordTried(far_ == Far::kInImages && !is_full && work.isImageWorthwhile(kMostInRotation), content);
+      far_history_.recordTried(far_ == Far::kInImages && !is_full && work.isImageWorthwhile(1.0), content);
   }
   far_ = Far::kNone;
 }

@@ -70,9 +70,9 @@ inline constexpr std::uint32_t kWorkOfPair = 6;  ///< of segments that are compa
 /// much for each return, and for each run, but at most kMaxWorkOfSorted for each return, as clouds of short runs are
 /// read without runs. Least regret over the scans at rest, moved, deskewed, with dual returns and with half of the
 /// returns missing (benchmarks/suite.sh recordings layouts).
-inline constexpr double kWorkOfSortedReturn = 1;
-inline constexpr double kWorkOfSortedRun = 22;
-inline constexpr double kMaxWorkOfSorted = 8.5;
+inline constexpr double kWorkOfSortedReturn = 0.9;
+inline constexpr double kWorkOfSortedRun = 20;
+inline constexpr double kMaxWorkOfSorted = 7.7;
 inline constexpr std::uint32_t kWorkOfRealigning = 8;  ///< of placing a return off the expected bin
 inline constexpr std::uint32_t kWorkOfUnplaced = 200;
 /// Segments that exceed their laser's nearest one by this factor get a mask of their own.
