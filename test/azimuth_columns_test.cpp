@@ -18,12 +18,13 @@
 namespace lisco_test {
 namespace {
 
+using lisco::StridedPoints;
 using lisco::ground::AzimuthColumns;
 using Point = std::array<float, 3>;
 
 AzimuthColumns sorted(const std::vector<Point>& points, const Point& origin = {}) {
   AzimuthColumns columns;
-  columns.sort({reinterpret_cast<const unsigned char*>(points.data()), sizeof(Point)}, points.size(), origin);
+  columns.sort(StridedPoints::sideBySide(points.data(), sizeof(Point)), points.size(), origin);
   return columns;
 }
 
@@ -119,7 +120,7 @@ TEST(AzimuthColumns, HaveOneAzimuthAndRisingRows) {
 TEST(AzimuthColumns, ForgetThePointsBefore) {
   const std::vector<Point> many = turn(900, 32, {}), few = turn(100, 7, {});
   AzimuthColumns columns = sorted(many);
-  columns.sort({reinterpret_cast<const unsigned char*>(few.data()), sizeof(Point)}, few.size(), {});
+  columns.sort(StridedPoints::sideBySide(few.data(), sizeof(Point)), few.size(), {});
   const std::vector<int> counts = countCells(columns, few.size());
   EXPECT_EQ(std::count(counts.begin(), counts.end(), 1), static_cast<std::ptrdiff_t>(few.size()));
 }

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "lisco/return.h"
+#include "lisco/strided_points.h"
 
 namespace lisco_python {
 
@@ -89,35 +89,8 @@ class Points {
   /// x, y and z are floats side by side, as in most arrays: read in one pass.
   void readInterleaved(std::size_t laser, std::size_t first, std::size_t count,
                        const lisco::CellSource::Destination& to) const {
-    const py::ssize_t stride = axes_[0].column_stride;
-    const char* from = axes_[0].data + static_cast<py::ssize_t>(laser) * axes_[0].laser_stride +
-                       static_cast<py::ssize_t>(first) * stride;
-    if (stride == 3 * sizeof(float)) return readPacked(from, count, to);
-    for (std::size_t i = 0; i < count; ++i, from += stride) {
-      std::array<float, 3> point;
-      std::memcpy(point.data(), from, sizeof point);
-      to.x[i] = point[0];
-      to.y[i] = point[1];
-      to.z[i] = point[2];
-    }
-  }
-
-  /// Points without gaps, at any address: copied block by block, so that the compiler vectorizes the loop.
-  static void readPacked(const char* from, std::size_t count, const lisco::CellSource::Destination& to) {
-    constexpr std::size_t kBlock = 64;
-    std::array<float, 3 * kBlock> points;
-    for (std::size_t done = 0; done < count; done += kBlock) {
-      const std::size_t number = std::min(kBlock, count - done);
-      std::memcpy(points.data(), from + done * 3 * sizeof(float), number * 3 * sizeof(float));
-      float* const __restrict x = to.x + done;
-      float* const __restrict y = to.y + done;
-      float* const __restrict z = to.z + done;
-      for (std::size_t i = 0; i < number; ++i) {
-        x[i] = points[3 * i];
-        y[i] = points[3 * i + 1];
-        z[i] = points[3 * i + 2];
-      }
-    }
+    const char* const row = axes_[0].data + static_cast<py::ssize_t>(laser) * axes_[0].laser_stride;
+    lisco::StridedPoints::sideBySide(row, axes_[0].column_stride).read(first, count, to);
   }
 
   std::array<Axis, 3> axes_;

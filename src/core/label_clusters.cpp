@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "core/parallel.h"
-#include "core/strided_points.h"
 #include "lisco/cluster_order.h"
 #include "lisco/column_clusterer.h"
+#include "lisco/strided_points.h"
 
 namespace lisco {
 
@@ -66,7 +66,7 @@ std::size_t labelClusters(const void* points, std::size_t count, std::size_t str
   check(count, parameters, labels);
   if (count > 0 && points == nullptr) throw std::invalid_argument("lisco::labelClusters: points must not be null");
   const std::size_t columns = count / parameters.lasers;
-  const StridedPoints all{static_cast<const unsigned char*>(points), stride};
+  const StridedPoints all = StridedPoints::sideBySide(points, static_cast<std::ptrdiff_t>(stride));
   const auto cells = [=](std::size_t laser, std::size_t first, std::size_t number, const CellSource::Destination& to) {
     all.read(laser * columns + first, number, to);
   };

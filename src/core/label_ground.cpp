@@ -9,8 +9,8 @@
 
 #include "core/finite.h"
 #include "core/ground/azimuth_columns.h"
-#include "core/strided_points.h"
 #include "lisco/ground_filter.h"
+#include "lisco/strided_points.h"
 
 namespace lisco {
 
@@ -54,14 +54,13 @@ struct SortedPoints {
 
   void operator()(std::size_t row, std::size_t first, std::size_t count, const CellSource::Destination& to) const {
     // Chosen without a branch: which cells are empty cannot be predicted.
-    const StridedPoints none{reinterpret_cast<const unsigned char*>(&kNoReturn), 0};
+    const StridedPoints none = StridedPoints::sideBySide(&kNoReturn, 0);
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t point = columns.pointAt(row, first + i);
       const Return cell = (point == AzimuthColumns::kNone ? none : all).at(point);
       to.x[i] = cell.x;
       to.y[i] = cell.y;
       to.z[i] = cell.z;
-      to.source_index[i] = 0;
     }
   }
 };
@@ -147,8 +146,8 @@ void GroundLabeller::label(const void* points, std::size_t count, std::size_t st
   GroundParameters filter_parameters;
   filter_parameters.sensor_height = parameters.sensor_height;
   filter_parameters.max_slope = parameters.max_slope;
-  state_->label({static_cast<const unsigned char*>(points), stride}, count, parameters.lasers, filter_parameters,
-                parameters.origin, ground);
+  state_->label(StridedPoints::sideBySide(points, static_cast<std::ptrdiff_t>(stride)), count, parameters.lasers,
+                filter_parameters, parameters.origin, ground);
 }
 
 void labelGround(const void* points, std::size_t count, std::size_t stride, const LabelGroundParameters& parameters,

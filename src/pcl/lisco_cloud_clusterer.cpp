@@ -35,8 +35,9 @@ LiscoCloudClusterer& LiscoCloudClusterer::operator=(const LiscoCloudClusterer& o
   return (*this);
 }
 
-bool LiscoCloudClusterer::clusterPoints(const Layout& layout, const lisco::CellSource& points, const Indices* indices,
-                                        float tolerance, unsigned int threads, const char* caller) {
+bool LiscoCloudClusterer::clusterPoints(const Layout& layout, const lisco::StridedPoints& points,
+                                        const Indices* indices, float tolerance, unsigned int threads,
+                                        const char* caller) {
   if (!fitsIndexType(layout.points)) {
     PCL_ERROR("[%s] The cloud has %zu points, more than pcl::index_t can number.\n", caller, layout.points);
     return (false);
@@ -81,13 +82,25 @@ bool LiscoCloudClusterer::clusterPoints(const Layout& layout, const lisco::CellS
     state_->clusterer.update();
   };
   using Destination = lisco::CellSource::Destination;
+  const auto read = [&](std::size_t first, std::size_t count, const Destination& to) {
+    points.read(first, count, to);
+    // What is mostly read next: the same columns of the next row, or the next columns of the first one. Requested after
+    // the copy, whose own loads would wait for these.
+    constexpr std::size_t kCacheLine = 64;
+    const std::size_t below = first + columns;
+    const std::size_t next = below < layout.points ? below : below - layout.points + count;
+    const auto stride = static_cast<std::size_t>(points.stride);
+    const char* const bytes = static_cast<const char*>(points.x) + next * stride;
+    const std::size_t size = std::min(count, layout.points - next) * stride;
+    for (std::size_t i = 0; i < size; i += kCacheLine) __builtin_prefetch(bytes + i, 0, 2);
+  };
   if (few) {
     cluster([&](std::size_t, std::size_t first, std::size_t count, const Destination& to) {
       for (std::size_t i = 0, adjacent = 1; i < count; i += adjacent) {
         const index_t* const point = few_points.data() + first + i;
         adjacent = 1;
         while (i + adjacent < count && point[adjacent] == point[adjacent - 1] + 1) ++adjacent;
-        points.read(0, static_cast<std::size_t>(*point), adjacent, {to.x + i, to.y + i, to.z + i, to.source_index + i});
+        points.read(static_cast<std::size_t>(*point), adjacent, {to.x + i, to.y + i, to.z + i, nullptr});
       }
     });
   } else if (indices) {
@@ -96,14 +109,14 @@ bool LiscoCloudClusterer::clusterPoints(const Layout& layout, const lisco::CellS
     for (const auto& index : *indices) is_selected[static_cast<std::size_t>(index)] = 1;
     cluster([&](std::size_t laser, std::size_t first, std::size_t count, const Destination& to) {
       const std::size_t point = laser * columns + first;
-      points.read(0, point, count, to);
+      read(point, count, to);
       const char* const selected = is_selected.data() + point;
       constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
       for (std::size_t i = 0; i < count; ++i) to.x[i] = selected[i] ? to.x[i] : kNan;  // no return
     });
   } else {
     cluster([&](std::size_t laser, std::size_t first, std::size_t count, const Destination& to) {
-      points.read(0, laser * columns + first, count, to);
+      read(laser * columns + first, count, to);
     });
   }
   return (true);

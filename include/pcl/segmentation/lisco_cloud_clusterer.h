@@ -15,7 +15,7 @@
 #include <pcl/point_cloud.h>
 #include <pcl/segmentation/lisco_pcl_version.h>
 
-#include "lisco/return.h"
+#include "lisco/strided_points.h"
 
 namespace pcl::detail {
 
@@ -38,27 +38,11 @@ class LISCO_EXPORT LiscoCloudClusterer {
   template <typename PointT>
   bool cluster(const PointCloud<PointT>& cloud, const Indices* indices, float tolerance, unsigned int threads,
                const char* caller) {
-    const auto read_points = [&cloud](std::size_t, std::size_t first, std::size_t count,
-                                      const lisco::CellSource::Destination& to) {
-      const PointT* const points = cloud.points.data() + first;
-      for (std::size_t i = 0; i < count; ++i) {
-        to.x[i] = points[i].x;
-        to.y[i] = points[i].y;
-        to.z[i] = points[i].z;
-        to.source_index[i] = static_cast<std::uint32_t>(first + i);
-      }
-      // What is mostly read next: the same columns of the next row, or the next columns of the first one. Requested
-      // after the copy, whose own loads would wait for these.
-      constexpr std::size_t kCacheLine = 64;
-      const std::size_t below = first + cloud.width;
-      const std::size_t next = below < cloud.size() ? below : below - cloud.size() + count;
-      const std::size_t end = std::min(next + count, cloud.size());
-      for (std::size_t i = next; i < end; i += std::max<std::size_t>(1, kCacheLine / sizeof(PointT)))
-        __builtin_prefetch(cloud.points.data() + i, 0, 2);
-    };
+    lisco::StridedPoints points;
+    if (!cloud.empty()) points = {&cloud[0].x, &cloud[0].y, &cloud[0].z, sizeof(PointT)};
     const auto& origin = cloud.sensor_origin_;
     const Layout layout{cloud.size(), cloud.width, cloud.height, {origin[0], origin[1], origin[2]}};
-    return (clusterPoints(layout, lisco::CellSource(read_points), indices, tolerance, threads, caller));
+    return (clusterPoints(layout, points, indices, tolerance, threads, caller));
   }
 
   /** \brief Appends the clusters of the last cloud whose size is within [min_size, max_size], in the order in which
@@ -76,8 +60,7 @@ class LISCO_EXPORT LiscoCloudClusterer {
     std::array<float, 3> sensor_origin;
   };
 
-  /** \param[in] points a laser whose columns are the points of the cloud */
-  bool clusterPoints(const Layout& layout, const lisco::CellSource& points, const Indices* indices, float tolerance,
+  bool clusterPoints(const Layout& layout, const lisco::StridedPoints& points, const Indices* indices, float tolerance,
                      unsigned int threads, const char* caller);
 
   template <typename PointAt>

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/strided_points.h"
+#include "lisco/strided_points.h"
 
 namespace lisco::ground {
 

@@ -23,6 +23,7 @@
 #include "lisco/label_ground.h"
 #include "lisco/return.h"
 #include "lisco/sensor_hints.h"
+#include "lisco/strided_points.h"
 #include "lisco/window_clusterer.h"
 
 #define PRINT(...) std::printf("size %s: %zu\n", #__VA_ARGS__, sizeof(__VA_ARGS__))
@@ -50,6 +51,7 @@ int main() {
   PRINT(lisco::SensorHints);
   PRINT(lisco::SingleRunBlock);
   PRINT(lisco::SizeRange);
+  PRINT(lisco::StridedPoints);
   PRINT(lisco::WindowClusterer);
   PRINT(lisco::WindowParameters);
   PRINT(pcl::LiscoClusterExtraction<pcl::PointXYZ>);
