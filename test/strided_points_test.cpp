@@ -78,6 +78,7 @@ TEST(StridedPoints, AreReadWhereverTheirCoordinatesAre) {
     expectAllAreRead(count, 17, {1, 5, 9});
     expectAllAreRead(count, 16, {0, 8, 4});
     expectAllAreRead(count, 24, {0, 8, 16});
+    expectAllAreRead(count, 24, {0, 4, 16});
     expectAllAreRead(count, -24, {16, 4, 8});
   }
 }
