@@ -3,6 +3,7 @@
 #include <pcl/segmentation/lisco_cloud_clusterer.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <thread>
 

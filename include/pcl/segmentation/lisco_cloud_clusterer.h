@@ -4,10 +4,8 @@
 
 #include "lisco/export.h"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <vector>
 
