@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
-// How two threads share the planes of their slabs: SlabPair and FragmentItems, against a list of the planes.
+// How threads divide sorted fragments into slabs, and two share the planes of theirs: against a list of the planes.
 #include "core/near/slab_division.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <thread>
@@ -132,6 +133,86 @@ TEST(SlabPair, GivesEachPlaneToOneOfTwoThreadsAtOnce) {
     for (const lisco::Planes& planes : taken[1]) EXPECT_GE(planes.begin, meeting);
     taken[0].insert(taken[0].end(), taken[1].begin(), taken[1].end());
     expectAll(taken[0], all);
+  }
+}
+
+/// Sorted fragments of several parts, as VoxelSorter has them before they are divided.
+struct Parts {
+  static constexpr unsigned kPlaneBits = 6;  ///< of the number of a plane
+
+  lisco::NearReturns returns[5];
+  lisco::FragmentList list;
+  std::vector<lisco::Box> boxes;
+  lisco::VoxelNumbering numbering{};
+  lisco::FragmentItems items;
+  std::vector<std::uint64_t> all;  ///< items of all parts, sorted
+
+  /// \param planes number of planes with fragments
+  Parts(Random& random, std::size_t parts, std::size_t planes) {
+    numbering.axis[2] = 0;
+    numbering.minor_bits = numbering.middle_bits = 0;
+    numbering.bits = numbering.planeBits() + kPlaneBits;
+    std::vector<std::uint64_t> numbers(planes);
+    for (std::uint64_t& number : numbers) number = random.below(std::size_t{1} << kPlaneBits);
+    list.begin(true);
+    for (std::size_t part = 0; part < parts; ++part) {
+      returns[part].count = 1 + random.below(random.chance(0.2) ? 5 : 3000);
+      returns[part].returns.grow(returns[part].count);
+      list.add(returns[part]);
+      lisco::Box box{};
+      box.lo[0] = box.hi[0] = static_cast<float>(random.below(100));
+      boxes.push_back(box);
+    }
+    items.number_bits = 16;
+    items.plane_shift = items.number_bits + numbering.planeBits();
+    items.all.grow(list.end);
+    items.scratch.grow(list.end);
+    for (std::size_t part = 0; part < parts; ++part) {
+      std::uint64_t* const own = &items.all[list.parts[part].first];
+      for (std::size_t i = 0; i < returns[part].count; ++i) {
+        const std::uint64_t key = numbers[random.below(planes)] << numbering.planeBits() | random.below(64);
+        own[i] = key << items.number_bits | (list.parts[part].first + i);
+      }
+      std::sort(own, own + returns[part].count);
+      items.part_sizes.push_back(returns[part].count);
+      all.insert(all.end(), own, own + returns[part].count);
+    }
+    std::sort(all.begin(), all.end());
+  }
+};
+
+TEST(SlabDivision, MergesThePartsIntoSlabsOfWholePlanes) {
+  Random random(5);
+  for (int round = 0; round < 300; ++round) {
+    const std::size_t count = 2 + random.below(4);
+    Parts parts(random, count, 1 + random.below(random.chance(0.5) ? 3 : 40));
+    lisco::SlabDivision division;
+    division.divide(parts.list, parts.boxes, parts.numbering, parts.items);
+    ASSERT_EQ(std::vector<std::uint64_t>(parts.items.all.data(), parts.items.all.data() + parts.all.size()), parts.all);
+    ASSERT_LE(division.slabs.size(), count);
+    // Shares are equal at first. The first border is the one nearest to its share.
+    const auto farFromShare = [&](std::size_t border) {
+      return std::fabs(static_cast<double>(border) -
+                       static_cast<double>(parts.all.size()) / static_cast<double>(count));
+    };
+    double nearest = farFromShare(division.slabs.front().end);
+    for (std::size_t i = parts.items.endOfPlane(0, parts.all.size()); i < parts.all.size();) {
+      nearest = std::min(nearest, farFromShare(i));
+      i = parts.items.endOfPlane(i, parts.all.size());
+    }
+    if (division.slabs.size() > 1) {
+      EXPECT_LE(farFromShare(division.slabs.front().end), nearest + 1);
+    }
+    std::size_t end = 0;
+    for (const lisco::Slab& slab : division.slabs) {
+      EXPECT_EQ(slab.begin, end);
+      EXPECT_LT(slab.begin, slab.end);
+      end = slab.end;
+      if (end < parts.all.size()) {
+        EXPECT_NE(parts.items.planeOf(parts.all[end - 1]), parts.items.planeOf(parts.all[end]));
+      }
+    }
+    EXPECT_EQ(end, parts.all.size());
   }
 }
 

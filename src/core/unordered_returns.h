@@ -13,6 +13,7 @@
 #include "core/near/near_returns.h"
 #include "core/near/voxel_sorter.h"
 #include "core/neighbour.h"
+#include "core/parallel.h"
 #include "core/partition.h"
 #include "lisco/return.h"
 
@@ -58,7 +59,7 @@ class UnorderedReturns {
     std::uint32_t first_return;  ///< in its part
     ColumnBits returns;
   };
-  struct Part {
+  struct alignas(kSeparate) Part {
     NearReturns near;
     std::vector<Block> blocks;
   };

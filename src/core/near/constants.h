@@ -42,8 +42,6 @@ inline constexpr double kMaxFloatSide = 4096;
 inline constexpr double kMinSlices = 32;
 /// Largest number of a voxel along an axis: fits a signed 32-bit conversion.
 inline constexpr double kMaxVoxelNumber = 2147480000.0;
-/// Work of a fragment beyond that of its returns, in returns: for dividing it among threads (threads).
-inline constexpr std::uint32_t kWorkOfFragment = 2;
 /// Fragments that a thread takes at least when it takes planes that another may take: thin ones, as slices are, would
 /// take it more time than their fragments (threads).
 inline constexpr std::size_t kLeastTaken = 128;

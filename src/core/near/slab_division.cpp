@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/merge_sorted.h"
 #include "core/near/constants.h"
 
 namespace lisco {
@@ -48,60 +49,72 @@ void SlabDivision::join(const FragmentList& fragments, FragmentItems& items) {
   slabs.assign(1, {{0, end}});
 }
 
+/// Ends slabs between planes, each where the number of fragments is nearest to its share.
+void SlabDivision::cut(const FragmentList& fragments, const VoxelNumbering& numbering, const FragmentItems& items) {
+  const std::size_t parts = fragments.parts.size();
+  const std::uint64_t planes = std::uint64_t{1} << (numbering.bits - numbering.planeBits());
+  const std::uint64_t* const data = items.all.data();
+  const auto placeIn = [&](std::size_t part, std::uint64_t plane) {  // where the part's fragments from a plane on begin
+    const std::size_t begin = fragments.parts[part].first;
+    const std::size_t end = begin + items.part_sizes[part];
+    if (plane == planes) return end;
+    return static_cast<std::size_t>(std::lower_bound(data + begin, data + end, plane << items.plane_shift) - data);
+  };
+  const auto countBefore = [&](std::uint64_t plane) {
+    std::size_t count = 0;
+    for (std::size_t part = 0; part < parts; ++part) count += placeIn(part, plane) - fragments.parts[part].first;
+    return count;
+  };
+  slabs.clear();
+  ranges_.clear();
+  ranges_.reserve(parts * parts);
+  std::uint64_t first = 0;  // plane of the slab
+  const auto addSlab = [&](std::uint64_t end) {
+    slabs.push_back({{countBefore(first), countBefore(end)}});
+    for (std::size_t part = 0; part < parts; ++part) ranges_.push_back({placeIn(part, first), placeIn(part, end)});
+    first = end;
+  };
+  const std::size_t all = countBefore(planes);
+  double share = 0;
+  while (slabs.size() + 1 < parts) {
+    share += shares_.of(thread_of_[slabs.size()]) * static_cast<double>(all);
+    const std::size_t begin = countBefore(first);
+    const std::size_t target = std::max(begin, static_cast<std::size_t>(share));
+    std::uint64_t end = first;  // the last plane with no more before it than the target
+    for (std::uint64_t above = planes; end + 1 < above;) {
+      const std::uint64_t middle = end + (above - end) / 2;
+      (countBefore(middle) <= target ? end : above) = middle;
+    }
+    const std::size_t below = countBefore(end);
+    if (below == begin || countBefore(end + 1) - target < target - below) ++end;
+    if (countBefore(end) == all) break;
+    addSlab(end);
+  }
+  addSlab(planes);
+}
+
 void SlabDivision::divide(const FragmentList& fragments, const std::vector<Box>& boxes, const VoxelNumbering& numbering,
                           FragmentItems& items) {
   const std::size_t parts = fragments.parts.size();
   assign(numbering.axis[2], boxes);
   shares_.begin(parts);
-  constexpr unsigned kMaxGroupBits = 10;
-  const unsigned plane_bits = numbering.bits - numbering.planeBits();
-  const unsigned group_bits = std::min(plane_bits, kMaxGroupBits);
-  const unsigned shift = items.plane_shift + plane_bits - group_bits;
-  const std::size_t groups = std::size_t{1} << group_bits;  // of planes
-  histogram_.assign(parts * groups, {0, 0});
-  const std::uint64_t number_mask = items.numberMask();
-  inParallel(parts, [&](std::size_t part) {
-    const FragmentList::Part& own = fragments.parts[part];
-    const std::uint64_t* const own_items = &items.all[own.first];
-    std::size_t end = own.first + own.near->count;
-    for (std::size_t i = items.part_sizes[part]; i-- > 0;) {
-      PlaneGroup& planes = histogram_[part * groups + (own_items[i] >> shift)];
-      const std::size_t number = own_items[i] & number_mask;
-      ++planes.fragments;
-      planes.work += static_cast<std::uint32_t>(kWorkOfFragment + end - number);
-      end = number;
-    }
-  });
-  // Where each part's fragments of each group of planes go.
-  double all = 0;
-  for (const PlaneGroup& planes : histogram_) all += planes.work;
-  slabs.clear();
-  std::uint32_t sum = 0;
-  std::size_t begin = 0;
-  double work = 0;
-  double share = all * shares_.of(thread_of_[0]);
-  for (std::size_t group = 0; group < groups; ++group) {
-    const std::uint32_t end = sum;
-    const double before = work;
-    for (std::size_t part = 0; part < parts; ++part) {
-      PlaneGroup& planes = histogram_[part * groups + group];
-      work += planes.work;
-      sum += std::exchange(planes.fragments, sum);
-    }
-    // A slab ends at the planes nearest to its share.
-    if (end > begin && slabs.size() + 1 < parts && work > share && work - share > share - before) {
-      slabs.push_back({{begin, end}});
-      share += all * shares_.of(thread_of_[slabs.size()]);
-      begin = end;
-    }
+  cut(fragments, numbering, items);
+  // Pairs of what a slab has are merged until it has one.
+  for (std::size_t left = parts; left > 1; left = (left + 1) / 2) {
+    forEach([&](std::size_t slab) {
+      Range* const ranges = &ranges_[slab * parts];
+      std::size_t to = slabs[slab].begin;
+      for (std::size_t i = 0; i < left; i += 2) {
+        const Range a = ranges[i];
+        const Range b = i + 1 < left ? ranges[i + 1] : Range{a.end, a.end};
+        mergeSorted({items.all.data() + a.begin, a.end - a.begin}, {items.all.data() + b.begin, b.end - b.begin},
+                    items.scratch.data() + to);
+        const std::size_t begin = std::exchange(to, to + (a.end - a.begin) + (b.end - b.begin));
+        ranges[i / 2] = {begin, to};
+      }
+    });
+    std::swap(items.all, items.scratch);
   }
-  slabs.push_back({{begin, sum}});
-  inParallel(parts, [&](std::size_t part) {
-    const std::uint64_t* const own_items = &items.all[fragments.parts[part].first];
-    for (std::size_t i = 0; i < items.part_sizes[part]; ++i)
-      items.scratch[histogram_[part * groups + (own_items[i] >> shift)].fragments++] = own_items[i];
-  });
-  std::swap(items.all, items.scratch);
 }
 
 void SlabDivision::beginLinking(const FragmentItems& items) {

@@ -70,7 +70,7 @@ class SlabDivision {
   /// Makes the fragments of all parts one slab.
   void join(const FragmentList& fragments, FragmentItems& items);
 
-  /// Moves the fragments of each slab together: slabs of about equal work, one for each part.
+  /// Merges the fragments of all parts, which are sorted, into slabs of about equal work, one for each part.
   /// \param boxes of the parts
   void divide(const FragmentList& fragments, const std::vector<Box>& boxes, const VoxelNumbering& numbering,
               FragmentItems& items);
@@ -100,14 +100,15 @@ class SlabDivision {
   }
 
  private:
-  struct PlaneGroup {
-    std::uint32_t fragments;  ///< number of them; then where the next one goes
-    std::uint32_t work;       ///< of linking them, about in returns
+  /// Sorted fragments.
+  struct Range {
+    std::size_t begin, end;
   };
 
   void assign(std::size_t axis, const std::vector<Box>& boxes);
+  void cut(const FragmentList& fragments, const VoxelNumbering& numbering, const FragmentItems& items);
 
-  std::vector<PlaneGroup> histogram_;   ///< of groups of planes, of each part
+  std::vector<Range> ranges_;           ///< for each slab, those that are to be merged: as many as there are parts
   std::vector<SlabPair> pairs_;         ///< the last one may be of one slab
   std::vector<std::size_t> thread_of_;  ///< by slab, if the work is shared
   std::vector<std::size_t> slab_of_;    ///< by thread

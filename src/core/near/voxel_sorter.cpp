@@ -53,12 +53,14 @@ bool VoxelSorter::sortFragments(const Tolerance& tolerance) {
   is_shared_ = fragments_.parts.size() > 1 && fragments_.end >= min_shared_;
   if (!chooseNumbering(tolerance)) return false;
   cutFragments();
-  if (is_shared_)
+  if (is_shared_) {
+    forEachPart([&](std::size_t i) { sort(fragments_.parts[i].first, items_.part_sizes[i]); });
     division_.divide(fragments_, boxes_, numbering_, items_);
-  else
+  } else {
     division_.join(fragments_, items_);
+    sort(0, division_.slabs.front().end);
+  }
   if (planes_.size() < division_.slabs.size()) planes_.resize(division_.slabs.size());
-  division_.forEach([&](std::size_t slab) { sort(division_.slabs[slab]); });
   std::fill_n(&items_.all[division_.slabs.back().end], kPrefetch, 0);
   return true;
 }
@@ -150,10 +152,9 @@ void VoxelSorter::cutFragments() {
     items_.scratch.grow(size + kPrefetch);
 }
 
-/// Sorts the fragments of a slab by key.
-void VoxelSorter::sort(const Slab& slab) {
-  radixSort(items_.all.data() + slab.begin, items_.scratch.data() + slab.begin, slab.end - slab.begin,
-            items_.number_bits, numbering_.bits);
+/// Sorts fragments by key.
+void VoxelSorter::sort(std::size_t begin, std::size_t count) {
+  radixSort(items_.all.data() + begin, items_.scratch.data() + begin, count, items_.number_bits, numbering_.bits);
 }
 
 /// Links planes from the outer one of a slab on, until its thread meets that of the other slab of the pair.

@@ -22,9 +22,10 @@ namespace lisco {
 ///
 /// The returns of a run in a voxel are a *fragment*. Fragments are sorted by key (radix sort), so that the returns of a
 /// voxel, of a brick of 4 x 4 x 4 voxels (8 x 4 in a slice), and of a plane of bricks across the major axis lie side by
-/// side. Each plane is linked within and, unless it is a slice, with the plane before. Each thread sorts a slab of
-/// consecutive planes, where possible of the returns that it has read itself, and links planes from one end of it on,
-/// until it meets the thread that began at the other end of the slab beside.
+/// side. Each plane is linked within and, unless it is a slice, with the plane before. Each thread sorts what it has
+/// read, and merges what all have of a slab of consecutive planes, where possible of the returns that it has read
+/// itself. It links planes from one end of the slab on, until it meets the thread that began at the other end of the
+/// slab beside.
 class VoxelSorter {
  public:
   /// \param min_shared returns from which on the threads that have read them share the work
@@ -73,7 +74,7 @@ class VoxelSorter {
   bool sortFragments(const Tolerance& tolerance);
   bool chooseNumbering(const Tolerance& tolerance);
   void cutFragments();
-  void sort(const Slab& slab);
+  void sort(std::size_t begin, std::size_t count);
   template <typename Work>
   void forEachPart(Work&& work);
   void linkSlabs(const Tolerance& tolerance, DisjointSets& subclusters);
