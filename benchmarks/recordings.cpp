@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026, the Lisco for PCL authors
 //
-// Lisco, the voxel grid and PCL on clouds as users have them: seven sets, see recording_sets.h.
+// Lisco, the voxel grid and PCL on clouds as users have them, or Lisco on several threads: seven sets, see
+// recording_sets.h.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -37,6 +38,7 @@ using namespace lisco_benchmarks;
 
 constexpr const char* kSignature = "\"program\": \"recordings\"";
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kSpells = 5;  ///< see timeInSpells ()
 
 struct Options {
   fs::path data;
@@ -46,6 +48,8 @@ struct Options {
   unsigned runs = 9;
   unsigned pcl_runs = 1;        ///< 0: without PCL
   double max_pcl_seconds = 20;  ///< of a case, by the tolerance before
+  unsigned threads = 1;         ///< more: their times are compared with those of one, and the grid's are not taken
+  std::size_t min_returns = 0;
   bool summary = false;
   fs::path json;
 };
@@ -58,12 +62,12 @@ struct Result {
   std::size_t returns = 0, clusters = 0;
   bool identical = true;
   double pcl_ms = kNan;  ///< NaN: not run
-  Times grid, lisco;     ///< empty if not identical
+  Times rival, lisco;    ///< empty if not identical; the rival is the grid, or Lisco on one thread
 
   bool isTimed() const { return !lisco.runs.empty(); }
-  double gridMs() const { return isTimed() ? median(grid.runs) : kNan; }
+  double rivalMs() const { return isTimed() ? median(rival.runs) : kNan; }
   double liscoMs() const { return isTimed() ? median(lisco.runs) : kNan; }
-  double gridRatio() const { return gridMs() / liscoMs(); }
+  double rivalRatio() const { return rivalMs() / liscoMs(); }
   double pclRatio() const { return pcl_ms / liscoMs(); }
   std::string name() const { return formatted("%s, %s, %g m", scan.c_str(), form.c_str(), tolerance); }
 };
@@ -82,10 +86,12 @@ bool parse(int argc, char** argv, Options& options) {
       "  6  RGB-D, airborne, from several stations, worst cases\n"
       "  7  organized with a column per laser; lasers unsorted; half of the returns missing; sensor tilted by 15\n"
       "     degrees; a sector; several turns in one cloud\n"
-      "Clusters are compared first, then the grid and Lisco run in turn; medians, milliseconds.\n\n"
+      "Clusters are compared first, then the grid and Lisco run in turn; medians, milliseconds. With --threads, Lisco "
+      "on\none thread and on several in five spells of a quarter of a second each, of which the fastest counts.\n\n"
       "Exit code: 1 if any clusters differ, 2 on bad input or usage.\n\n"
       "Options");
   std::string sets, runs = "9", pcl_runs = "1", tolerances, max_seconds = "20", data, json;
+  std::string threads = "1", min_returns = "0";
   bool no_pcl = false;
   const char* const folder = std::getenv("LISCO_TEST_DATA");
   data = folder != nullptr ? folder : LISCO_TEST_DATA_DEFAULT;
@@ -101,6 +107,9 @@ bool parse(int argc, char** argv, Options& options) {
     ("no-pcl", po::bool_switch(&no_pcl), "compare Lisco's clusters with the grid's only")
     ("max-pcl-seconds", po::value<std::string>(&max_seconds)->value_name("S"),
      "leave PCL out of cases that it is expected to take longer for, by the tolerance before (default 20)")
+    ("threads", po::value<std::string>(&threads)->value_name("N"),
+     "compare Lisco's times on N threads with those on one, not with the grid's; PCL does not run")
+    ("min-returns", po::value<std::string>(&min_returns)->value_name("N"), "leave out clouds of fewer returns")
     ("summary", po::bool_switch(&options.summary), "print the sets only, not every case")
     ("json", po::value<std::string>(&json)->value_name("FILE"), "write all cases and their runs");
   // clang-format on
@@ -113,7 +122,9 @@ bool parse(int argc, char** argv, Options& options) {
   if (given.count("eps") != 0)
     for (const std::string& item : itemsOf(tolerances)) options.tolerances.push_back(toleranceOf(item));
   options.runs = countOf(runs, "--runs", 1);
-  options.pcl_runs = no_pcl ? 0 : countOf(pcl_runs, "--pcl-runs", 1);
+  options.threads = countOf(threads, "--threads", 1);
+  options.min_returns = countOf(min_returns, "--min-returns", 0);
+  options.pcl_runs = no_pcl || options.threads > 1 ? 0 : countOf(pcl_runs, "--pcl-runs", 1);
   options.max_pcl_seconds = numberOf(max_seconds, "--max-pcl-seconds");
   if (given.count("json") != 0 && json.empty()) throw std::runtime_error("--json is empty");
   options.json = json;
@@ -123,13 +134,13 @@ bool parse(int argc, char** argv, Options& options) {
 /// What is measured, with the memory they keep from case to case.
 struct Methods {
   Baseline pcl, grid, lisco;
+  Baseline one_thread = liscoBaseline(1);
 
-  Methods() {
+  /// \param threads of Lisco
+  explicit Methods(unsigned threads) : lisco(liscoBaseline(threads)) {
     for (Baseline& baseline : allBaselines()) {
       if (baseline.key == "grid")
         grid = std::move(baseline);
-      else if (baseline.key == "lisco")
-        lisco = std::move(baseline);
       else if (baseline.key == kReferenceKey)
         pcl = std::move(baseline);
     }
@@ -179,16 +190,20 @@ void measure(const Problem& problem, const Options& options, const Methods& meth
     budget.spend(result.tolerance, result.pcl_ms);
   }
   if (!result.identical) return;
-  const auto contestant = [&](const Baseline& baseline, double tried_ms) {
-    return Contestant{[&] {
-                        Clusters clusters;
-                        baseline.extract(problem, clusters);
-                      },
-                      tried_ms, options.runs};
+  const auto extractionBy = [&problem](const Baseline& baseline) {
+    return [&problem, &baseline] {
+      Clusters clusters;
+      baseline.extract(problem, clusters);
+    };
   };
-  const std::vector<Times> times = timeInTurn({contestant(methods.grid, grid_ms), contestant(methods.lisco, lisco_ms)},
-                                              TimeKind::kThread, [](std::size_t, std::size_t) {});
-  result.grid = times[0];
+  std::vector<Times> times;
+  if (options.threads > 1)
+    times = timeInSpells({extractionBy(methods.one_thread), extractionBy(methods.lisco)}, kSpells);
+  else
+    times = timeInTurn(
+        {{extractionBy(methods.grid), grid_ms, options.runs}, {extractionBy(methods.lisco), lisco_ms, options.runs}},
+        TimeKind::kThread, [](std::size_t, std::size_t) {});
+  result.rival = times[0];
   result.lisco = times[1];
 }
 
@@ -203,8 +218,8 @@ void printCase(const Result& result) {
   if (!result.identical)
     std::printf("  DIFFERENT clusters\n");
   else
-    std::printf(" %9s %9.3f %9.3f %10.2f %10s\n", orDash(2, result.pcl_ms).c_str(), result.gridMs(), result.liscoMs(),
-                result.gridRatio(), orDash(1, result.pclRatio()).c_str());
+    std::printf(" %9s %9.3f %9.3f %10.2f %10s\n", orDash(2, result.pcl_ms).c_str(), result.rivalMs(), result.liscoMs(),
+                result.rivalRatio(), orDash(1, result.pclRatio()).c_str());
   std::fflush(stdout);
 }
 
@@ -216,6 +231,7 @@ void measureRecording(const Recording& recording, const Options& options, const 
   for (std::size_t i = 0; i < problem.cloud->size(); ++i)
     if (isReturn((*problem.cloud)[i])) returns->push_back(static_cast<pcl::index_t>(i));
   problem.returns = returns;
+  if (returns->size() < options.min_returns) return;
   PclBudget budget(options.max_pcl_seconds);
   for (const double tolerance : recording.tolerances) {
     const auto& wanted = options.tolerances;
@@ -252,23 +268,32 @@ class Ratios {
 };
 
 void printRatios(const std::string& name, const std::vector<const Result*>& cases) {
-  Ratios grid, pcl;
+  Ratios rival, pcl;
   for (const Result* result : cases) {
-    grid.add(result->gridRatio(), *result);
+    rival.add(result->rivalRatio(), *result);
     pcl.add(result->pclRatio(), *result);
   }
-  if (grid.empty()) return;
-  std::printf("%-32s %5zu %6.2f %6.2f", name.c_str(), cases.size(), grid.mean(), grid.lowest());
+  if (rival.empty()) return;
+  std::printf("%-32s %5zu %6.2f %6.2f", name.c_str(), cases.size(), rival.mean(), rival.lowest());
   if (pcl.empty())
     std::printf(" %7s %7s", "-", "-");
   else
     std::printf(" %7.1f %7.1f", pcl.mean(), pcl.lowest());
-  std::printf("  %s%s\n", grid.lowestName().c_str(),
-              !pcl.empty() && pcl.lowestName() != grid.lowestName() ? ("; PCL: " + pcl.lowestName()).c_str() : "");
+  std::printf("  %s%s\n", rival.lowestName().c_str(),
+              !pcl.empty() && pcl.lowestName() != rival.lowestName() ? ("; PCL: " + pcl.lowestName()).c_str() : "");
 }
 
-void printSets(const std::vector<Result>& results) {
-  std::printf("\n%-32s %5s %13s %15s\n", "", "", "grid/Lisco", "PCL/Lisco");
+/// The columns of the rival's times and the ratio to them.
+struct RivalTitles {
+  std::string time, ratio;
+
+  explicit RivalTitles(unsigned threads)
+      : time(threads > 1 ? "1 thread" : "grid"),
+        ratio(threads > 1 ? formatted("1/%u threads", threads) : "grid/Lisco") {}
+};
+
+void printSets(const std::vector<Result>& results, const RivalTitles& titles) {
+  std::printf("\n%-32s %5s %13s %15s\n", "", "", titles.ratio.c_str(), "PCL/Lisco");
   std::printf("%-32s %5s %6s %6s %7s %7s  %s\n", "set, form", "cases", "mean", "lowest", "mean", "lowest",
               "lowest case");
   for (int set = 1; set <= kSets; ++set) {
@@ -287,7 +312,8 @@ void printSets(const std::vector<Result>& results) {
   }
 }
 
-std::string jsonTextOf(const std::vector<Result>& results) {
+/// \param rival the name of the rival's times
+std::string jsonTextOf(const std::vector<Result>& results, const char* rival) {
   nlohmann::ordered_json cases = nlohmann::ordered_json::array();
   for (const Result& r : results) {
     nlohmann::ordered_json entry{{"set", r.set},
@@ -297,7 +323,7 @@ std::string jsonTextOf(const std::vector<Result>& results) {
                                  {"returns", r.returns},
                                  {"clusters", r.clusters},
                                  {"identical", r.identical},
-                                 {"grid_ms", r.grid.runs},
+                                 {rival, r.rival.runs},
                                  {"lisco_ms", r.lisco.runs},
                                  {"lisco_cold_ms", r.lisco.cold}};
     if (std::isfinite(r.pcl_ms)) entry["pcl_ms"] = r.pcl_ms;
@@ -310,20 +336,26 @@ int run(const Options& options) {
   if (!options.json.empty()) checkMayWrite(options.json, kSignature);
   CompareSettings settings;
   settings.runs = 0;  // no line about runs, which do not depend on the time they take
-  std::fputs(describeRun(settings).c_str(), stdout);
-  std::printf("grid and Lisco: %u runs in turn, medians; PCL: %u; milliseconds\n", options.runs, options.pcl_runs);
+  std::fputs(describeRun(settings, options.threads).c_str(), stdout);
+  const RivalTitles titles(options.threads);
+  if (options.threads > 1)
+    std::printf("1 and %u threads: %zu spells of each in turn, medians of the fastest; milliseconds\n", options.threads,
+                kSpells);
+  else
+    std::printf("grid and Lisco: %u runs in turn, medians; PCL: %u; milliseconds\n", options.runs, options.pcl_runs);
   if (!options.summary)
     std::printf("%-51s %8s %5s %8s %9s %9s %9s %10s %10s\n", "  scan                 form", "returns", "eps",
-                "clusters", "PCL", "grid", "Lisco", "grid/Lisco", "PCL/Lisco");
-  const Methods methods;
+                "clusters", "PCL", titles.time.c_str(), "Lisco", titles.ratio.c_str(), "PCL/Lisco");
+  const Methods methods(options.threads);
   std::vector<Result> results;
   for (const Recording& recording : allRecordings(options.data))
     if ((options.sets.empty() || options.sets.count(recording.set) != 0) &&
         recording.name().find(options.cloud) != std::string::npos)
       measureRecording(recording, options, methods, results);
   if (results.empty()) throw std::runtime_error("no case is left to measure");
-  printSets(results);
-  if (!options.json.empty()) writeOwnFile(options.json, jsonTextOf(results), kSignature);
+  printSets(results, titles);
+  if (!options.json.empty())
+    writeOwnFile(options.json, jsonTextOf(results, options.threads > 1 ? "one_thread_ms" : "grid_ms"), kSignature);
   const auto wrong = std::count_if(results.begin(), results.end(), [](const Result& r) { return !r.identical; });
   std::printf("%zu cases, clusters identical in %zu\n", results.size(),
               results.size() - static_cast<std::size_t>(wrong));

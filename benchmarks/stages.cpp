@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -110,18 +111,12 @@ class StagedExtraction {
 
 /// The whole extraction at a level of vector instructions ("": the best) with so many threads.
 Baseline variantOf(const std::string& level, unsigned threads) {
-  Baseline baseline;
+  Baseline baseline = liscoBaseline(threads);
   baseline.key = level + "," + std::to_string(threads);
   baseline.title = level + " with " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
-  const auto extraction = std::make_shared<pcl::LiscoClusterExtraction<ComparedPoint>>();
-  extraction->setNumberOfThreads(threads);
-  baseline.extract = [extraction, level](const Problem& problem, Clusters& clusters) {
+  baseline.extract = [extract = baseline.extract, level](const Problem& problem, Clusters& clusters) {
     lisco::useSimdLevel(level);
-    extraction->setInputCloud(problem.cloud);
-    extraction->setClusterTolerance(problem.tolerance);
-    extraction->setMinClusterSize(problem.min_size);
-    extraction->setMaxClusterSize(problem.max_size);
-    extraction->extract(clusters);
+    extract(problem, clusters);
   };
   return baseline;
 }
@@ -151,7 +146,8 @@ bool parse(int argc, char** argv, Options& options) {
       "or, with --table threads, extract () with each level of vector instructions that the processor has, and with 1, "
       "2\nand all threads.\n"
       "They run in turn. Each runs twice in its turn, of which the second run counts, and +- is half the distance of "
-      "the\nquartiles in percent of the median.\n\n"
+      "the\nquartiles in percent of the median. Numbers of threads run in a spell of a quarter of a second for "
+      "every\nfour runs; the fastest spell counts.\n\n"
       "Exit code: 1 if any clusters are not those of EuclideanClusterExtraction, 2 on bad input or usage (1 goes "
       "before 2).\n\n"
       "Options");
@@ -322,37 +318,14 @@ class ThreadsTable : public Table {
     for (const Variant& variant : variants_) agree = one.agrees(variant.baseline) && agree;
     if (!agree) return false;
 
-    std::vector<Contestant> contestants;
-    for (const Variant& variant : variants_)
-      contestants.push_back({[&one, &variant] {
-                               Clusters clusters;
-                               variant.baseline.extract(one.problem, clusters);
-                             },
-                             0, runs});
-    // OpenMP's threads spin for some milliseconds before they sleep. The first of two runs finds them asleep.
-    const std::vector<Times> times = timeInTurn(contestants, TimeKind::kWall, [](std::size_t, std::size_t) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    });
-
-    const double best = median(times.front().runs);
-    std::string level_row = one.head() + timed(times.front().runs);
-    const double paused = median(times.front().cold);
-    std::string thread_row = level_row + formatted(" %8.3f", paused);
-    for (std::size_t i = 0; i < variants_.size(); ++i) {
-      const Variant& variant = variants_[i];
-      csv += one.csv("extract", variant.level, variant.threads, times[i].runs);
-      if (i == 0) continue;
-      const double time = median(times[i].runs);
-      const double ratio = variant.threads == 1 ? time / best : best / time;
-      variants_[i].ratios.push_back(ratio);
-      (variant.threads == 1 ? level_row : thread_row) += timed(times[i].runs) + formatted(" %6.2f", ratio);
-      if (variant.threads == 1) continue;
-      const double after_pause = median(times[i].cold);
-      variants_[i].paused_ratios.push_back(paused / after_pause);
-      thread_row += formatted(" %8.3f %6.2f", after_pause, paused / after_pause);
-    }
-    std::printf("%s\n", level_row.c_str());
-    thread_rows_ += thread_row + "\n";
+    const auto extractionBy = [&one](const Variant& variant) {
+      return [&one, &variant] {
+        Clusters clusters;
+        variant.baseline.extract(one.problem, clusters);
+      };
+    };
+    measureLevels(one, runs, extractionBy, csv);
+    measureThreads(one, (runs + kRunsOfSpell - 1) / kRunsOfSpell, extractionBy, csv);
     return true;
   }
 
@@ -379,6 +352,42 @@ class ThreadsTable : public Table {
     std::vector<double> paused_ratios{};  ///< the same after a pause
   };
 
+  template <typename ExtractionBy>
+  void measureLevels(const Case& one, unsigned runs, ExtractionBy&& extractionBy, std::string& csv) {
+    std::vector<Contestant> contestants;
+    for (std::size_t i = 0; i < levels_.size(); ++i) contestants.push_back({extractionBy(variants_[i]), 0, runs});
+    const std::vector<Times> times = timeInTurn(contestants, TimeKind::kWall, [](std::size_t, std::size_t) {});
+    const double best = median(times.front().runs);
+    std::string row = one.head();
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+      csv += one.csv("extract", variants_[i].level, 1, times[i].runs);
+      row += timed(times[i].runs);
+      if (i == 0) continue;
+      variants_[i].ratios.push_back(median(times[i].runs) / best);
+      row += formatted(" %6.2f", variants_[i].ratios.back());
+    }
+    std::printf("%s\n", row.c_str());
+  }
+
+  template <typename ExtractionBy>
+  void measureThreads(const Case& one, std::size_t spells, ExtractionBy&& extractionBy, std::string& csv) {
+    std::vector<std::function<void()>> contestants{extractionBy(variants_.front())};
+    for (std::size_t i = levels_.size(); i < variants_.size(); ++i) contestants.push_back(extractionBy(variants_[i]));
+    const std::vector<Times> times = timeInSpells(contestants, spells);
+    const Times& alone = times.front();
+    csv += one.csv("threads", levels_.front(), 1, alone.runs);
+    thread_rows_ += one.head() + timed(alone.runs) + formatted(" %8.3f", median(alone.cold));
+    for (std::size_t i = 1; i < times.size(); ++i) {
+      Variant& variant = variants_[levels_.size() + i - 1];
+      csv += one.csv("threads", variant.level, variant.threads, times[i].runs);
+      variant.ratios.push_back(median(alone.runs) / median(times[i].runs));
+      variant.paused_ratios.push_back(median(alone.cold) / median(times[i].cold));
+      thread_rows_ += timed(times[i].runs) + formatted(" %6.2f %8.3f %6.2f", variant.ratios.back(),
+                                                       median(times[i].cold), variant.paused_ratios.back());
+    }
+    thread_rows_ += "\n";
+  }
+
   void add(const std::string& level, unsigned threads) {
     variants_.push_back({level, threads, variantOf(level, threads)});
   }
@@ -394,8 +403,10 @@ class ThreadsTable : public Table {
     std::printf("\n");
   }
 
+  static constexpr unsigned kRunsOfSpell = 4;  ///< of the levels, for each spell of the threads
+
   std::vector<std::string> levels_;
-  std::vector<Variant> variants_;  ///< the first: best level, one thread
+  std::vector<Variant> variants_;  ///< one thread at each level, the best first; then more threads at that one
   std::string thread_rows_;
 };
 

@@ -170,6 +170,14 @@ measure_engine() {
     code_block <"$out/$table.txt" | replace_section "$document" "$table" && cat "$out/$table.txt"
 }
 
+# Threads on real scans, and on clouds as users have them.
+measure_threads() {
+  measure_engine threads &&
+    report "$out/gains.txt" "$build/benchmarks/recordings" --threads 2 --set 1,2,5 --eps 0.1,0.4,1 \
+      --min-returns 30000 --summary &&
+    code_block <"$out/gains.txt" | replace_section "$document" "threads of sets" && cat "$out/gains.txt"
+}
+
 sensors=(--sensor hdl32e=hdl32e --sensor hdl64e=hdl64e --sensor vlp16=vlp16 --sensor vls128=vls128 --sensor os1=os1)
 
 # The captures, and column by column the scans of sensors without a capture.
@@ -210,7 +218,6 @@ measure_ground_latency() {
     cat "$out/ground_latency.txt"
 }
 
-measure_threads() { measure_engine threads; }
 measure_stages() { measure_engine stages; }
 
 # Another section takes a function measure_NAME here, NAME in `all_sections` and in the head of this file, and a section

@@ -142,15 +142,20 @@ Baseline referenceBaseline() {
           byPcl([](const Problem&) { return std::make_shared<pcl::search::KdTree<ComparedPoint>>(false); }), 0x000000};
 }
 
+Baseline liscoBaseline(unsigned threads) {
+  pcl::LiscoClusterExtraction<ComparedPoint> extraction;
+  extraction.setNumberOfThreads(threads);
+  const auto extract = [extraction](const Problem& problem, Clusters& clusters) mutable {
+    extractBy(extraction, problem, clusters);
+  };
+  return {"lisco", "Lisco for PCL", extract, 0xD55E00};
+}
+
 std::vector<Baseline> allBaselines() {
   const auto sorted_tree = [](const Problem&) { return std::make_shared<pcl::search::KdTree<ComparedPoint>>(); };
   const auto octree = [](const Problem& problem) {
     checkOctreeHolds(problem);
     return std::make_shared<pcl::search::Octree<ComparedPoint>>(std::fabs(problem.tolerance));
-  };
-  const auto by_lisco = [extraction = pcl::LiscoClusterExtraction<ComparedPoint>()](const Problem& problem,
-                                                                                    Clusters& clusters) mutable {
-    extractBy(extraction, problem, clusters);
   };
   // Okabe and Ito's colours, distinct with colour blindness.
   std::vector<Baseline> all{referenceBaseline(),
@@ -160,7 +165,7 @@ std::vector<Baseline> allBaselines() {
                              byPcl([](const Problem&) { return Search::Ptr(); }), 0xF0E442, false},
                             {"grid", "voxel grid", ByVoxelGrid(), 0x0072B2},
                             {"paper", "Lisco as in the paper", ByThePaper(), 0xE69F00, true, true},
-                            {"lisco", "Lisco for PCL", by_lisco, 0xD55E00}};
+                            liscoBaseline(1)};
   std::vector<Baseline> trees = kdTreeBaselines();
   all.insert(all.begin() + 4, std::make_move_iterator(trees.begin()), std::make_move_iterator(trees.end()));
   return all;

@@ -42,6 +42,9 @@ struct Baseline {
 inline constexpr const char* kReferenceKey = "pcl";
 Baseline referenceBaseline();
 
+/// Lisco on a number of threads.
+Baseline liscoBaseline(unsigned threads);
+
 /// All baselines, the reference first, each with memory of its own.
 std::vector<Baseline> allBaselines();
 

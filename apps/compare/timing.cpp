@@ -4,8 +4,10 @@
 
 #include <time.h>
 
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <thread>
 
 #include <boost/math/distributions/students_t.hpp>
 
@@ -55,6 +57,23 @@ std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants, TimeKi
       times[i].runs.push_back(contestant.tried_ms < kMaxShort ? runMs(contestant.run, kind) : times[i].cold.back());
     }
   }
+  return times;
+}
+
+std::vector<Times> timeInSpells(const std::vector<std::function<void()>>& contestants, std::size_t spells) {
+  constexpr std::chrono::milliseconds kPause{20};  // OpenMP's threads spin for some milliseconds before they sleep
+  constexpr double kBusyMs = 250;
+  constexpr std::size_t kTimed = 5;  // runs
+  std::vector<Times> times(contestants.size());
+  for (std::size_t spell = 0; spell < spells; ++spell)
+    for (std::size_t i = 0; i < contestants.size(); ++i) {
+      std::this_thread::sleep_for(kPause);
+      times[i].cold.push_back(runMs(contestants[i]));
+      for (double ms = 0; ms < kBusyMs;) ms += runMs(contestants[i]);
+      std::vector<double> runs;
+      for (std::size_t run = 0; run < kTimed; ++run) runs.push_back(runMs(contestants[i]));
+      if (spell == 0 || median(runs) < median(times[i].runs)) times[i].runs = std::move(runs);
+    }
   return times;
 }
 
