@@ -51,8 +51,9 @@ std::vector<Times> timeInTurn(const std::vector<Contestant>& contestants, TimeKi
                               const std::function<void(std::size_t round, std::size_t rounds)>& between);
 
 /// Times contestants of different numbers of threads in turn. Each has a spell at a time: a pause in which its threads
-/// fall asleep, a run (Times::cold), then runs for a quarter of a second, of which the last ones are timed. Those of the
-/// fastest spell are returned: virtual machines may run two processors on one core, for tenths of a second at least.
+/// fall asleep, a run (Times::cold), then runs for a quarter of a second, of which the last ones are timed. Those of
+/// the fastest spell are returned: virtual machines may run two processors on one core, for tenths of a second at
+/// least.
 std::vector<Times> timeInSpells(const std::vector<std::function<void()>>& contestants, std::size_t spells);
 
 /// Duration of one run, milliseconds.

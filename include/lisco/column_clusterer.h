@@ -29,8 +29,9 @@ struct Parameters;
 /// all columns added so far; more columns may follow it.
 ///
 /// Nothing is allocated once the buffers have grown to the largest rotation seen (with several threads, whose parts
-/// change with the scene, to the largest parts), except where rotations are read in another way than those before, as
-/// after the first three if that is faster. Not thread safe; any number may be used.
+/// change with the scene, to the largest parts), except when the engine changes how it reads rotations that come at
+/// once: after three for which range images took longer, the next ones are read without (doc/algorithm.md, FarHistory).
+/// Not thread safe; any number may be used.
 class LISCO_EXPORT ColumnClusterer {
  public:
   ColumnClusterer();
@@ -38,8 +39,10 @@ class LISCO_EXPORT ColumnClusterer {
   ColumnClusterer(const ColumnClusterer& other);             ///< a copy goes on from the same column
   ColumnClusterer& operator=(const ColumnClusterer& other);  ///< the same
 
-  /// Starts a new rotation and forgets the last one. After an exception that is not listed at the function (refused
-  /// memory, a throwing callable), all calls but begin () throw std::logic_error or do nothing.
+  /// Starts a new rotation and forgets the last one. An exception of addColumn (), addColumns () or update () that is
+  /// not listed there (refused memory, throwing `cells`) ends the rotation: until begin (), the first two throw
+  /// std::logic_error, update () and forEachRun () do nothing, and numbers and sizes are undefined. An exception of a
+  /// visit changes nothing.
   void begin(const Parameters& parameters);
 
   /// Event "reception of step s".
@@ -116,8 +119,8 @@ struct Parameters {
   std::size_t expected_returns = 65536;  ///< for which memory is reserved; more may come
   std::size_t lasers = 0;                ///< largest number of cells of a column; 0: any number
   /// Columns read together, 1..64. With 64 the work is least, since the returns of a laser lie side by side in memory;
-  /// it is spread over the columns of the next blocks. With 1 each column's work is done at once. Does not affect
-  /// results: update() covers every column added.
+  /// it is spread over the columns of the next blocks. With 1 each column is read at once, and near returns are linked
+  /// by update (). Other values are clamped. Does not affect results: update() covers every column added.
   std::size_t block_columns = 64;
   /// Threads that share the work of the first addColumns () after begin (), which should bring a whole rotation, and of
   /// the update () after it; 0: one for each core. No more are used than kMaxThreads, nor more than one for 64 columns;

@@ -28,15 +28,16 @@ struct EndlessParameters;
 ///
 /// The turn is divided into eighths, by position. Two returns are neighbours if they lie within eps of each other, in
 /// the same eighth or in eighths that are at most three apart (so always less than half a turn), and neither is an
-/// outlier. So no column can reach a return of eighth n, horizontally rho from the sensor, whose position is at least
+/// outlier. So no column from the *reach end* of a return on has a neighbour of it. Of eighth n, horizontally rho from
+/// the sensor, a return has
 ///
 ///   reach end = min (position + (asin (eps / rho) + 2 stagger) / 2 pi, (n + 4) / 8)
 ///
-/// and for rho <= (1 + kNearMargin) eps, (n + 4) / 8. Rounding puts the reach end up to 0.006 radians of rotation
-/// later, never earlier. When a column comes that is at or beyond the reach end of all returns of a cluster, the
-/// cluster is delivered. A cluster that began in eighth n and is still open when the first column of eighth n + 8 or
-/// later comes is delivered then, *cut*: its returns have no neighbours from there on, and clusters that would
-/// otherwise have been joined to it are *continued*. doc/streaming.md says more.
+/// and (n + 4) / 8 for rho <= (1 + kNearMargin) eps. Rounding puts the reach end up to 0.006 radians of rotation later,
+/// never earlier. When a column comes that is at or beyond the reach end of all returns of a cluster, the cluster is
+/// delivered. A cluster that began in eighth n and is still open when the first column of eighth n + 8 or later comes
+/// is delivered then, *cut*: its returns have no neighbours from there on, and clusters that would otherwise have been
+/// joined to it are *continued*. doc/streaming.md says more.
 ///
 /// Memory is bounded by the returns of two turns; nothing is allocated once the buffers have grown. Not thread safe;
 /// any number of instances may work side by side.
@@ -62,22 +63,23 @@ class LISCO_EXPORT EndlessClusterer {
   ///        back within the next turn and a half.
   /// \param position turns, at least that of the column before, within +-kMaxPosition; the definition above
   ///        holds for it as it is given
-  /// \throws std::logic_error before begin (); std::invalid_argument if there are more cells than lasers, or the
-  ///         position is less than the one before or out of range
+  /// \param lasers number of cells, may differ from column to column
+  /// \throws std::logic_error before begin (); std::invalid_argument if there are more cells than
+  ///         EndlessParameters::lasers, unless that is 0, or the position is less than the one before or out of range
   void addColumn(const Return* cells, std::size_t lasers, double position);
   /// The same at nextPosition ().
-  /// \throws std::logic_error if columns_per_turn is not known
+  /// \throws as above; std::logic_error if columns_per_turn is 0
   void addColumn(const Return* cells, std::size_t lasers);
 
-  /// Position of the next column that is added without one: 1 / columns_per_turn after the last column, 0 for the
-  /// first. Counted from the last position given, so that rounding does not add up. Infinite if columns_per_turn is not
-  /// known.
+  /// Position of the next column that is added without one: 0 for the first after begin () or finish (), then
+  /// 1 / columns_per_turn after the last column, infinite if that is 0. Counted from the last position given, so that
+  /// rounding does not add up.
   double nextPosition() const;
 
   /// Delivers what can be delivered with the columns added so far, without waiting for the block to be complete.
   void update();
 
-  /// Ends the stream: delivers all. More columns may follow; they are not compared with those before.
+  /// Ends the stream: delivers all. More columns may follow, at any position; they are not compared with those before.
   void finish();
 
   std::uint64_t returnCount() const;   ///< since begin (); update () counts all
@@ -93,17 +95,18 @@ class LISCO_EXPORT EndlessClusterer {
 /// How an endless stream is clustered. Positions are turns of the sensor, counted from any moment.
 struct EndlessParameters {
   float tolerance = 0.0F;                  ///< eps, metres; see Parameters::tolerance for 0, negative and NaN values
-  std::size_t min_size = 1;                ///< as max_size
-  std::size_t max_size = ~std::size_t{0};  ///< clusters of fewer or more returns are not delivered
+  std::size_t min_size = 1;                ///< clusters of fewer returns are not delivered
+  std::size_t max_size = ~std::size_t{0};  ///< nor are clusters of more returns
   std::array<float, 3> origin{};           ///< position of the sensor, metres; finite
   bool clockwise = false;                  ///< sense of rotation, seen from above
   double start_azimuth = 0;  ///< of position 0, radians, counter-clockwise from the x axis; at most kMaxAzimuth
   /// Largest difference between the azimuths of a return and of its column, radians, 0..kMaxStagger. Clusters are
   /// delivered the later, the larger it is. A return beyond it is an outlier: a cluster of its own.
   double stagger = kMaxStagger;
-  double columns_per_turn = 0;     ///< for addColumn () without a position; 0: each column has a position
-  std::size_t lasers = 0;          ///< largest number of cells of a column; 0: any number
-  std::size_t block_columns = 16;  ///< columns read together, 1..64; with 1, clusters are delivered soonest
+  double columns_per_turn = 0;  ///< for addColumn () without a position; 0: each column has a position
+  std::size_t lasers = 0;       ///< largest number of cells of a column; 0: any number
+  /// Columns read together, 1..64; other values are clamped. With 1, clusters are delivered soonest.
+  std::size_t block_columns = 16;
 
   static constexpr double kMaxStagger = 0.39269908169872414;  ///< a sixteenth of a turn
   static constexpr double kMaxAzimuth = 1e6;                  ///< radians

@@ -20,13 +20,13 @@ namespace lisco {
 struct GroundParameters {
   /// Height of the sensor above the ground beneath it, metres, any finite value; NaN: estimated from the returns.
   float sensor_height = std::numeric_limits<float>::quiet_NaN();
-  /// Slope of the ground around the sensor along x and y, metres per metre: where the estimate begins.
+  /// Slope of the ground around the sensor along x and y, metres per metre, -10 to 10: where the estimate begins.
   std::array<float, 2> slope{0.0F, 0.0F};
   /// Steepest slope of ground, degrees against the sensor's horizon, which is the x-y plane unless it is tilted; 1 to
   /// 60. Ground of more than 31 degrees is found only where gentler ground leads to it.
   float max_slope = 17.0F;
-  /// Its origin and tilt decide where the ground is searched for; see estimateSensor. If steps_per_turn is not 0, or
-  /// the origin is not (0, 0, 0), only ground more than 0.2 m below the origin is estimated.
+  /// Its origin and tilt decide where the ground is searched for; see estimateSensor. Ground is estimated only more
+  /// than 0.2 m below the origin, or up to 0.5 m above it if steps_per_turn is 0 and the origin is (0, 0, 0).
   SensorHints sensor;
 };
 
@@ -66,7 +66,7 @@ class LISCO_EXPORT GroundFilter {
   /// \param visit callable as void (std::size_t column, const std::uint8_t* ground, std::size_t lasers): the column
   ///        counted from begin (), 1 for each cell on the ground, 0 for the others, and the number of cells as given.
   ///        If it throws, the column counts as visited, and the filter goes on
-  /// \throws std::logic_error before begin (); std::invalid_argument if there are more cells than lasers in begin ()
+  /// \throws std::logic_error before begin (); std::invalid_argument if there are more cells than begin () was told
   template <typename Visit>
   void addColumn(const Return* cells, std::size_t lasers, Visit&& visit) {
     receive(cells, lasers, std::ref(visit));
@@ -94,6 +94,8 @@ class LISCO_EXPORT GroundFilter {
   /// Estimates the plane of the ground around the sensor from columns spread over the scan, then filters as filter ()
   /// does. Without a clear plane, nothing is ground. To add columns afterwards, begin () again.
   /// \param parameters as estimateGroundPlane takes them: the sensor's, and its height if it is known
+  /// \param ground as filter ()
+  /// \throws std::invalid_argument as begin ()
   /// \return the parameters with the estimates; the height is NaN where nothing is ground
   template <typename Cells>
   GroundParameters filterScan(const GroundParameters& parameters, std::size_t columns, std::size_t lasers,

@@ -16,8 +16,8 @@ namespace lisco {
 /// How points are clustered and labelled.
 struct LabelParameters {
   float tolerance = 0.0F;                  ///< eps, metres; see Parameters::tolerance for 0, negative and NaN values
-  std::size_t min_size = 1;                ///< as max_size
-  std::size_t max_size = ~std::size_t{0};  ///< clusters of fewer or more points get no label
+  std::size_t min_size = 1;                ///< clusters of fewer points get no label
+  std::size_t max_size = ~std::size_t{0};  ///< nor do clusters of more points
   std::size_t lasers = 1;  ///< rows of an organized cloud, stored row by row; 1: unorganized. Decides the speed only
   std::array<float, 3> origin{};  ///< position of the sensor, metres, if not (0, 0, 0). Decides the speed only
   std::size_t threads = 1;        ///< 0: one for each core; no more are used than there are cores
@@ -60,7 +60,7 @@ class LISCO_EXPORT ClusterLabeller {
 
   /// \param count number of points, below 2^31: LabelParameters::lasers rows of as many columns each
   /// \param cells callable as Return (std::size_t laser, std::size_t column), or block by block as CellSource has it;
-  ///        source indices are ignored. Called twice for some cells, and by several threads at once if
+  ///        source indices are ignored. May be called several times for a cell, and by several threads at once if
   ///        LabelParameters::threads allows it
   /// \param labels receives `count` labels, laser by laser; see labelClusters
   /// \return number of clusters

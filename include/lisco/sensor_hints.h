@@ -30,9 +30,10 @@ struct SensorHints {
   float slope_spread = 0.0F;
 };
 
-/// Estimates the sensor of an organized cloud (lasers > 1) from about a hundred of its cells, or of a rotation before.
-/// Allocates nothing. Without a clear answer, steps_per_turn is 0. The origin is (0, 0, 0), the declared one, or an
-/// estimate, if the cloud shows clearly that it is there; so is the tilt, which otherwise is 0.
+/// Estimates the sensor of an organized cloud (lasers > 1) from about a hundred of its cells and those beside them, or
+/// of a rotation before. Allocates nothing. Without a clear answer, steps_per_turn is 0, as it is for fewer than 4096
+/// cells and for less than a quarter of a turn. The origin is (0, 0, 0), the declared one, or an estimate, if the cloud
+/// shows clearly that it is there; so is the tilt, which otherwise is 0.
 /// \param declared_origin position that the cloud states for its sensor, metres; without effect if not finite
 /// \param former the estimate of the cloud before, whose origin and tilt are kept if this cloud has about its
 ///        slope_spread there: finding them is most of the work

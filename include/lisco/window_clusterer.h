@@ -50,9 +50,10 @@ class LISCO_EXPORT WindowClusterer {
 
   /// Takes the next column.
   /// \param cells cells[l] is what laser l measured; those that are no returns are skipped
+  /// \param lasers number of cells, may differ from column to column
   /// \return whether a window ends with it. The first windows are shorter: all columns so far.
-  /// \throws std::logic_error before begin (), std::invalid_argument if there are more cells than lasers,
-  ///         or 2^31 or more in W such columns
+  /// \throws std::logic_error before begin (); std::invalid_argument if there are more cells than
+  ///         WindowParameters::lasers, unless that is 0, or 2^31 or more in W such columns
   bool addColumn(const Return* cells, std::size_t lasers);
 
   std::size_t columnCount() const;      ///< of the last window

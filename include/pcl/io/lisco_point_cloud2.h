@@ -46,8 +46,8 @@ namespace pcl {
  *   `timestamp` and `time_stamp` that has finite and different values, of any unit and origin; without one, by their
  *   azimuth around (0, 0, 0). Points of one ring in one firing (dual returns) go into columns side by side. No-returns
  *   are left out;
- * - any other message becomes one row. So does one whose rings and times would leave most cells empty (more than 16
- *   cells per point, and more than 65536).
+ * - any other message becomes one row. So does one with rings that are not within 0..65535, and one whose rings and
+ *   times would leave most cells empty (more than 16 cells per point, and more than 65536).
  *
  * Fields of PointT are taken from the fields of the same names. Numbers of another type are converted: a value beyond
  * the limits of the type becomes the limit (beyond those of a float: infinite), NaN becomes 0 in an integer. Fields
@@ -71,7 +71,7 @@ bool organizeLiscoCloud(const PCLPointCloud2& message, PointCloud<PointT>& cloud
 /** \brief Converts clusters of an arranged cloud to those of its message: byte for byte what extract () gives for the
  * message's points in their own order.
  * \param[in] point_of_cell as organizeLiscoCloud () gave it
- * \param[in,out] clusters those of extract () for that cloud, which it has appended to nothing. Their indices are
+ * \param[in,out] clusters those of extract () for that cloud, called with an empty vector. Their indices are
  * replaced by those of the message and ascend; clusters are ordered by their first points, then sorted by size as
  * extract () does it.
  * \return false, after a PCL_ERROR and with \a clusters cleared, if an index is not that of a cell with a point, or

@@ -168,7 +168,7 @@ class LiscoClusterExtraction : public PCLBase<PointT> {
  * \param[in] cloud the scan
  * \param[in] tolerance metres
  * \param[in,out] clusters receives the clusters after those it already holds, in the order of their first points;
- * unchanged if the cloud or the indices are empty; cleared, with a PCL_ERROR, as LiscoClusterExtraction::extract ()
+ * unchanged if there are none to be clustered; cleared, with a PCL_ERROR, as LiscoClusterExtraction::extract ()
  * \param[in] min_pts_per_cluster least number of points of a cluster
  * \param[in] max_pts_per_cluster largest number of points of a cluster (default INT_MAX)
  * \ingroup segmentation

@@ -159,14 +159,15 @@ class LiscoEndlessExtraction : public detail::LiscoColumnStream<PointT> {
   /** \brief Get by how much a return's azimuth may differ from that of its column. */
   inline double getStagger() const { return (stagger_); }
 
-  /** \brief Set the number of columns of a turn (default 0: unknown), so that columns can be added without a position.
+  /** \brief Set the number of columns of a turn, more than 0, so that columns can be added without a position (default
+   * 0: each column has one).
    */
   inline void setColumnsPerTurn(double columns) { columns_per_turn_ = columns; }
   /** \brief Get the number of columns of a turn. */
   inline double getColumnsPerTurn() const { return (columns_per_turn_); }
 
-  /** \brief Set how many columns are clustered together, 1..64, the nearest of which others become (default 16). The
-   * fewer, the sooner clusters are delivered. Takes effect when the next stream begins.
+  /** \brief Set how many columns are clustered together, 1..64 (default 16); other values are clamped. The fewer, the
+   * sooner clusters are delivered. Takes effect when the next stream begins.
    */
   inline void setBlockColumns(std::size_t columns) { block_columns_ = columns; }
   /** \brief Get how many columns are clustered together. */

@@ -56,8 +56,9 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
   /** \brief Add the next column of the rotation.
    * \param[in] points one of each laser; copied
    * \param[in] count number of rows, may be 0
-   * \return false, after a PCL_ERROR and without effect: outside a rotation; if there are more rows than lasers
-   * declared; if the organized cloud would have more points than pcl::index_t can number
+   * \return false, after a PCL_ERROR and without effect: outside a rotation; if \a points is null and \a count is not
+   * 0; if there are more rows than lasers declared; if the organized cloud would have more points than pcl::index_t can
+   * number
    */
   bool addColumn(const PointT* points, std::size_t count);
 
@@ -93,9 +94,9 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
   /** \brief Number of columns added, which is the width of the cloud so far. */
   std::size_t getNumberOfColumns() const;
 
-  // These describe the columns so far of this rotation, or the last rotation until the next one begins.
-
-  /** \brief Number of subclusters, of any size. */
+  /** \brief Number of subclusters, of any size. This and the functions below describe the columns so far of this
+   * rotation, or the last rotation until the next one begins. They do the work that is left of these columns.
+   */
   std::size_t getNumberOfSubclusters();
 
   /** \brief Number of points of each subcluster.
@@ -132,9 +133,10 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
     return (Eigen::Vector4f(sensor_origin_[0], sensor_origin_[1], sensor_origin_[2], 0.0F));
   }
 
-  /** \brief Set how many columns are clustered together, 1..64, the nearest of which others become (default 64, which
-   * is the least work). The fewer, the less work is left for subclusters in between and for the end. Takes effect when
-   * the next rotation begins; it changes no result.
+  /** \brief Set how many columns are clustered together, 1..64 (default 64, which is the least work); other values are
+   * clamped. With fewer, fewer columns are left to be read at the end; with 1, near returns are linked by
+   * endRotation () and the functions that describe the rotation. Takes effect when the next rotation begins; it changes
+   * no result.
    */
   inline void setBlockColumns(std::size_t columns) { block_columns_ = columns; }
   /** \brief Get how many columns are clustered together. */

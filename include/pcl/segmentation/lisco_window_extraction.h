@@ -88,13 +88,16 @@ class LiscoWindowExtraction : public detail::LiscoColumnStream<PointT> {
   /** \brief Number of columns of the last window that ended, 0 before the first. */
   std::size_t getNumberOfColumns() const;
 
-  /** \brief Set W, the number of columns of a window: a multiple of the hop. Takes effect when the next stream begins.
+  /** \brief Set W, the number of columns of a window: a positive multiple of the hop (default 0: it must be set). Takes
+   * effect when the next stream begins.
    */
   inline void setWindowSize(std::size_t columns) { window_size_ = columns; }
   /** \brief Get the number of columns of a window. */
   inline std::size_t getWindowSize() const { return (window_size_); }
 
-  /** \brief Set H, after how many columns the next window ends. Takes effect when the next stream begins. */
+  /** \brief Set H, after how many columns the next window ends, 1 or more (default 1). Takes effect when the next
+   * stream begins.
+   */
   inline void setHop(std::size_t columns) { hop_ = columns; }
   /** \brief Get after how many columns the next window ends. */
   inline std::size_t getHop() const { return (hop_); }
