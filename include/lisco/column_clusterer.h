@@ -119,8 +119,8 @@ struct Parameters {
   std::size_t expected_returns = 65536;  ///< for which memory is reserved; more may come
   std::size_t lasers = 0;                ///< largest number of cells of a column; 0: any number
   /// Columns read together, 1..64. With 64 the work is least, since the returns of a laser lie side by side in memory;
-  /// it is spread over the columns of the next blocks. With 1 each column is read at once, and near returns are linked
-  /// by update (). Other values are clamped. Does not affect results: update() covers every column added.
+  /// it is spread over the columns of the next blocks. With 1 each column is read at once, and compared with the others
+  /// during the next ones. Other values are clamped. Does not affect results: update() covers every column added.
   std::size_t block_columns = 64;
   /// Threads that share the work of the first addColumns () after begin (), which should bring a whole rotation, and of
   /// the update () after it; 0: one for each core. No more are used than kMaxThreads, nor more than one for 64 columns;

@@ -112,13 +112,13 @@ void ColumnClusterer::Rotation::prepareForColumns() {
   }
 }
 
-/// Whole blocks of columns are read at once; single columns are gathered into blocks, whose work is spread.
+/// Several columns that are a whole block are read at once; others are gathered into blocks, whose work is spread.
 void ColumnClusterer::Rotation::receiveInSequence(std::size_t columns, std::size_t lasers, const CellSource& cells,
                                                   const Return* column) {
   Partition& partition = lastPartition();
   for (std::size_t first = 0; first < columns;) {
     const std::size_t count = std::min(columns - first, scheduler_.columnsLeft());
-    const bool is_block = count == parameters_.block_columns || count >= kWorthReadingAtOnce;
+    const bool is_block = (count > 1 && count == parameters_.block_columns) || count >= kWorthReadingAtOnce;
     if (scheduler_.isStageEmpty() && is_block) {
       scheduler_.finishPending(partition, subclusters_);
       partition.readColumns(cells, first, count, lasers, scheduler_.columnsRead(), subclusters_);

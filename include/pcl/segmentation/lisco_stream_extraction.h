@@ -134,9 +134,8 @@ class LiscoStreamExtraction : public detail::LiscoColumnStream<PointT> {
   }
 
   /** \brief Set how many columns are clustered together, 1..64 (default 64, which is the least work); other values are
-   * clamped. With fewer, fewer columns are left to be read at the end; with 1, near returns are linked by
-   * endRotation () and the functions that describe the rotation. Takes effect when the next rotation begins; it changes
-   * no result.
+   * clamped. With fewer, fewer columns are left to be read at the end. Takes effect when the next rotation begins; it
+   * changes no result.
    */
   inline void setBlockColumns(std::size_t columns) { block_columns_ = columns; }
   /** \brief Get how many columns are clustered together. */
