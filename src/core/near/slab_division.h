@@ -25,7 +25,7 @@ struct Planes {
   }
 };
 
-/// Consecutive planes, sorted by one thread, which begins to link them at their first one, or at their last one.
+/// Consecutive planes, merged by one thread, which begins to link them at their first one, or at their last one.
 struct alignas(kSeparate) Slab : Planes {
   std::size_t voxels = 0;  ///< of single returns, in the planes that the thread has linked
 };
@@ -70,7 +70,7 @@ class SlabDivision {
   /// Makes the fragments of all parts one slab.
   void join(const FragmentList& fragments, FragmentItems& items);
 
-  /// Merges the fragments of all parts, which are sorted, into slabs of about equal work, one for each part.
+  /// Merges the fragments of all parts, which are sorted, into slabs, one for each part, by the threads' shares.
   /// \param boxes of the parts
   void divide(const FragmentList& fragments, const std::vector<Box>& boxes, const VoxelNumbering& numbering,
               FragmentItems& items);
