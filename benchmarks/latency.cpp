@@ -250,12 +250,7 @@ class ColumnsTable {
       for (const Rotation& rotation : one.rotations) {
         if (!feeder.feed(rotation, run > 0 ? &columns : nullptr, run > 0 ? &ends : nullptr, one)) return false;
         if (run > 0 && !feeder.feed(rotation, &paced, nullptr, one, one.period_us)) return false;
-        const auto timeOf = [&](const Baseline& baseline) {
-          return runMs([&] {
-            Clusters clusters;
-            baseline.extract(rotation.problem, clusters);
-          });
-        };
+        const auto timeOf = [&](const Baseline& baseline) { return runMs(runOf(baseline, rotation.problem)); };
         if (run == 0) continue;
         grids.push_back(timeOf(*grid));
         if (run <= 2) pcls.push_back(timeOf(pcl));
@@ -412,11 +407,7 @@ class TimelineTable {
     for (const Baseline& baseline : allBaselines()) {
       if (baseline.key != kReferenceKey && baseline.key != "grid") continue;
       std::vector<double> times;
-      for (unsigned run = 0; run < runs; ++run)
-        times.push_back(runMs([&] {
-          Clusters clusters;
-          baseline.extract(rotation.problem, clusters);
-        }));
+      for (unsigned run = 0; run < runs; ++run) times.push_back(runMs(runOf(baseline, rotation.problem)));
       double free_from = 0;
       for (std::size_t turn = 1; turn <= 2; ++turn) {
         const double begin = std::max(free_from, static_cast<double>(turn * kTurnMs));

@@ -190,19 +190,13 @@ void measure(const Problem& problem, const Options& options, const Methods& meth
     budget.spend(result.tolerance, result.pcl_ms);
   }
   if (!result.identical) return;
-  const auto extractionBy = [&problem](const Baseline& baseline) {
-    return [&problem, &baseline] {
-      Clusters clusters;
-      baseline.extract(problem, clusters);
-    };
-  };
   std::vector<Times> times;
   if (options.threads > 1)
-    times = timeInSpells({extractionBy(methods.one_thread), extractionBy(methods.lisco)}, kSpells);
+    times = timeInSpells({runOf(methods.one_thread, problem), runOf(methods.lisco, problem)}, kSpells);
   else
-    times = timeInTurn(
-        {{extractionBy(methods.grid), grid_ms, options.runs}, {extractionBy(methods.lisco), lisco_ms, options.runs}},
-        TimeKind::kThread, [](std::size_t, std::size_t) {});
+    times = timeInTurn({{runOf(methods.grid, problem), grid_ms, options.runs},
+                        {runOf(methods.lisco, problem), lisco_ms, options.runs}},
+                       TimeKind::kThread, [](std::size_t, std::size_t) {});
   result.rival = times[0];
   result.lisco = times[1];
 }

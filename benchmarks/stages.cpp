@@ -261,10 +261,7 @@ class StagesTable : public Table {
         sum += now[stage];
       }
       sums.push_back(sum);
-      const auto extract = [&] {
-        Clusters clusters;
-        whole_.extract(one.problem, clusters);
-      };
+      const auto extract = runOf(whole_, one.problem);
       extract();
       wholes.push_back(runMs(extract));
     }
@@ -318,14 +315,8 @@ class ThreadsTable : public Table {
     for (const Variant& variant : variants_) agree = one.agrees(variant.baseline) && agree;
     if (!agree) return false;
 
-    const auto extractionBy = [&one](const Variant& variant) {
-      return [&one, &variant] {
-        Clusters clusters;
-        variant.baseline.extract(one.problem, clusters);
-      };
-    };
-    measureLevels(one, runs, extractionBy, csv);
-    measureThreads(one, (runs + kRunsOfSpell - 1) / kRunsOfSpell, extractionBy, csv);
+    measureLevels(one, runs, csv);
+    measureThreads(one, (runs + kRunsOfSpell - 1) / kRunsOfSpell, csv);
     return true;
   }
 
@@ -352,10 +343,10 @@ class ThreadsTable : public Table {
     std::vector<double> paused_ratios{};  ///< the same after a pause
   };
 
-  template <typename ExtractionBy>
-  void measureLevels(const Case& one, unsigned runs, ExtractionBy&& extractionBy, std::string& csv) {
+  void measureLevels(const Case& one, unsigned runs, std::string& csv) {
     std::vector<Contestant> contestants;
-    for (std::size_t i = 0; i < levels_.size(); ++i) contestants.push_back({extractionBy(variants_[i]), 0, runs});
+    for (std::size_t i = 0; i < levels_.size(); ++i)
+      contestants.push_back({runOf(variants_[i].baseline, one.problem), 0, runs});
     const std::vector<Times> times = timeInTurn(contestants, TimeKind::kWall, [](std::size_t, std::size_t) {});
     const double best = median(times.front().runs);
     std::string row = one.head();
@@ -369,10 +360,10 @@ class ThreadsTable : public Table {
     std::printf("%s\n", row.c_str());
   }
 
-  template <typename ExtractionBy>
-  void measureThreads(const Case& one, std::size_t spells, ExtractionBy&& extractionBy, std::string& csv) {
-    std::vector<std::function<void()>> contestants{extractionBy(variants_.front())};
-    for (std::size_t i = levels_.size(); i < variants_.size(); ++i) contestants.push_back(extractionBy(variants_[i]));
+  void measureThreads(const Case& one, std::size_t spells, std::string& csv) {
+    std::vector<std::function<void()>> contestants{runOf(variants_.front().baseline, one.problem)};
+    for (std::size_t i = levels_.size(); i < variants_.size(); ++i)
+      contestants.push_back(runOf(variants_[i].baseline, one.problem));
     const std::vector<Times> times = timeInSpells(contestants, spells);
     const Times& alone = times.front();
     csv += one.csv("threads", levels_.front(), 1, alone.runs);

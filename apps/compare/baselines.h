@@ -38,6 +38,14 @@ struct Baseline {
   bool needs_rows = false;                                 ///< for organized clouds only
 };
 
+/// An extraction to be timed, which gives its clusters back. Refers to both.
+inline std::function<void()> runOf(const Baseline& baseline, const Problem& problem) {
+  return [&baseline, &problem] {
+    Clusters clusters;
+    baseline.extract(problem, clusters);
+  };
+}
+
 /// Key of the reference, PCL with KdTree (false), whose clusters are the right ones.
 inline constexpr const char* kReferenceKey = "pcl";
 Baseline referenceBaseline();

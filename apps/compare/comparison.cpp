@@ -125,11 +125,7 @@ CaseResult compareAt(const ComparedScan& scan, double tolerance, const CompareSe
       entry.times = Times{{tried_ms}, {tried_ms}};
       continue;
     }
-    contestants.push_back({[&baseline, &problem] {
-                             Clusters clusters;
-                             baseline.extract(problem, clusters);
-                           },
-                           tried_ms, affordableRuns(tried_ms, settings)});
+    contestants.push_back({runOf(baseline, problem), tried_ms, affordableRuns(tried_ms, settings)});
     results.push_back(&entry);
   }
 
